@@ -83,7 +83,12 @@ def equations(scene: Scene, bits: int) -> list[arb]:
     system = posed(as_written(scene))
     with ctx.workprec(bits):
         forms, factors = Forms.of(system), filter(None, system.tape.factors())
-    numbers = [n for each in factors for n in (each.constant, *each.products, *each.sums) if n]
+    numbers = [
+        number
+        for each in factors
+        for number in (each.constant, *(entry[0] for entry in each.products + each.sums))
+        if number is not None
+    ]
     return [*numbers, *forms.spin.entries(), *forms.velocity.entries()]
 
 

@@ -108,13 +108,12 @@ class Bounds:
         return [self._without_cancelling(rate) for rate in self.tape.rates]
 
     def _without_cancelling(self, i: int) -> arb:
-        operation = self.tape.operations[i]
-        if not isinstance(operation, Bilinear):
+        if not isinstance(self.tape.operations[i], Bilinear):
             return self.sizes[i][0]
         sizes, total = self.factors(i), self.series.factors(i).constant.abs_upper()
-        for (_, a, b), size in zip(operation.products, sizes.products, strict=True):
+        for size, a, b in sizes.products:
             total += size * self.sizes[a][0] * self.sizes[b][0]
-        for (_, e), size in zip(operation.sums, sizes.sums, strict=True):
+        for size, e in sizes.sums:
             total += size * self.sizes[e][0]
         return total
 
@@ -130,7 +129,11 @@ class Bounds:
         for i, operation in enumerate(self.tape.operations):
             if isinstance(operation, Bilinear):
                 constant, products, sums = self.series.factors(i)
-                sizes[i] = Factors(constant, tuple(map(_size, products)), tuple(map(_size, sums)))
+                sizes[i] = Factors(
+                    constant,
+                    tuple((_size(factor), a, b) for factor, a, b in products),
+                    tuple((_size(factor), e) for factor, e in sums),
+                )
         return sizes
 
     def reach(self, i: int) -> arb:

@@ -195,55 +195,51 @@ class Bilinear(Operation):
 
     def _sum(self, factors: Factors, s: Series, k: int) -> arb:
         total = ZERO
-        for (_, a, b), factor in zip(self.products, factors.products, strict=True):
+        for factor, a, b in factors.products:
             product = s.product(a, b, k)
             total += product if factor is None else factor * product
-        for (_, e), factor in zip(self.sums, factors.sums, strict=True):
+        for factor, e in factors.sums:
             entry = s.forward[e][k]
             total += entry if factor is None else factor * entry
         return total
 
     def left_out(self, i: int, b: Bounds) -> arb:
         sizes = b.factors(i)
-        total = ZERO
-        for (_, p, q), size in zip(self.products, sizes.products, strict=True):
-            total += size * b.tail(p, q)
-        for (_, e), size in zip(self.sums, sizes.sums, strict=True):
-            total += size * b.last(e)
-        return total
+        products = [size * b.tail(p, q) for size, p, q in sizes.products]
+        return sum((size * b.last(e) for size, e in sizes.sums), sum(products, ZERO))
 
     def apart(self, i: int, b: Bounds) -> arb:
         sizes, total = b.factors(i), b.missed[i]
-        for (_, p, q), size in zip(self.products, sizes.products, strict=True):
+        for size, p, q in sizes.products:
             total += size * (b.length[p] * b.beside[q] + b.beside[p] * b.reach(q))
-        for (_, e), size in zip(self.sums, sizes.sums, strict=True):
+        for size, e in sizes.sums:
             total += size * b.beside[e]
         return total
 
     def slopes(self, i: int, b: Bounds) -> Iterator[Slope]:
         sizes = b.factors(i)
-        for (_, p, q), size in zip(self.products, sizes.products, strict=True):
+        for size, p, q in sizes.products:
             yield size * b.reach(p), q
             yield size * b.reach(q), p
-        for (_, e), size in zip(self.sums, sizes.sums, strict=True):
+        for size, e in sizes.sums:
             yield size, e
 
     def differential(self, i: int, b: Bounds) -> Differential:
         factors = b.series.factors(i)
-        parts = []
-        for (_, p, q), factor in zip(self.products, factors.products, strict=True):
-            parts += [Part(factor or ONE, p, q), Part(factor or ONE, q, p)]
-        for (_, e), factor in zip(self.sums, factors.sums, strict=True):
-            parts.append(Part(factor or ONE, None, e))
-        return Differential(parts)
+        parts = [
+            part
+            for factor, p, q in factors.products
+            for part in (Part(factor or ONE, p, q), Part(factor or ONE, q, p))
+        ]
+        return Differential([*parts, *(Part(factor or ONE, None, e) for factor, e in factors.sums)])
 
 
 class Factors(NamedTuple):
-    """The exact numbers of a bilinear operation in balls; None for 1."""
+    """A bilinear operation with its exact numbers in balls; None for a factor 1."""
 
     constant: arb
-    products: tuple[Any, ...]
-    sums: tuple[Any, ...]
+    products: tuple[tuple[Any, int, int], ...]
+    sums: tuple[tuple[Any, int], ...]
 
 
 # Functions of one node. Each returns a value only where its derivative exists.

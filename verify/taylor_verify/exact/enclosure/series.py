@@ -134,14 +134,9 @@ class Series:
 
     def product(self, a: int, b: int, k: int) -> arb:
         """The coefficient of order k of the product of two nodes, whose orders up to k are there."""
-        degrees = self.tape.degrees
         if a == b:
             return self.square(a, 0, k)
-        if degrees[b] is not None:
-            a, b = b, a
-        degree = degrees[a]
-        terms = self.forward[a] if degree is None else self.forward[a][: degree + 1]
-        return convolved(terms, self._from(b, k))
+        return convolved(self.forward[a], self._from(b, k))
 
     def square(self, a: int, begin: int, k: int) -> arb:
         """The coefficient of order begin + k of a^2, but for 2 a_begin a_k if that order is missing.
@@ -170,9 +165,7 @@ class Series:
 
     def driven(self, a: int, d: int, k: int) -> arb:
         """The sum of j a_j d_(k - j) over 1 <= j <= k."""
-        degree = self.tape.degrees[a]
-        slopes = self._slopes_of(a, k if degree is None else min(k, degree))
-        return convolved(slopes, self._from(d, k - 1))
+        return convolved(self._slopes_of(a, k), self._from(d, k - 1))
 
     def weighted(self, i: int, d: int, k: int) -> arb:
         """The sum of j v_j d_(k - j) over 0 < j < k."""

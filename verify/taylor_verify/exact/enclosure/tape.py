@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
 
-from flint import ctx
+from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.functions import HyperbolicTangent, Paired
@@ -181,11 +181,15 @@ class Tape:
 def _in_balls(operation: Operation) -> Factors | None:
     if not isinstance(operation, Bilinear):
         return None
-    products, sums = (
-        tuple(None if entry[0] == 1 else ball(entry[0]) for entry in entries)
-        for entries in (operation.products, operation.sums)
+    return Factors(
+        ball(operation.constant),
+        tuple((_factor(number), a, b) for number, a, b in operation.products),
+        tuple((_factor(number), e) for number, e in operation.sums),
     )
-    return Factors(ball(operation.constant), products, sums)
+
+
+def _factor(number: Any) -> arb | None:
+    return None if number == 1 else ball(number)
 
 
 def _reached(operations: Sequence[Operation], outputs: Iterable[int]) -> set[int]:
