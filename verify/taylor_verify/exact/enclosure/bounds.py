@@ -51,6 +51,15 @@ class Bounds:
         bounds.missed = [ZERO] * len(bounds.sizes)
         return bounds
 
+    @classmethod
+    def at_start(cls, series: Series) -> Bounds:
+        """The bounds of the values at the beginning, where nothing is left out."""
+        bounds = cls.__new__(cls)
+        bounds.series, bounds.tape, bounds.order = series, series.tape, series.order
+        bounds._measure([row[:1] for row in series.forward])
+        bounds.missed = [ZERO] * len(bounds.sizes)
+        return bounds
+
     def _measure(self, coefficients: Sequence[Sequence[arb]]) -> None:
         self.sizes = [[entry.abs_upper() for entry in row] for row in coefficients]
         self.change = [sum(row[1:], ZERO) for row in self.sizes]

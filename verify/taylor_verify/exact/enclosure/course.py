@@ -15,6 +15,8 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box, carried, within
+from taylor_verify.exact.enclosure.crossing import Touched
+from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.step import Step, Stepper, size_of
 from taylor_verify.exact.enclosure.system import System
@@ -118,12 +120,16 @@ class Course:
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
         pending, lengths, length = list(times[::-1]), [], last
+        usual = last
         largest = self._largest(box, place)
         while pending:
             try:
                 step = self.stepper.step(box, self.origin + now, length, last - now)
-            except StepTooLong:
+            except (StepTooLong, Touched):
                 raise Coarse(2 * self.bits, stuck=pending[-1]) from None
+            except Domain as end:
+                because = f"{end} at t = {self._shown(now)}"
+                raise Unreached(because, pending[-1]) from end
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
@@ -135,12 +141,14 @@ class Course:
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
             largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))
-            now, length = now + step.length, 2 * step.length
+            now, length = now + step.length, 2 * (usual if step.is_flat else step.length)
+            usual = length / 2
             if _progress.isEnabledFor(logging.INFO):
                 percent = float(100 * now / last)
                 _progress.info("%.0f %% of the time, with %d bits", percent, self.bits)
-            lengths.append(abs(step.length))
-            if pending:
+            if not step.is_flat:
+                lengths.append(abs(step.length))
+            if pending and lengths:
                 self._watch(box, largest, lengths, now, pending)
 
     def _terms(self, step: Step) -> tuple[float, ...]:

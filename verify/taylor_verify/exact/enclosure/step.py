@@ -14,10 +14,13 @@ from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent
 from taylor_verify.exact.enclosure.coefficients import Rows, frame_series, scaled
+from taylor_verify.exact.enclosure.crossing import least_length, plan
 from taylor_verify.exact.enclosure.flow import Flow, flow
+from taylor_verify.exact.enclosure.kinks import Kink
 from taylor_verify.exact.enclosure.placing import Leg, leg
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.system import Forms, System
+from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong, Tube, tube
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 
@@ -28,7 +31,8 @@ _STEP_BITS: Final = 8
 # Near a steady motion the series converges everywhere, and the bounds do not close.
 _MOST_GROWTH: Final = 5.0
 _LEAST_CUT: Final = 0.25
-_HALVINGS: Final = 40
+_HALVINGS: Final = 80
+_LEAST_ORDER: Final = 6
 # The last orders of a state may happen to be small beside those of the products that it comes from.
 SPARE_BITS: Final = 12
 # A step that nearly reaches the end is extended to the end.
@@ -39,7 +43,8 @@ _NEARLY: Final = Fraction(63, 64)
 class Step:
     """A step of length h from a box, and everything that is known about the motion within it.
 
-    ``terms`` are the sizes of the rates at its beginning if none of their terms cancelled.
+    ``terms`` are the sizes of the rates at its beginning if none of their terms cancelled; a step that
+    ``is_flat`` goes across a kink.
     """
 
     length: Fraction
@@ -48,6 +53,7 @@ class Step:
     flow: Flow | None
     leg: Leg | None
     terms: list[arb]
+    is_flat: bool
 
 
 @dataclass(frozen=True)
@@ -75,8 +81,15 @@ class Stepper:
         return ceil(_ORDERS_PER_BIT * ctx.prec) + 2
 
     def step(self, box: Box, now: Fraction, guess: Fraction, left: Fraction) -> Step:
-        """A step of at most the time that is left. Raises StepTooLong where none closes."""
-        series, frame = self._fitted(box, now, guess, left)
+        """A step of at most the time that is left, and within one piece of it.
+
+        Raises StepTooLong where none closes, Touched at a kink that may not be crossed, and Domain where a
+        function has no value.
+        """
+        tape, end = self.system.pieces(now, left > 0)
+        if end is not None and abs(end - now) < abs(left):
+            left = end - now
+        series, frame = self._fitted(tape, box, now, guess, left)
         for _ in range(_HALVINGS):
             with ctx.workprec(BOUND_BITS):
                 bounds = Bounds(series)
@@ -85,10 +98,11 @@ class Stepper:
                     moving = None if box.is_point else flow(bounds, box, around)
                 except StepTooLong:
                     around = None
-            excess = 0.0 if around is None else self._excess(series, around)
+            excess = 0.0 if around is None or series.flat else self._excess(series, around)
             if around is not None and excess <= 0:
                 way = self._leg(series, frame, around, moving, box)
-                return Step(series.step, series.rows, around, moving, way, bounds.terms())
+                terms, is_flat = bounds.terms(), bool(series.flat)
+                return Step(series.step, series.rows, around, moving, way, terms, is_flat)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
             frame = scaled(frame, ball(share))
@@ -116,25 +130,63 @@ class Stepper:
     # The length.
 
     def _fitted(
-        self, box: Box, now: Fraction, guess: Fraction, left: Fraction
+        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
     ) -> tuple[Series, Rows]:
         """The series of state and frame of a step at whose end they fall below the last bit."""
-        first = self._first(box, now, guess, left)
-        series = Series(self.system.tape, box.point, now, first, self.order)
-        frame: Rows = []
-        if self.is_placed:
-            frame = frame_series(self.forms, series.rows, series.length, self.has_centre)
+        first = self._first(tape, box, now, guess, left)
+        try:
+            series = Series(tape, box.point, now, first, self.order)
+        except Kink as kink:
+            # It lies within the rounding of the start.
+            return self._flat(tape, box, now, left, frozenset((kink.node,)), least_length(left))
+        frame = self._frame(series)
         length = self._length(box, series, frame, left)
         if length != first:
             series.rescale(length)
             frame = scaled(frame, ball(length / first))
+        if tape.has_kinks:
+            ahead = plan(series, box)
+            if ahead.flat:
+                return self._flat(tape, box, now, left, ahead.flat, abs(ahead.length))
+            if ahead.length != length:
+                series.rescale(ahead.length)
+                frame = scaled(frame, ball(ahead.length / length))
         return series, frame
 
-    def _first(self, box: Box, now: Fraction, guess: Fraction, left: Fraction) -> Fraction:
+    def _flat(
+        self,
+        tape: Tape,
+        box: Box,
+        now: Fraction,
+        left: Fraction,
+        flat: frozenset[int],
+        length: Fraction,
+    ) -> tuple[Series, Rows]:
+        """The series of a short step across kinks, with fewer orders."""
+        step = min(length, abs(left)) * (1 if left > 0 else -1)
+        order = max(_LEAST_ORDER, self.order // 4)
+        while True:
+            try:
+                series = Series(tape, box.point, now, step, order, flat)
+                return series, self._frame(series)
+            except Kink as kink:
+                flat |= {kink.node}
+
+    def _frame(self, series: Series) -> Rows:
+        if not self.is_placed:
+            return []
+        return frame_series(self.forms, series.rows, series.length, self.has_centre)
+
+    def _first(
+        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
+    ) -> Fraction:
         """A length at which the coefficients are no giants: no guess can make a result wrong."""
         length = guess if abs(guess) < abs(left) else left
-        with ctx.workprec(BOUND_BITS):
-            growth = _growth(Series(self.system.tape, box.point, now, length, 1), 0)
+        try:
+            with ctx.workprec(BOUND_BITS):
+                growth = _growth(Series(tape, box.point, now, length, 1), 0)
+        except Kink:
+            return length
         if growth is None or growth == float("-inf"):
             return length
         limit = power_of_two(ceil(_log2(length) - growth))

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -26,14 +27,22 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 
-@dataclass(frozen=True)
-class System:
-    """A tape, and the state at time zero, ``start``, exactly.
-
-    ``blocks`` are the ends of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y.
-    """
+class Piece(NamedTuple):
+    """A tape, and the first time at which it is another one, in the direction of the motion; or None."""
 
     tape: Tape
+    end: Fraction | None
+
+
+@dataclass(frozen=True)
+class System:
+    """The equations as a tape for each piece of time, and the state at time zero, ``start``, exactly.
+
+    ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends of
+    the vectors that z is made of; ``spin`` and ``velocity`` are W and Y.
+    """
+
+    pieces: Callable[[Fraction, bool], Piece]
     blocks: tuple[int, ...]
     start: Vector
     spin: Exact
@@ -52,19 +61,29 @@ class System:
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
     body, kind = scene.body, kind_of(scene.body)
+    if body.loads is not None:
+        from taylor_verify.exact.enclosure.loaded import LoadedBody
+
+        return LoadedBody(scene, body.loads).system()
     start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()
     rates = natural(graph, equations, graph.states(len(start)))
     if body.manufactured is not None:
-        rates = [
-            a + b for a, b in zip(rates, driven(graph, equations, body.manufactured), strict=True)
-        ]
-    return System(
-        tape=Tape.of(graph, len(start), rates),
-        blocks=tuple(range(3, len(start) + 1, 3)),
-        start=start,
-        spin=equations.spin,
-        velocity=equations.velocity,
+        motion = driven(graph, equations, body.manufactured)
+        rates = [rate + load for rate, load in zip(rates, motion, strict=True)]
+    return always(
+        Tape.of(graph, len(start), rates),
+        tuple(range(3, len(start) + 1, 3)),
+        start,
+        equations.spin,
+        equations.velocity,
     )
+
+
+def always(
+    tape: Tape, blocks: tuple[int, ...], start: Vector, spin: Exact, velocity: Exact
+) -> System:
+    """The system of one tape for all times."""
+    return System(lambda time, is_later: Piece(tape, None), blocks, start, spin, velocity)
 
 
 def natural(graph: Graph, equations: Equations, z: Sequence[Sum]) -> list[Sum]:

@@ -18,6 +18,7 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.functions import HyperbolicTangent, Paired
+from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import (
     Bilinear,
     Factors,
@@ -158,6 +159,12 @@ class Tape:
             degree = operation.degree([degrees[a] for a in operation.operands])
             degrees.append(None if degree is None or degree > _MOST_DEGREE else degree)
         return degrees
+
+    @cached_property
+    def has_kinks(self) -> bool:
+        """True if there is an absolute value or a norm that depends on more than constants."""
+        pairs = zip(self.operations, self.degrees, strict=True)
+        return any(isinstance(each, Absolute | Norm) and degree is None for each, degree in pairs)
 
     @cached_property
     def moves(self) -> list[bool]:
