@@ -38,8 +38,8 @@ class Piece(NamedTuple):
 class System:
     """The equations as a tape for each piece of time, and the state at time zero, ``start``, exactly.
 
-    ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends of
-    the vectors that z is made of; ``spin`` and ``velocity`` are W and Y.
+    ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends
+    of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y.
     """
 
     pieces: Callable[[Fraction, bool], Piece]

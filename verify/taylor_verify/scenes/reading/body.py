@@ -18,6 +18,7 @@ from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, Immer
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.faults import shown
+from taylor_verify.scenes.reading.loads import entry, hanging, texts
 from taylor_verify.scenes.reading.table import Table, complete
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
 
@@ -27,14 +28,18 @@ _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
     """Return the body of model euler, a gyrostat if wheels turn; None after a fault."""
     inertia = _inertia(table)
-    moment = table.vector("moment", default=ZERO_VECTOR)
+    moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
     rotor = table.vector("rotor", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
-    if inertia is None or moment is None or rotor is None or damping is None:
+    if inertia is None or moment is None or rotor is None or damping is None or hung is None:
         return None
+    loads = texts(RigidBody.MODEL, {"moment": moment}, hung)
+    if loads is not None:
+        moment, loads = ZERO_VECTOR, replace(loads, inertia=inertia)
     if any(rotor):
-        return Gyrostat(inertia, rotor, moment, damping=damping)
-    return RigidBody(inertia, moment, damping=damping)
+        return Gyrostat(inertia, rotor, moment, damping=damping, loads=loads)
+    return RigidBody(inertia, moment, damping=damping, loads=loads)
 
 
 def _inertia(table: Table) -> Matrix | None:
@@ -83,14 +88,18 @@ def _is_positive(
 
 def immersed_body(table: Table) -> ImmersedBody | None:
     """Return the body of model kirchhoff; None after a fault."""
-    force = table.vector("force", default=ZERO_VECTOR)
-    couple = table.vector("couple", default=ZERO_VECTOR)
+    force = table.vector("force", default=ZERO_VECTOR, number=entry)
+    couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
     damping = table.number(DAMPING.name, default=Fraction(0))
     form = _form(table)
     body = form(table) if form else None
-    if body is None or force is None or couple is None or damping is None:
+    if body is None or force is None or couple is None or damping is None or hung is None:
         return None
-    return replace(body, force=force, couple=couple, damping=damping)
+    loads = texts(ImmersedBody.MODEL, {"force": force, "couple": couple}, hung)
+    if loads is not None:
+        force = couple = ZERO_VECTOR
+    return replace(body, force=force, couple=couple, damping=damping, loads=loads)
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
