@@ -137,6 +137,9 @@ class Course:
                 state = within(box, step.state, step.tube, step.flow, share)
                 frame = None if place is None or step.leg is None else step.leg.place(place, share)
                 turn, centre = ([], None) if frame is None else frame.balls()
+                if centre is not None and self.system.current:
+                    drift = self.system.current
+                    centre = [c + ball(v * time) for c, v in zip(centre, drift, strict=True)]
                 yield time, Row(state, turn, centre, largest)
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)

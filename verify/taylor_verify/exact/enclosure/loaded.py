@@ -22,7 +22,7 @@ from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.loads import loads as written
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _STATES = ("x", "y")
 
@@ -62,17 +62,16 @@ class LoadedBody:
             np.hstack([form, np.full((len(form), more), Fraction(0), dtype=object)])
             for form in (self._equations.spin, self._equations.velocity)
         )
-        return System(self.piece, self.blocks, self.start, spin, velocity)
+        current = self._loads.current if any(self._loads.current) else ()
+        return System(self.piece, self.blocks, self.start, spin, velocity, current)
 
     def piece(self, elapsed: Fraction, is_later: bool) -> Piece:
         """The tape from an elapsed time on."""
-        begin = self._scene.clock.start
-        piece = self._loads.piece(begin + elapsed, is_later)
-        end = piece.end if is_later else piece.begin
+        piece = self._loads.piece(elapsed, is_later)
         key = piece.steps, piece.outputs
         if key not in self._tapes:
             self._tapes[key] = self._tape(piece)
-        return Piece(self._tapes[key], None if end is None else end - begin)
+        return Piece(self._tapes[key], piece.end if is_later else piece.begin)
 
     def _tape(self, piece: written.Piece) -> Tape:
         graph = Graph()
@@ -89,8 +88,7 @@ class LoadedBody:
         return Tape.of(graph, len(states), [*rates, *frame.rates()])
 
     def _inputs(self, z: Sequence[Sum], frame: _Frame) -> Mapping[str, Sum]:
-        time = frame.graph.node(Time()) + Sum(self._scene.clock.start)
-        inputs = {"t": time, **_named("w", frame.spin)}
+        inputs = {"t": frame.graph.node(Time()), **_named("w", frame.spin)}
         if frame.velocity:
             inputs |= _named("u", frame.velocity) | _named("x", z[:3]) | _named("y", z[3:])
         return inputs | frame.inputs()
@@ -116,6 +114,7 @@ class _Frame:
         self._turn = states[size : size + 4] if turns else []
         self._centre = states[size + 4 : size + 7] if travels else []
         self._rotation = self._of_turn() if turns else []
+        self._current = scene.body.loads.current if scene.body.loads is not None else ZERO_VECTOR
 
     def _of_turn(self) -> list[list[Sum]]:
         """R = R_0 R(e)."""
@@ -182,8 +181,10 @@ class _Frame:
         rates = [rate.times(Fraction(1, 2)) for rate in turning]
         if self._centre:
             rates += [
-                total(product(r, u) for r, u in zip(row, self.velocity, strict=True))
-                for row in self._rotation
+                total(
+                    (Sum(drift), *(product(r, u) for r, u in zip(row, self.velocity, strict=True)))
+                )
+                for row, drift in zip(self._rotation, self._current, strict=True)
             ]
         return rates
 

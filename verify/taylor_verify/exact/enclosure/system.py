@@ -39,7 +39,8 @@ class System:
     """The equations as a tape for each piece of time, and the state at time zero, ``start``, exactly.
 
     ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends
-    of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y.
+    of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y. The centre drifts with the
+    ``current`` of the fluid, if there is one.
     """
 
     pieces: Callable[[Fraction, bool], Piece]
@@ -47,6 +48,7 @@ class System:
     start: Vector
     spin: Exact
     velocity: Exact
+    current: Vector = ()
 
     @property
     def size(self) -> int:

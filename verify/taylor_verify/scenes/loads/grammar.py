@@ -228,7 +228,8 @@ class Grammar:
         slope, value = line
         if not slope:
             return value >= 0
-        return self._after(-value / slope) is (slope > 0)
+        past = self._after(-value / slope)
+        return past if slope > 0 else not past
 
     # Faults.
 

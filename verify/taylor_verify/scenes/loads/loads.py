@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Final, NamedTuple
 
 from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS, Fault, Grammar, Unread
+from taylor_verify.scenes.loads.rounding import finished
 from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
 from taylor_verify.scenes.loads.tables import Table
+from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 MOST_SWITCHES: Final = 10_000
@@ -71,6 +73,10 @@ class Loads:
 
     ``vectors`` are their entries by name; ``hung`` are weight and buoyancy. ``definitions``, ``space`` and
     ``tables`` are what the texts may name; ``inertia`` is the tensor of a rigid body, for I11 to I33.
+    ``current`` is the velocity of the fluid, space axes.
+
+    The input t of the steps is the time since ``origin``, the start of the scene, and so are all times here.
+    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once.
     """
 
     model: str
@@ -80,9 +86,24 @@ class Loads:
     space: tuple[tuple[str, Entries], ...] = ()
     tables: tuple[tuple[str, Table], ...] = ()
     inertia: Matrix | None = None
+    current: Vector = ZERO_VECTOR
+    origin: Fraction = Fraction(0)
+    rung: Rung | None = None
+
+    def on_rung(self, rung: Rung) -> Loads:
+        """The loads that a solver on a rung receives.
+
+        Raises ValueError where two knots of a table round to the same time.
+        """
+        rounded = replace(self, rung=rung)
+        try:
+            _ = rounded.switches
+        except NoStep as fault:
+            raise ValueError(str(fault)) from None
+        return rounded
 
     def piece(self, time: Fraction, is_later: bool = True) -> Piece:
-        """The piece that holds just after a time, or just before it. Times are those of the scene."""
+        """The piece that holds just after a time, or just before it."""
         switches = self.switches
         k = bisect_right(switches, time)
         if not is_later and k and switches[k - 1] == time:
@@ -95,8 +116,9 @@ class Loads:
             begin = switches[k - 1] if k else None
             end = switches[k] if k < len(switches) else None
             reading = _Reading(self, begin, end)
-            outputs = tuple(reading.outputs())
-            self._pieces[k] = Piece(begin, end, tuple(reading.steps.steps), outputs)
+            outputs = reading.outputs()
+            steps, outputs = finished(reading.steps.steps, outputs, self.rung)
+            self._pieces[k] = Piece(begin, end, tuple(steps), tuple(outputs))
         return self._pieces[k]
 
     @cached_property
@@ -226,6 +248,9 @@ class _Reading:
             return self.steps.constant("pi")
         if name in _INERTIA and self._loads.inertia is not None:
             return self.steps.number(self._loads.inertia[int(name[1]) - 1][int(name[2]) - 1])
+        if name == "t":
+            time, begin = self.steps.input("t"), self.steps.number(self._loads.origin)
+            return self.steps.combined("+", time, begin)
         if name in names(self._loads.model):
             return self.steps.input(name)
         raise NoStep("a known name", f"`{name}`")
@@ -238,6 +263,7 @@ class _Reading:
 
     def _tabulated(self, table: Table) -> int:
         """The polynomial of a table, by Horner's rule."""
+        table = self._since_start(table)
         if self._is_scan:
             self.switches.update(table.times)
         knot, coefficients = table.polynomial(self._inside)
@@ -247,6 +273,17 @@ class _Reading:
         for coefficient in reversed(coefficients):
             place = steps.combined("+", steps.combined("*", place, time), steps.number(coefficient))
         return place
+
+    def _since_start(self, table: Table) -> Table:
+        loads = self._loads
+        times = [time - loads.origin for time in table.times]
+        if loads.rung is not None:
+            times = [loads.rung.round(time) for time in times]
+            if any(a >= b for a, b in pairwise(times)):
+                raise NoStep(
+                    "knots of a table that differ", f"two that {loads.rung.name} makes one"
+                )
+        return replace(table, times=tuple(times))
 
     def _is_after(self, switch: Fraction) -> bool:
         if self._is_scan:

@@ -104,7 +104,18 @@ class Steps:
             return self.number(_ARITHMETIC[operation](p, q))
         if (alike := self._unchanged(operation, a, b, p, q)) is not None:
             return alike
-        return self._place(Step(operation, (a, b)), self._line_of(operation, a, b))
+        line = self._line_of(operation, a, b)
+        return self._place(Step(operation, (a, b))) if line is None else self._on_line(*line)
+
+    def _on_line(self, slope: Fraction, value: Fraction) -> int:
+        """The place of slope t + value, which is written in one way."""
+        time = place = self.input("t")
+        if slope != 1:
+            factor = self.number(slope)
+            place = self._place(Step("*", (factor, time)), (slope, Fraction(0)))
+        if not slope or not value:
+            return place if slope else self.number(value)
+        return self._place(Step("+", (place, self.number(value))), (slope, value))
 
     def _unchanged(
         self, operation: str, a: int, b: int, p: Fraction | None, q: Fraction | None

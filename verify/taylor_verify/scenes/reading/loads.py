@@ -1,7 +1,7 @@
 """The loads of a scene: texts, forces that hang on the body, and what texts may name.
 
-``[define]`` has numbers and expressions by name, ``[space]`` vectors by their space components, ``[tables]``
-functions of time from data. Nothing in a text is evaluated but by scenes.loads.grammar.
+``[define]`` has numbers and expressions by name, ``[space]`` vectors by their space components, and
+``[tables]`` functions of time from data. Nothing in a text is evaluated but by scenes.loads.grammar.
 """
 
 from __future__ import annotations
@@ -9,12 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import pairwise
+from fractions import Fraction
+from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.loads.loads import TAKEN, VECTORS, Entries, Entry, Hung, Loads
+from taylor_verify.scenes.loads.loads import TAKEN, Entries, Entry, Hung, Loads
 from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
@@ -33,13 +34,6 @@ def entry(value: object) -> Any:
     if isinstance(value, str) and not is_numeral(value.strip()):
         return value
     return exact_number(value)
-
-
-def split(vector: Entries) -> tuple[Vector, bool]:
-    """Return a vector of numbers, zero if one entry is a text, and whether one is."""
-    if any(isinstance(each, str) for each in vector):
-        return ZERO_VECTOR, True
-    return tuple(each for each in vector if not isinstance(each, str)), False
 
 
 def hanging(table: Table) -> tuple[Hung, ...] | None:
@@ -143,15 +137,21 @@ def _rises(table: Table, times: Vector) -> bool:
     return True
 
 
-def loaded(body: Body | None, top: Table, folder: Path | None) -> Body | None:
-    """Return the body under its texts, with what these name; None after a fault."""
+def loaded(
+    body: Body | None, top: Table, folder: Path | None, start: Fraction | None
+) -> Body | None:
+    """Return the body under its texts, with what these name, from this start; None after a fault."""
     words = Vocabulary(top, folder)
     if body is None or body.loads is None:
         return body
     loads = replace(
-        body.loads, definitions=words.definitions, space=words.space, tables=words.tables
+        body.loads,
+        definitions=words.definitions,
+        space=words.space,
+        tables=words.tables,
+        origin=start or Fraction(0),
     )
-    if top.faults.lines:
+    if top.faults.lines or start is None:
         return None
     for place, fault in loads.faults():
         top.faults.add(fault.expected, fault.got, f"{place}, column {fault.column}")
@@ -165,9 +165,14 @@ def loaded(body: Body | None, top: Table, folder: Path | None) -> Body | None:
     return body.with_loads(loads)
 
 
-def texts(model: str, vectors: Mapping[str, Entries], hung: tuple[Hung, ...]) -> Loads | None:
-    """Return the loads of these vectors, if one of them has a text or a force hangs on the body."""
-    if not hung and not any(split(vector)[1] for vector in vectors.values()):
-        return None
-    assert tuple(vectors) == VECTORS[model]
-    return Loads(model, tuple(vectors.items()), hung)
+def texts(
+    model: str,
+    vectors: Mapping[str, Entries],
+    hung: tuple[Hung, ...],
+    current: Vector = ZERO_VECTOR,
+) -> Loads | None:
+    """Return the loads of these vectors; None if all are numbers, nothing hangs and the fluid rests."""
+    entries = chain.from_iterable(vectors.values())
+    if hung or any(current) or any(isinstance(each, str) for each in entries):
+        return Loads(model, tuple(vectors.items()), hung, current=current)
+    return None

@@ -103,8 +103,8 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     model = _model(top)
     track = _track(top, model)
     body, initial = _posed(top, model) if model else _unread(top)
-    body = loaded(body, top, folder)
     time = _part(top, "time", clock)
+    body = loaded(body, top, folder, None if time is None else time.start)
     top.close(hints(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
