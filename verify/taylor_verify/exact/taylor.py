@@ -126,8 +126,7 @@ class _Enclosing(Solution):
                             proven[place] = measured
             except Coarse as reason:
                 if reason.stuck is not None and stuck:
-                    because = "the bounds of no step close, however short it is"
-                    raise Unreached(because, reason.stuck) from reason
+                    raise Unreached(reason.because, reason.stuck) from reason
                 more, stuck = reason.bits, reason.stuck is not None
             else:
                 more = bits + min(lacking + _MORE_BITS, bits)

@@ -22,7 +22,7 @@ from taylor_verify.exact.enclosure.step import Step, Stepper, size_of
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.scenes.precision import float_text, power_of_two
 from taylor_verify.scenes.reading.faults import shown
 
 MOST_STEPS: Final = 1_000_000
@@ -30,6 +30,8 @@ MOST_STEPS: Final = 1_000_000
 _LOST: Final = -10
 _SHRUNK: Final = -20
 _SEVERAL: Final = 16
+# Flat steps in a row: a kink that is crossed takes one or two.
+_MOST_FLAT: Final = 8
 # Progress messages for callers that wait.
 _progress: Final = logging.getLogger("taylor_verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
@@ -38,13 +40,13 @@ _DIGITS_PER_BIT: Final = Fraction(301, 1000)
 class Coarse(ArithmeticError):
     """The motion cannot be followed to its end at this precision; ``bits`` may suffice.
 
-    ``stuck`` is the first time that was not reached because the bounds of a step did not close, however
-    short it was; None where these closed.
+    ``stuck`` is the first time that was not reached though the box was narrow, and ``because`` says why;
+    None where the box was lost.
     """
 
-    def __init__(self, bits: int, stuck: Fraction | None = None) -> None:
+    def __init__(self, bits: int, stuck: Fraction | None = None, because: str = "") -> None:
         super().__init__()
-        self.bits, self.stuck = bits, stuck
+        self.bits, self.stuck, self.because = bits, stuck, because
 
 
 class Unreached(Unsettled):
@@ -120,15 +122,17 @@ class Course:
         box, place = Box.about(self.start), self.place
         now, last = Fraction(0), times[-1]
         pending, lengths, length = list(times[::-1]), [], last
-        usual = last
+        usual, flat = last, 0
         largest = self._largest(box, place)
         while pending:
             try:
                 step = self.stepper.step(box, self.origin + now, length, last - now)
-            except (StepTooLong, Touched):
-                raise Coarse(2 * self.bits, stuck=pending[-1]) from None
+            except StepTooLong:
+                raise self._stuck("the bounds of no step close", now, pending) from None
+            except Touched:
+                raise self._stuck("a kink may be touched and not crossed", now, pending) from None
             except Domain as end:
-                because = f"{end} at t = {self._shown(now)}"
+                because = f"{end} near t = {float_text(self.begin + now)}"
                 raise Unreached(because, pending[-1]) from end
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
@@ -149,6 +153,9 @@ class Course:
             if _progress.isEnabledFor(logging.INFO):
                 percent = float(100 * now / last)
                 _progress.info("%.0f %% of the time, with %d bits", percent, self.bits)
+            flat = flat + 1 if step.is_flat else 0
+            if flat > _MOST_FLAT and pending:
+                raise self._stuck("a kink may be touched and not crossed", now, pending)
             if not step.is_flat:
                 lengths.append(abs(step.length))
             if pending and lengths:
@@ -161,6 +168,12 @@ class Course:
         return (*(size_of(added, span) for span in self.system.spans), float("-inf"))
 
     # When to stop.
+
+    def _stuck(self, because: str, now: Fraction, pending: Sequence[Fraction]) -> Coarse:
+        """The exception for a motion that cannot be followed from here, with however many bits."""
+        return Coarse(
+            2 * self.bits, pending[-1], f"{because} near t = {float_text(self.begin + now)}"
+        )
 
     def _watch(
         self,
@@ -181,6 +194,11 @@ class Course:
         if len(lengths) % _SEVERAL == 0:
             usual = median(lengths[-8 * _SEVERAL :])
             if lengths[-1] < usual * power_of_two(_SHRUNK):
+                if self._is_narrow(box):
+                    because = (
+                        "steps become ever shorter, as where a motion ends or a kink is touched,"
+                    )
+                    raise self._stuck(because, now, pending)
                 raise Coarse(self._needed(now, pending))
             limit = abs(now) + (self.most_steps - len(lengths)) * usual
             if abs(pending[0]) > limit:
@@ -191,6 +209,14 @@ class Course:
                     f"t = {self._shown(time)}; expected at most {self.most_steps}",
                     time,
                 )
+
+    def _is_narrow(self, box: Box) -> bool:
+        """True if half of the bits are right in every block."""
+        apart = box.apart.entries()
+        return all(
+            size_of(apart, span) <= size_of(box.point, span) - self.bits / 2
+            for span in self.system.spans
+        )
 
     def _needed(self, lost: Fraction, pending: Sequence[Fraction]) -> int:
         """The bits with which the box would reach the last time, if it grows as it did so far."""
