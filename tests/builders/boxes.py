@@ -7,12 +7,16 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+import pytest
 from flint import arb, ctx
 
 from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, vector
 from taylor_verify.exact.balls import ball
+from taylor_verify.exact.enclosure import step
+from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.course import Course, Row
 from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.bodies import RigidBody
@@ -80,6 +84,19 @@ def enclosed(asked: Scene, time: Fraction, size: Fraction, bits: int) -> Row:
         run = Course.of(system, start, place, bits, 10_000)
         (row,) = (row for _, row in run.rows([time]))
     return row
+
+
+def with_few_orders(patch: pytest.MonkeyPatch) -> None:
+    """Make steps that are too long for their eight orders: truncation is by far the largest error."""
+    sharp = Stepper.root_test
+
+    def coarse(self: Stepper, rows: Rows, spans: Sequence[range]) -> float:
+        with ctx.workprec(30):
+            return sharp(self, rows, spans)
+
+    patch.setattr(Stepper, "order", property(lambda _: 8))
+    patch.setattr(Stepper, "root_test", coarse)
+    patch.setattr(step, "SPARE_BITS", 60)
 
 
 def corners(asked: Scene) -> list[Sequence[int]]:

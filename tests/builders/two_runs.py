@@ -14,7 +14,8 @@ from operator import mul
 
 from mpmath import libmp
 
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact import clocks
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
@@ -54,12 +55,14 @@ class Equations:
 
 def equations(scene: Scene) -> Equations:
     """Those of the state and, where it is tracked, of a quaternion and of the way in body axes."""
-    system = posed(scene)
-    n, with_centre = system.size, "centre" in scene.track
-    rates: list[Polynomial] = [
-        polynomial(row, n) for row in system.equations.hessian.reshape(n, -1)
-    ]
-    start, forms = list(system.start), list(system.equations.spin) if scene.track else []
+    body, kind = scene.body, kind_of(scene.body)
+    motion = body.manufactured
+    driven = kind.equations(body).driven(motion)
+    n, with_centre = len(driven.constant), "centre" in scene.track
+    rates: list[Polynomial] = [polynomial(row, n) for row in driven.hessian.reshape(n, -1)]
+    start, forms = list(kind.state(scene.initial)), list(driven.spin) if scene.track else []
+    if n > len(start):
+        start += clocks.start(motion or clocks.standing(len(start)))
     added: dict[int, int] = {}
     if scene.track:
         size = n + (7 if with_centre else 4)
@@ -71,14 +74,14 @@ def equations(scene: Scene) -> Equations:
             rates.append({(q, size + i): half, **turned})
         start += [Fraction(int(i == 0)) for i in range(4)]
         if with_centre:
-            forms += list(system.equations.velocity)
+            forms += list(driven.velocity)
             for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
                 rates.append({(d + j, size + k): Fraction(1), (d + k, size + j): Fraction(-1)})
                 added[d + i] = size + 3 + i
             start += [Fraction(0)] * 3
     products = sorted({pair for rate in rates for pair in rate})
     place = {pair: number for number, pair in enumerate(products)}
-    constants = tuple(system.equations.constant) + (Fraction(0),) * (len(rates) - n)
+    constants = tuple(driven.constant) + (Fraction(0),) * (len(rates) - n)
     combined = [combination(list(form)) for form in forms]
     return Equations(
         start,

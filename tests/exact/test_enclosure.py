@@ -7,23 +7,26 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.boxes import CASES, TRUTHS, WIDE, corners, enclosed, is_contained
+from builders.boxes import CASES, TRUTHS, WIDE, corners, enclosed, is_contained, with_few_orders
 from builders.scenes import QUATERNION, one_instant, vector
 from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.enclosure import box, course, placing, tube
+from taylor_verify.exact.enclosure import box, course, placing, step, tube
+from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.system import column, posed
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.tensors import ZERO_MATRIX, diagonal
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
@@ -54,16 +57,16 @@ def test_the_balls_of_a_box_are_not_much_wider_than_its_motions(name: str) -> No
         assert max(values) - min(values) >= float(width.rad()) / 30
 
 
-def test_the_axes_of_a_box_follow_its_longest_edge_first() -> None:
+def test_the_frame_of_a_box_follows_its_longest_edge_first() -> None:
     """Nearly orthonormal, also of edges that are nearly parallel; the longest edge keeps its direction."""
     edges = [[arb(e) for e in edge] for edge in ((1, 1, 1), (0, 1e3, 1), (1, 1, 1 + 1e-9))]
     with ctx.workprec(100):
-        lengths = [box._dot(edge, edge).sqrt() for edge in edges]
-        axes = box.directions(edges, lengths, 3)
-        longest, length = edges[1], lengths[1]
-        assert all(abs(axes[0][i] - longest[i] / length) < 1e-12 for i in range(3))
-        for i, one in enumerate(axes):
-            for j, other in enumerate(axes):
+        columns = box.directions(edges)
+        longest = edges[1]
+        length = box._dot(longest, longest).sqrt()
+        assert all(abs(columns[0][i] - longest[i] / length) < 1e-12 for i in range(3))
+        for i, one in enumerate(columns):
+            for j, other in enumerate(columns):
                 assert abs(box._dot(one, other) - (i == j)) < 1e-12
 
 
@@ -79,8 +82,8 @@ def norm_of_the_sum(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) ->
 def test_the_norm_of_a_sum_is_no_bound_of_the_integral() -> None:
     """Of a deviation whose direction turns, the norm of the integral is smaller, and a false bound."""
     sharp = placing._accumulated
-    spread = [tube.column([arb(e) for e in row]) for row in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-    constant = tube.column([arb(0)] * 3)
+    spread = [column([arb(e) for e in row]) for row in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    constant = column([arb(0)] * 3)
     one = arb_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)])
     with ctx.workprec(64):
         # z - p = (1, s, s^2): the integral of its norm is 1.2936... , between the two.
@@ -109,24 +112,19 @@ def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.Mo
     if broken == "truncation":
         size = Fraction(0)
         _ = [TRUTHS[name, tuple(signs), size] for signs in corners(CASES[name][0])]
-        # Steps that are too long for eight terms: truncation is by far the largest error.
-        sharp = Course._root_test
-        monkeypatch.setattr(Course, "order", property(lambda _: 8))
-        monkeypatch.setattr(
-            Course, "_root_test", lambda self, state: sharp(replace(self, bits=30), state)
-        )
+        with_few_orders(monkeypatch)
     assert is_contained(name, size=size)
-    zero = tube.column([arb(0)] * posed(CASES[name][0]).size)
+    zero = column([arb(0)] * posed(CASES[name][0]).size)
     carried, leg = box.carried, placing.leg
     match broken:
         case "truncation":
-            monkeypatch.setattr(tube, "truncation", lambda *_: zero)
+            monkeypatch.setattr(Bounds, "defect", lambda _: zero)
         case "radius":
             monkeypatch.setattr(
                 course, "carried", lambda *a: replace(carried(*a), radius=carried(*a).radius / 64)
             )
         case "turn":
-            monkeypatch.setattr(course, "leg", lambda *a: replace(leg(*a), turn_error=arb(0)))
+            monkeypatch.setattr(step, "leg", lambda *a: replace(leg(*a), turn_error=arb(0)))
     assert not is_contained(name, size=size)
 
 
@@ -134,15 +132,15 @@ def test_a_step_whose_bounds_do_not_close_is_halved(monkeypatch: pytest.MonkeyPa
     """The motion is enclosed as sharply by steps of half the length, at the same precision."""
     asked, end = CASES["kirchhoff"]
     usual = enclosed(asked, Fraction(end), Fraction(0), 120)
-    closes, lengths = course.tube, list[arb]()
+    closes, lengths = step.tube, list[Fraction]()
 
-    def tube_but_twice(bounds: Any, sizes: Any, h: arb, apart: arb_mat) -> tube.Tube:
-        lengths.append(h)
+    def tube_but_twice(bounds: Bounds, apart: arb_mat) -> tube.Tube:
+        lengths.append(bounds.series.step)
         if len(lengths) in (1, 3):
             raise tube.StepTooLong
-        return closes(bounds, sizes, h, apart)
+        return closes(bounds, apart)
 
-    monkeypatch.setattr(course, "tube", tube_but_twice)
+    monkeypatch.setattr(step, "tube", tube_but_twice)
     halved = enclosed(asked, Fraction(end), Fraction(0), 120)
     first, half, third, half_of_third, *_ = lengths
     assert (half, half_of_third) == (first / 2, third / 2)
@@ -173,8 +171,8 @@ def test_a_centre_whose_bound_is_left_out_leaves_its_balls(monkeypatch: pytest.M
 
     # Along the first body axis the centre moves by 3 (1 +- 1e-6).
     assert centre().contains(arb("3.000002"))
-    original = course.leg
-    monkeypatch.setattr(course, "leg", lambda *a: replace(original(*a), path_error=arb(0)))
+    original = step.leg
+    monkeypatch.setattr(step, "leg", lambda *a: replace(original(*a), path_error=arb(0)))
     assert not centre().contains(arb("3.000002"))
 
 
@@ -229,14 +227,14 @@ def test_the_bits_that_a_motion_loses_are_said() -> None:
 def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """A thousand samples are read off the steps that the last one takes."""
     steps = 0
-    original = Course._step
+    original = Stepper.step
 
-    def counted(self: Course, *arguments: Any) -> Any:
+    def counted(self: Stepper, *arguments: Any) -> Any:
         nonlocal steps
         steps += 1
         return original(self, *arguments)
 
-    monkeypatch.setattr(Course, "_step", counted)
+    monkeypatch.setattr(Stepper, "step", counted)
     asked = TaylorSolution(CASES["euler"][0])
     counts = []
     for count in (1, 200):
@@ -244,3 +242,21 @@ def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) ->
         asked.motion([Fraction(10 * (k + 1), count) for k in range(count)], 15)
         counts.append(steps)
     assert counts[0] == counts[1]
+
+
+def test_an_axis_for_each_error_keeps_what_a_frame_wraps_away(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A vehicle at t = 25 is known to a digit more than with no more axes than components."""
+    scene = replace(load("kirchhoff/auv-turn"), track=frozenset())
+
+    def radius() -> float:
+        with ctx.workprec(106):
+            ((_, row),) = TaylorSolution(scene).rows({0: Fraction(25)}, 106, 10_000)
+        size = sum((z * z for z in row.state), arb(0)).sqrt()
+        return max(float((arb(z.rad()) / size).abs_upper()) for z in row.state)
+
+    usual = radius()
+    monkeypatch.setattr(box, "_MOST_AXES", 1)
+    monkeypatch.setattr(box, "_LONGEST", 0)
+    assert usual < radius() / 10

@@ -66,7 +66,7 @@ def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
         run = Course.of(system, start, None, BITS, 10_000)
         box, now, length, total = Box.about(start), Fraction(0), times[-1], identity(system.size)
         while pending:
-            step = run._step(box, length, times[-1] - now)
+            step = run.stepper.step(box, now, length, times[-1] - now)
             assert step.flow is not None
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 derivatives.append(step.flow.at(ball((pending.pop() - now) / step.length)) * total)

@@ -7,16 +7,18 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.boxes import CASES, enclosed, is_contained
+from builders.boxes import CASES, enclosed, is_contained, with_few_orders
 from builders.scenes import GENERAL, one_instant, vector
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import placing
-from taylor_verify.exact.enclosure.coefficients import frame_series, state_series, value
+from taylor_verify.exact.enclosure.coefficients import frame_series, value
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import norm
-from taylor_verify.exact.enclosure.system import Balls, posed
+from taylor_verify.exact.enclosure.series import Series
+from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.system import Forms, System, posed
 from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
@@ -49,12 +51,17 @@ def exactly(rows: list[list[Fraction]]) -> tensors.Matrix:
     return tuple(map(tuple, rows))
 
 
+def series(system: System, step: Fraction, order: int) -> list[list[arb]]:
+    """The coefficients of the state from its start, at the ambient precision."""
+    return Series(system.tape, balls(system.start), Fraction(0), step, order).rows
+
+
 @pytest.mark.parametrize("s", ["0.25", "1"])
 def test_the_series_of_the_frame_obey_its_equations(s: str) -> None:
     """q' = h q Omega/2 and d' = h (U + d x Omega), by a difference of the sums at 300 bits."""
     with ctx.workprec(300):
-        body, h, at, step = Balls.of(posed(GENERAL_SCENE)), arb("0.05"), arb(s), arb(2) ** -60
-        state = state_series(body, balls(posed(GENERAL_SCENE).start), h, 80)
+        body, h, at, step = Forms.of(posed(GENERAL_SCENE)), arb(1) / 16, arb(s), arb(2) ** -60
+        state = series(posed(GENERAL_SCENE), Fraction(1, 16), 80)
         frame = frame_series(body, state, h, with_centre=True)
         z = placing.column(value(state, at))
         here, ahead, behind = (value(frame, point) for point in (at, at + step, at - step))
@@ -75,15 +82,13 @@ def test_a_series_loses_no_bit_of_its_sum() -> None:
     """Coefficients that keep fewer bits the smaller they are leave the sum as sharp as it was."""
     scene = load("kirchhoff/general-body")
     with ctx.workprec(140):
-        body, start = Balls.of(posed(scene)), balls(posed(scene).start)
-        run = Course.of(posed(scene), start, None, 140, 10_000)
+        run = Course.of(posed(scene), balls(posed(scene).start), None, 140, 10_000)
         (row,) = (row for _, row in run.rows([Fraction(1, 8)]))
         assert norm([arb(z.rad()) for z in row.state]) <= norm(row.state) * arb(2) ** -130
-        rows = state_series(body, start, arb("0.125"), run.order)
+        order = run.stepper.order
+        rows = series(posed(scene), Fraction(1, 8), order)
     with ctx.workprec(400):
-        sharp = state_series(
-            Balls.of(posed(scene)), balls(posed(scene).start), arb("0.125"), run.order
-        )
+        sharp = series(posed(scene), Fraction(1, 8), order)
         for coarse, fine in zip(rows, sharp, strict=True):
             assert all(a.overlaps(b) for a, b in zip(coarse, fine, strict=True))
 
@@ -93,13 +98,13 @@ def test_a_state_that_never_changes_takes_one_step(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However long the time and however fast a neighbour would leave: nothing is left out."""
-    steps, original = [], Course._step
+    steps, original = [], Stepper.step
 
-    def counted(self: Course, *arguments: Any) -> Any:
+    def counted(self: Stepper, *arguments: Any) -> Any:
         steps.append(arguments)
         return original(self, *arguments)
 
-    monkeypatch.setattr(Course, "_step", counted)
+    monkeypatch.setattr(Stepper, "step", counted)
     motion = TaylorSolution(bare(load(name))).motion([Fraction(10**6)], 30)
     assert len(steps) == 1
     assert motion.radius[0] == 0
@@ -130,11 +135,7 @@ def test_the_products_left_out_of_a_turn_are_needed(monkeypatch: pytest.MonkeyPa
     turning = one_instant(sphere, Spin(vector("0.3", 1, "0.2"), Q), "attitude")
     time, none = Fraction(3), Fraction(0)
     truth = enclosed(turning, time, none, 160)
-    sharp = Course._root_test
-    monkeypatch.setattr(Course, "order", property(lambda _: 8))
-    monkeypatch.setattr(
-        Course, "_root_test", lambda self, series: sharp(replace(self, bits=30), series)
-    )
+    with_few_orders(monkeypatch)
 
     def is_there() -> bool:
         rough = enclosed(turning, time, none, 80)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
-from types import SimpleNamespace
 from typing import Any
 from unittest import mock
 
@@ -14,31 +14,33 @@ from builders.scenes import one_instant, vector
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.enclosure import box, system, tube
-from taylor_verify.exact.enclosure.box import Box, carried
-from taylor_verify.exact.enclosure.course import Course, _Step
-from taylor_verify.exact.enclosure.system import System, column
-from taylor_verify.exact.enclosure.tube import Tube
-from taylor_verify.exact.equations import Equations, exact, nothing
+from taylor_verify.exact.enclosure import box, flow, tape
+from taylor_verify.exact.enclosure.bounds import Bounds
+from taylor_verify.exact.enclosure.box import Box
+from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.step import Step, Stepper
+from taylor_verify.exact.enclosure.system import System, column, posed
+from taylor_verify.exact.enclosure.tape import Graph, Tape
+from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.tensors import diagonal
 
 ZERO = Fraction(0)
-# z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2.
-SQUARE = System(
-    Equations(
-        exact([ZERO]),
-        nothing(1),
-        exact([[[Fraction(2)]]]),
-        exact([[ZERO]] * 3),
-        exact([[ZERO]])[:0],
-    ),
-    blocks=(1,),
-    start=(Fraction(1),),
-)
-STEP, WIDE = Fraction(1, 10), Fraction(1, 2)
+
+
+def squared() -> System:
+    """z' = z^2 from 1: z = z0/(1 - z0 t), whose derivative by z0 is 1/(1 - z0 t)^2."""
+    graph = Graph()
+    (z,) = graph.states(1)
+    tape = Tape.of(graph, 1, [graph.product(z, z)])
+    return System(tape, (1,), (Fraction(1),), exact([[ZERO]] * 3), exact([[ZERO]])[:0])
+
+
+SQUARE = squared()
+STEP, WIDE, SMALL = Fraction(1, 10), Fraction(1, 2), Fraction(1, 10**6)
 ORDER = 40
 BITS = 80
 
@@ -47,12 +49,11 @@ def square(start: Fraction, time: Fraction) -> Fraction:
     return start / (1 - start * time)
 
 
-def step_of(order: int = ORDER, apart: Fraction = WIDE) -> _Step:
+def step_of(order: int = ORDER, apart: Fraction = WIDE) -> Step:
     """One step of z' = z^2, to order ``order``, from all within ``apart`` of 1."""
-    with ctx.workprec(BITS), mock.patch.object(Course, "order", order):
+    with ctx.workprec(BITS), mock.patch.object(Stepper, "order", order):
         start = [arb(1, ball(apart))]
-        run = Course.of(SQUARE, start, None, BITS, 10_000)
-        return run._step(Box.about(start), STEP, STEP)
+        return Stepper.of(SQUARE, False, False).step(Box.about(start), ZERO, STEP, STEP)
 
 
 def polynomial(step: Fraction, s: Fraction, order: int) -> Fraction:
@@ -76,14 +77,15 @@ def test_the_tail_of_the_polynomial_counts(monkeypatch: pytest.MonkeyPatch) -> N
     """Without the products of high orders the truncation is nothing, and the motion is elsewhere."""
     assert is_in_the_tube(4, ZERO)
     zero = column([arb(0)])
-    monkeypatch.setattr(tube, "truncation", lambda *_: zero)
+    monkeypatch.setattr(Bounds, "defect", lambda _: zero)
     assert not is_in_the_tube(4, ZERO)
 
 
 def test_the_width_of_the_tube_counts_in_its_own_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rates of change on the polynomial alone are too small for motions beside it."""
     assert is_in_the_tube(ORDER, WIDE)
-    monkeypatch.setattr(tube, "reached", lambda polynomial, around: polynomial)
+    honest = Bounds.rates_of_change
+    monkeypatch.setattr(Bounds, "rates_of_change", lambda self, _: honest(self, [arb(0)]))
     assert not is_in_the_tube(ORDER, WIDE)
 
 
@@ -100,7 +102,7 @@ def test_what_the_variational_polynomial_misses_counts(monkeypatch: pytest.Monke
     """The derivative at the middle of a box is none for its ends: the motion from one end leaves."""
     ends = 1 - WIDE, 1 + WIDE
     assert all(map(is_in_the_box, ends))
-    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    monkeypatch.setattr(flow, "flow_defect", lambda *_: column([arb(0)]))
     assert not all(map(is_in_the_box, ends))
 
 
@@ -118,11 +120,12 @@ def test_the_derivative_of_the_flow_holds_that_of_every_start(
             return [step.flow.at(arb(1))[0, 0].overlaps(value) for value in true]
 
     assert holds() == [True, True, True]
-    monkeypatch.setattr(box, "flow_defect", lambda *_: column([arb(0)]))
+    monkeypatch.setattr(flow, "flow_defect", lambda *_: column([arb(0)]))
     assert holds()[::2] == [False, False]
 
 
-# Frames whose inverse is known badly: nearly parallel axes, which are sound as any others are.
+# The frame about the shortest axes, when there are too many. Its inverse may be known badly: columns that
+# are nearly parallel are as sound as any others.
 
 PARALLEL = [
     [[1, 3, 7], [3, 9 + Fraction(k, 2**46), 21], [7, 21, 49 + Fraction(1, 2**44 + k)]]
@@ -135,32 +138,29 @@ def rational(value: arb) -> fmpq:
     return fmpq(mantissa) * fmpq(2) ** int(exponent)
 
 
-def is_carried(axes: Sequence[Sequence[Fraction | int]], patch: pytest.MonkeyPatch) -> bool:
-    """Return True if the new box holds every corner of the old one, moved: in exact rationals."""
+def is_about(columns: Sequence[Sequence[Fraction | int]], patch: pytest.MonkeyPatch) -> bool:
+    """Return True if a frame of these columns holds every corner of four axes: in exact rationals."""
     with ctx.workprec(64):
-        columns = [[ball(Fraction(entry)).mid() for entry in row] for row in axes]
-        patch.setattr(box, "directions", lambda *_: columns)
-        moved = arb_mat([[2, 1, 0], [0, 3, 1], [1, 0, 5]])
-        radius = column([arb(1), arb(1) / 8, arb(3) / 4])
-        zero = column([arb(0)] * 3)
-        still: Any = SimpleNamespace(at=lambda s: moved)
-        enclosure = Box([arb(1)] * 3, box.identity(3), radius)
-        around = Tube(zero, column([arb(1)] * 3), arb_mat(3, 3))
-        new = carried(enclosure, [[arb(1)] * 3], around, still, [range(3)])
-    turned = fmpq_mat(3, 3, [rational(entry) for entry in new.axes.entries()])
-    for signs in product((-1, 1), repeat=3):
+        frame = [[ball(Fraction(entry)).mid() for entry in column] for column in columns]
+        patch.setattr(box, "directions", lambda *_: frame)
+        patch.setattr(box, "_LONGEST", 0)
+        axes = arb_mat([[2, 1, 0, 1], [0, 3, 1, 1], [1, 0, 5, 1]])
+        radius = column([arb(1), arb(1) / 8, arb(3) / 4, arb(1) / 2])
+        about, bounds = box.fewer(axes, radius, [arb(1)] * 3)
+    inverse = fmpq_mat(3, 3, [rational(entry) for entry in about.entries()]).inv()
+    old = fmpq_mat(3, 4, [rational(entry) for entry in axes.entries()])
+    for signs in product((-1, 1), repeat=4):
         corner = [s * rational(r) for s, r in zip(signs, radius.entries(), strict=True)]
-        image = fmpq_mat(3, 3, [rational(m) for m in moved.entries()]) * fmpq_mat(3, 1, corner)
-        shares = (turned.inv() * image).entries()
-        pairs = zip(shares, new.radius.entries(), strict=True)
+        shares = (inverse * (old * fmpq_mat(4, 1, corner))).entries()
+        pairs = zip(shares, bounds.entries(), strict=True)
         if any(abs(share) > rational(bound) for share, bound in pairs):
             return False
     return True
 
 
 def test_the_width_of_the_inverse_counts_in_the_radius(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Axes that are nearly parallel have an inverse with few digits: its midpoint makes a box too small."""
-    assert all(is_carried(axes, monkeypatch) for axes in PARALLEL)
+    """The inverse of nearly parallel columns has few digits: with its midpoint the box is too small."""
+    assert all(is_about(columns, monkeypatch) for columns in PARALLEL)
     honest = box.inverted
 
     def midpoints(matrix: arb_mat) -> arb_mat:
@@ -168,13 +168,42 @@ def test_the_width_of_the_inverse_counts_in_the_radius(monkeypatch: pytest.Monke
         return arb_mat(3, 3, [entry.mid() for entry in inverse.entries()])
 
     monkeypatch.setattr(box, "inverted", midpoints)
-    assert not all(is_carried(axes, monkeypatch) for axes in PARALLEL)
+    assert not all(is_about(columns, monkeypatch) for columns in PARALLEL)
 
 
-def test_axes_that_cannot_be_inverted_are_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_columns_that_cannot_be_inverted_are_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     """The coordinate axes are always sound: the box is wider, and holds what it held."""
-    assert is_carried([[1, 2, 3], [2, 4, 6], [1, 0, 0]], monkeypatch)
-    assert is_carried([[1, 2, 3]], monkeypatch)
+    assert is_about([[1, 2, 3], [2, 4, 6], [1, 0, 0]], monkeypatch)
+    assert is_about([[1, 2, 3]], monkeypatch)
+
+
+def is_left(replaced: Any, patch: pytest.MonkeyPatch) -> bool:
+    """Return True if a motion from a corner of a box leaves it, where each step replaces all axes."""
+    patch.setattr(box, "_MOST_AXES", 1)
+    patch.setattr(box, "_LONGEST", 0)
+    patch.setattr(box, "fewer", replaced)
+    system, half = posed(replace(load("kirchhoff/general-body"), track=frozenset())), ball(SMALL)
+    with ctx.workprec(BITS):
+        starts = balls(system.start)
+        corner = [z + half for z in starts]
+        wide = [z + arb(0, half.upper()) for z in starts]
+        row, end = (
+            next(Course.of(system, start, None, BITS, 10_000).rows([Fraction(3)]))[1].state
+            for start in (wide, corner)
+        )
+        return not all(a.overlaps(b) for a, b in zip(row, end, strict=True))
+
+
+def test_the_radius_of_the_frame_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With half of it a motion leaves the box."""
+    honest = box.fewer
+
+    def halved(axes: arb_mat, radius: arb_mat, units: list[arb]) -> box.Axes:
+        about, bounds = honest(axes, radius, units)
+        return about, bounds / 2
+
+    assert not is_left(honest, monkeypatch)
+    assert is_left(halved, monkeypatch)
 
 
 # The data.
@@ -195,7 +224,7 @@ def test_the_rounding_of_the_data_counts(bits: int, monkeypatch: pytest.MonkeyPa
     """A third is no binary number: with its nearest one in its place the motion is another one."""
     third = Fraction(1, 3)
     assert is_at_its_speed(bits, ZERO, third)
-    monkeypatch.setattr(system, "balls", lambda numbers: [b.mid() for b in balls(numbers)])
+    monkeypatch.setattr(tape, "ball", lambda number: ball(number).mid())
     assert not is_at_its_speed(bits, ZERO, third)
 
 

@@ -14,14 +14,17 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from builders.boxes import with_few_orders
 from builders.scenes import one_instant
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.enclosure import tube
-from taylor_verify.exact.enclosure.course import Coarse, Course, Row
+from taylor_verify.exact.enclosure.bounds import Bounds
+from taylor_verify.exact.enclosure.course import Coarse, Row
+from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.system import column
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled, _distance
@@ -185,10 +188,10 @@ def leaving(asked: Scene, elapsed: Sequence[Fraction]) -> list[tuple[int, int]]:
     """Times and entries at which the balls hold no number of those of a sharper run of another order."""
     times = dict(enumerate(elapsed))
     rows = balls_at(asked, times, BITS)
-    honest = Course.order.fget
+    honest = Stepper.order.fget
     assert honest is not None
     higher = property(lambda self: honest(self) * 5 // 4 + 3)
-    with mock.patch.object(Course, "order", higher):
+    with mock.patch.object(Stepper, "order", higher):
         sharper = balls_at(asked, times, 2 * BITS + 20)
     return [(place, k) for place in times for k in missed(rows[place], sharper[place])]
 
@@ -256,24 +259,19 @@ def test_closed_forms_by_both_routes_overlap_the_enclosure(kind: str, times: int
 def test_the_referee_notices_a_bound_that_is_left_out(kind: str) -> None:
     """Without the tail of the polynomial, and with steps that are long for it, drawn motions leave."""
     left: list[bool] = []
-    honest = Course._root_test
 
     @settings(max_examples=6)
     @given(KINDS[kind])
     def referee(asked: Scene) -> None:
         times = {0: Fraction(1)}
         (sharper,) = balls_at(asked, times, 2 * BITS).values()
-        with (
-            # Eight terms make an enclosure as well, if a wide one.
-            mock.patch.object(Course, "order", property(lambda self: 8)),
-            mock.patch.object(
-                Course, "_root_test", lambda self, state: honest(replace(self, bits=30), state)
-            ),
-        ):
+        # Eight terms make an enclosure as well, if a wide one.
+        with pytest.MonkeyPatch.context() as patch:
+            with_few_orders(patch)
             (wide,) = balls_at(asked, times, BITS).values()
             assert not missed(wide, sharper)
-            nothing = tube.column([arb(0)] * len(sharper.state))
-            with mock.patch.object(tube, "truncation", return_value=nothing):
+            nothing = column([arb(0)] * len(sharper.state))
+            with mock.patch.object(Bounds, "defect", return_value=nothing):
                 (broken,) = balls_at(asked, times, BITS).values()
         left.append(bool(missed(broken, sharper)))
 

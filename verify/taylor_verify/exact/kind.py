@@ -60,6 +60,10 @@ class Kind(ABC, Generic[B, S]):
     def equations(self, body: B) -> Equations:
         """The equations of z, without the loads of a manufactured motion."""
 
+    @abstractmethod
+    def pushed(self, body: B) -> Matrix:
+        """The matrix of the rates of z by the loads: by the moment, or by force and couple."""
+
     def centre(self, initial: S) -> Vector | None:
         """The origin of the body at the start, in space axes; None where it does not move."""
         return None

@@ -1,6 +1,6 @@
 """First and second time derivatives of an exact motion, from its own equations.
 
-The equations are those of exact.enclosure.system, z' = c + z.Q z/2, so that z'' = z.Q z'. No difference
+The equations are those of exact.equations, z' = c + z.Q z/2, so that z'' = z.Q z'. No difference
 of two motions is taken.
 """
 
@@ -17,7 +17,6 @@ from mpmath import mp
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.clocks import Floats
-from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.equations import Scaled
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import cross_matrices
@@ -111,12 +110,13 @@ def _derivatives(
 @lru_cache(maxsize=16)
 def _flow(scene: Scene) -> Scaled:
     """The equations of a scene's state in its units."""
-    system, scale = posed(scene), _units(scene)
+    scale, body = _units(scene), scene.body
+    equations = kind_of(body).equations(body).driven(body.manufactured)
+    unit = [power_of_two(e) for e in scale.blocks for _ in range(3)]
     # The clock of a manufactured motion is of size one.
-    blocks = [*scale.blocks, *[0] * (len(system.blocks) - len(scale.blocks))]
-    unit = [power_of_two(e) for e, span in zip(blocks, system.spans, strict=True) for _ in span]
+    unit += [Fraction(1)] * (len(equations.constant) - len(unit))
     times = power_of_two(scale.time), power_of_two(scale.centre)
-    return system.equations.scaled(tuple(unit), *times)
+    return equations.scaled(tuple(unit), *times)
 
 
 def _floats(values: np.ndarray[Any, Any], exponent: int) -> Floats:

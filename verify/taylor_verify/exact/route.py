@@ -95,6 +95,8 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:
+    if scene.body.loads is not None:
+        raise NoClosedForm("loads that a scene writes down")
     if scene.body.damping:
         return _damped(scene, route)
     module = f"{kind_of(scene.body).room}.closed"

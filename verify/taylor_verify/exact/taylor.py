@@ -17,7 +17,6 @@ import numpy as np
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact import clocks
 from taylor_verify.exact.balls import balls, largest_size, midpoint, radius, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
 from taylor_verify.exact.enclosure.placing import Place
@@ -127,8 +126,7 @@ class _Enclosing(Solution):
                             proven[place] = measured
             except Coarse as reason:
                 if reason.stuck is not None and stuck:
-                    because = "the bounds of no step close, however short it is"
-                    raise Unreached(because, reason.stuck) from reason
+                    raise Unreached(reason.because, reason.stuck) from reason
                 more, stuck = reason.bits, reason.stuck is not None
             else:
                 more = bits + min(lacking + _MORE_BITS, bits)
@@ -234,16 +232,12 @@ class _Arcs(_Enclosing):
     begins: tuple[Fraction, ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        manufactured = self.scene.body.manufactured
         whole = Course.of(self._system, (), None, bits, most_bits)
         for number, span in times.items():
             start = self.starts[number]
             state = balls(kind_of(self.scene.body).state(start))
-            if manufactured is not None:
-                state += clocks.balls_at(manufactured, self.begins[number])
-            else:
-                state += balls(self._system.start[len(state) :])
-            arc = replace(whole, start=state, place=_place(self.scene, start))
+            begin = self.begins[number] if self.begins else Fraction(0)
+            arc = replace(whole, start=state, place=_place(self.scene, start), origin=begin)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
 
 

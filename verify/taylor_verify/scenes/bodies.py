@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Final, Self, cast
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.ellipsoid import Inertias, inertias
+from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
@@ -35,6 +36,7 @@ class Body(Parted):
     ENERGY: ClassVar[str]
 
     manufactured: Manufactured | None
+    loads: Loads | None
     damping: Fraction
 
     @property
@@ -64,9 +66,10 @@ class Body(Parted):
 
     @property
     def is_free(self) -> bool:
-        """True without loads: neither constant ones nor those of a manufactured motion."""
-        loads = (self.part(part) for part in self.PARTS if part.is_load)
-        return self.manufactured is None and not any(any(load) for load in loads)
+        """True without loads: no constant ones, no texts, and none of a manufactured motion."""
+        if self.manufactured is not None or self.loads is not None:
+            return False
+        return not any(any(self.part(part)) for part in self.PARTS if part.is_load)
 
     @property
     def others(self) -> frozenset[str]:
@@ -105,6 +108,11 @@ class Body(Parted):
         changed: Self = replace(cast("Any", self), manufactured=motion)
         return changed
 
+    def with_loads(self, loads: Loads | None) -> Self:
+        """Return the same body under these loads."""
+        changed: Self = replace(cast("Any", self), loads=loads)
+        return changed
+
     @property
     def is_conservative(self) -> bool:
         """True if energy and momenta are conserved.
@@ -137,6 +145,7 @@ class RigidBody(Body):
     moment: Vector = ZERO_VECTOR
     manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
+    loads: Loads | None = None
 
     MODEL = "euler"
     STATE = Spin
@@ -181,6 +190,7 @@ class ImmersedBody(Body):
     ellipsoid: Ellipsoid | None = None
     manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
+    loads: Loads | None = None
 
     MODEL = "kirchhoff"
     STATE = Impulse

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape
@@ -27,6 +28,7 @@ class Gyrostat(Body):
     moment: Vector = ZERO_VECTOR
     manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
+    loads: Loads | None = None
 
     MODEL = "euler"
     STATE = Spin

@@ -1,38 +1,39 @@
 """The box that contains the state, and its change in a step.
 
-The state lies in point + { axes u : |u_i| <= radius_i }: an exact point, an exact matrix, exact bounds.
-The axes follow the flow, so that a set which the flow stretches one way is not widened every way.
+The state lies in point + { axes u : |u_j| <= radius_j }: an exact point, an exact matrix, exact bounds.
+There are more axes than components. A step turns and stretches every axis as the flow does, and each
+error that the step adds gets an axis of its own. So an old error is never wrapped into new directions,
+until there are too many axes: then the shortest ones are replaced by a frame that holds them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.enclosure.coefficients import Series, value
-from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
-from taylor_verify.exact.enclosure.tube import (
-    BOUND_BITS,
-    Tube,
-    accumulated,
-    is_within,
-    partial_tails,
-    rates_of_change,
-)
+from taylor_verify.exact.enclosure.coefficients import Rows, value
+from taylor_verify.exact.enclosure.system import column, magnitudes, mapped
+from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 
-# The derivative of the flow is wanted to the leading digits alone. Orders that move the box by less than
-# this part of what the orders before them did are bounded, and not computed; some are in any case.
-_LITTLE: Final = arb(2) ** -24
-_LEAST_ORDER: Final = 8
+if TYPE_CHECKING:
+    from taylor_verify.exact.enclosure.flow import Flow
+
+# Axes for each component: as many as there may be, and the longest ones, which stay as they are when there
+# are more.
+_MOST_AXES: Final = 20
+_LONGEST: Final = 10
+
+# Axes as columns, and a column of their radii.
+Axes = tuple[arb_mat, arb_mat]
 
 
 @dataclass(frozen=True)
 class Box:
-    """``radius`` is a column of upper bounds; ``axes`` and ``point`` are exact."""
+    """``axes`` are n x m and ``radius`` has m upper bounds; ``axes`` and ``point`` are exact."""
 
     point: list[arb]
     axes: arb_mat
@@ -41,16 +42,11 @@ class Box:
     @classmethod
     def about(cls, balls: Sequence[arb]) -> Box:
         """The box of a vector of balls, along the coordinate axes."""
-        n = len(balls)
-        return cls(
-            point=[b.mid() for b in balls],
-            axes=identity(n),
-            radius=column([arb(b.rad()) for b in balls]),
-        )
+        return cls([b.mid() for b in balls], *_along(arb(b.rad()) for b in balls))
 
     @property
     def is_point(self) -> bool:
-        return all(r == 0 for r in self.radius.entries())
+        return self.axes.ncols() == 0
 
     @cached_property
     def apart(self) -> arb_mat:
@@ -59,90 +55,26 @@ class Box:
             return magnitudes(magnitudes(self.axes) * self.radius)
 
 
-@dataclass(frozen=True)
-class Flow:
-    """The derivative of the flow over one step: V(s) = sum of the terms s^k, and ``defect`` about it.
-
-    ``spread`` bounds how far each term moves a state of the box from its point.
-    """
-
-    terms: list[arb_mat]
-    spread: list[arb_mat]
-    defect: arb_mat
-
-    def at(self, s: arb) -> arb_mat:
-        """V(s), as balls with the defect."""
-        total, power = self.terms[0], arb(1)
-        for term in self.terms[1:]:
-            power = power * s
-            total = total + term * power
-        return widened(total, self.defect)
-
-
-def flow(
-    system: Balls, bounds: Balls, box: Box, state: Series, sizes: Series, h: arb, tube: Tube
-) -> Flow:
-    """The derivative of the state by the one at the beginning, for every path within the tube.
-
-    V' = h DF(z(s)) V, V(0) = 1. What the polynomial V leaves of this equation is at most
-
-        sum_j |h| Lin(tail_(m - j)) |V_j| + |h| Lin(width of the tube) sum_j |V_j|.
-    """
-    n = len(state[0])
-    second = system.second * h
-    jacobians: list[arb_mat] = []
-    terms, spread = [identity(n)], [box.apart]
-    moved = box.apart
-    for k, z in enumerate(state[:-1]):
-        jacobians.append(arb_mat(n, n, (second * column(z)).entries()))
-        total = jacobians[k] * terms[0]
-        for j in range(1, k + 1):
-            total = total + jacobians[k - j] * terms[j]
-        terms.append(total * (1 / arb(k + 1)))
-        spread.append(magnitudes(magnitudes(terms[-1] * box.axes) * box.radius))
-        # Up to a term that hardly moves the box.
-        if k >= _LEAST_ORDER and is_within(spread[-1], moved * _LITTLE):
-            break
-        moved = moved + spread[-1]
-    return Flow(terms, spread, flow_defect(bounds, terms, sizes, h, tube))
-
-
-def flow_defect(
-    bounds: Balls, terms: Sequence[arb_mat], sizes: Series, h: arb, tube: Tube
-) -> arb_mat:
-    """A bound of how far V may be from its polynomial: what that leaves out, accumulated in the tube."""
-    order = len(terms) - 1
-    beyond = [sum(entries, arb(0)) for entries in zip(*sizes[order:], strict=True)]
-    tails = partial_tails([*sizes[:order], beyond])
-    magnitude = [magnitudes(term) for term in terms]
-    everything = magnitude[0]
-    left = rates_of_change(bounds, column(tails[order])) * magnitude[0]
-    for j in range(1, order + 1):
-        everything = everything + magnitude[j]
-        left = left + rates_of_change(bounds, column(tails[order - j])) * magnitude[j]
-    left = (left + rates_of_change(bounds, tube.width) * everything) * abs(h).upper()
-    return accumulated(tube.growth, magnitudes(left), order=1)
-
-
-def carried(box: Box, state: Series, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
+def carried(box: Box, state: Rows, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
     """The box at the end of the step."""
     end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
     point = [z.mid() for z in end]
     with ctx.workprec(BOUND_BITS):
-        rounding = [abs(z - middle).upper() for z, middle in zip(end, point, strict=True)]
-        fresh = magnitudes(column(rounding) + tube.truncation)
-        if flow is None:
-            return Box(point, identity(len(point)), fresh)
-        moved = flow.at(arb(1)) * box.axes
-        # Where the tube has no width, the component is that of the polynomial, whatever the start.
-        free = [i for i, width in enumerate(tube.width.entries()) if not width.is_zero()]
-        axes, inverse = _frame(moved, box.radius, _units(point, fresh, spans), free)
-        spread = magnitudes(inverse * moved) * box.radius + magnitudes(inverse) * fresh
-        radius = [spread[i, 0] if i in free else fresh[i, 0] for i in range(len(point))]
-        return Box(point, axes, magnitudes(column(radius)))
+        rounding = column([abs(z - middle).upper() for z, middle in zip(end, point, strict=True)])
+        fresh = rounding + tube.truncation
+        axes, radius = arb_mat(len(point), 0), arb_mat(0, 1)
+        if flow is not None:
+            moved = flow.at(arb(1)) * box.axes
+            axes, radius = mapped(arb.mid, moved), box.radius
+            fresh = fresh + mapped(lambda entry: arb(entry.rad()), moved) * radius
+        fresh = magnitudes(fresh)
+        axes, radius = _beside((axes, radius), _along(fresh.entries()))
+        if axes.ncols() > _MOST_AXES * len(point):
+            axes, radius = fewer(axes, radius, _units(point, fresh, spans))
+        return Box(point, axes, radius)
 
 
-def within(box: Box, state: Series, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
+def within(box: Box, state: Rows, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
     """The state at s as balls, at the ambient precision."""
     at_point = value(state, s)
     with ctx.workprec(BOUND_BITS):
@@ -151,12 +83,6 @@ def within(box: Box, state: Series, tube: Tube, flow: Flow | None, s: arb) -> li
             spread = magnitudes(flow.at(s) * box.axes) * box.radius + spread
         radii = magnitudes(spread).entries()
     return [z + arb(0, r) for z, r in zip(at_point, radii, strict=True)]
-
-
-def widened(matrix: arb_mat, radii: arb_mat) -> arb_mat:
-    """The matrix with balls of these radii about its entries."""
-    entries = [e + arb(0, r) for e, r in zip(matrix.entries(), radii.entries(), strict=True)]
-    return arb_mat(matrix.nrows(), matrix.ncols(), entries)
 
 
 def identity(n: int) -> arb_mat:
@@ -183,48 +109,86 @@ def exponent(value: arb) -> int:
     return int(power) + int(mantissa).bit_length()
 
 
-def _frame(
-    moved: arb_mat, radius: arb_mat, units: list[arb], free: list[int]
-) -> tuple[arb_mat, arb_mat]:
-    """Exact axes near those that the flow makes of the old ones, orthogonal in units; their inverse.
+def _along(bounds: Iterable[arb]) -> Axes:
+    """An axis along each coordinate whose bound is not zero, with that bound as its radius."""
+    sizes = list(bounds)
+    reached = [i for i, size in enumerate(sizes) if not size.is_zero()]
+    unit = [arb(int(i == j)) for i in range(len(sizes)) for j in reached]
+    return arb_mat(len(sizes), len(reached), unit), column([sizes[j] for j in reached])
 
-    Any invertible axes are sound. The longest edge comes first, so that it keeps its direction. A
-    component that is not ``free`` keeps an axis of its own, and no rounding of the others reaches it.
+
+def _beside(first: Axes, second: Axes) -> Axes:
+    """All axes of both."""
+    rows = zip(first[0].tolist(), second[0].tolist(), strict=True)
+    return arb_mat([a + b for a, b in rows]), column(first[1].entries() + second[1].entries())
+
+
+def fewer(axes: arb_mat, radius: arb_mat, units: list[arb]) -> Axes:
+    """The longest axes as they are, and a frame about the set of all others.
+
+    Any invertible frame is sound: the others lie in frame { |u_j| <= (|frame^-1 others| radius)_j }. A
+    component that none of the others reaches is no part of it, and no rounding of the others reaches it.
     """
-    edges = [[(moved[i, j] / units[i]).mid() for i in free] for j in range(len(units))]
-    lengths = [_dot(edge, edge).sqrt() * r for edge, r in zip(edges, radius.entries(), strict=True)]
-    columns = directions(edges, lengths, len(free))
-    count = len(columns)
-    turned = arb_mat(count, len(free), [c for direction in columns for c in direction]).transpose()
-    try:
-        back = inverted(turned) if count == len(free) else None
-    except ZeroDivisionError:
-        back = None
-    if back is None or not all(entry.is_finite() for entry in back.entries()):
-        return identity(len(units)), identity(len(units))
-    axes, inverse = identity(len(units)), identity(len(units))
-    for row, i in enumerate(free):
-        for place, j in enumerate(free):
-            # Units are powers of two: nothing is rounded here.
-            axes[i, j] = units[i] * turned[row, place]
-            inverse[i, j] = back[row, place] / units[j]
-    return axes, inverse
+    columns, bounds = axes.transpose().tolist(), radius.entries()
+    edges = [
+        [entry / unit * bound for entry, unit in zip(axis, units, strict=True)]
+        for axis, bound in zip(columns, bounds, strict=True)
+    ]
+    lengths = [_dot(edge, edge).mid() for edge in edges]
+    order = sorted(range(len(edges)), key=lengths.__getitem__, reverse=True)
+    most = _LONGEST * len(units)
+    longest, others = order[:most], order[most:]
+    reached = [i for i in range(len(units)) if any(not columns[j][i].is_zero() for j in others)]
+    # Units are powers of two: nothing is rounded by them.
+    rest = arb_mat([[columns[j][i] / units[i] for j in others] for i in reached])
+    frame, inverse = _frame([[edges[j][i].mid() for i in reached] for j in others])
+    about = magnitudes(magnitudes(inverse * rest) * column([bounds[j] for j in others]))
+    wide = arb_mat(len(units), len(reached))
+    for row, i in enumerate(reached):
+        for j in range(len(reached)):
+            wide[i, j] = units[i] * frame[row, j]
+    same = arb_mat(len(longest), len(units), [e for j in longest for e in columns[j]]).transpose()
+    return _beside((same, column([bounds[j] for j in longest])), (wide, about))
 
 
-def directions(edges: Sequence[list[arb]], lengths: Sequence[arb], most: int) -> list[list[arb]]:
-    """Exact vectors, nearly orthogonal and nearly unit, along the edges; the longest one comes first."""
+def _frame(edges: Sequence[list[arb]]) -> tuple[arb_mat, arb_mat]:
+    """An exact square matrix whose columns are along the edges, nearly orthogonal; its inverse in balls.
+
+    The unit matrix where the edges do not reach every dimension.
+    """
+    size = len(edges[0])
+    columns = directions(edges)
+    if len(columns) == size:
+        turned = arb_mat(columns).transpose()
+        try:
+            return turned, inverted(turned)
+        except ZeroDivisionError:
+            pass
+    return identity(size), identity(size)
+
+
+def directions(edges: Sequence[list[arb]]) -> list[list[arb]]:
+    """Exact vectors, nearly orthogonal and nearly unit: each along the longest rest of an edge."""
     columns: list[list[arb]] = []
-    for j in sorted(range(len(edges)), key=lambda j: -_logarithm(lengths[j])):
-        direction = edges[j]
-        # Twice, because one pass loses digits for nearly parallel edges.
-        for _ in range(2):
-            for other in columns:
-                share = _dot(direction, other).mid()
-                direction = [(d - share * o).mid() for d, o in zip(direction, other, strict=True)]
+    left = list(edges)
+    while len(columns) < len(edges[0]):
+        direction = max(left, key=lambda rest: _dot(rest, rest).mid())
+        # Again, because one pass loses digits for nearly parallel edges.
+        direction = _across(direction, columns)
         length = _dot(direction, direction).sqrt().mid()
-        if length > 0 and len(columns) < most:
-            columns.append([(d / length).mid() for d in direction])
+        if not length > 0:
+            break
+        columns.append([(entry / length).mid() for entry in direction])
+        left = [_across(rest, columns[-1:]) for rest in left]
     return columns
+
+
+def _across(vector: list[arb], columns: Sequence[list[arb]]) -> list[arb]:
+    """The part of a vector that is orthogonal to each of the columns, rounded."""
+    for other in columns:
+        share = _dot(vector, other).mid()
+        vector = [(v - share * o).mid() for v, o in zip(vector, other, strict=True)]
+    return vector
 
 
 def inverted(matrix: arb_mat) -> arb_mat:
@@ -235,7 +199,3 @@ def inverted(matrix: arb_mat) -> arb_mat:
 
 def _dot(a: Sequence[arb], b: Sequence[arb]) -> arb:
     return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))
-
-
-def _logarithm(value: arb) -> float:
-    return float("-inf") if value.abs_upper().is_zero() else exponent(value)

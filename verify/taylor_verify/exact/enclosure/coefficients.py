@@ -5,14 +5,13 @@ Row k of a series holds the coefficients of order k times h^k, so that the step 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Final
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.enclosure.system import Balls, column
+from taylor_verify.exact.enclosure.system import Forms, column
 
-Series = list[list[arb]]
+Rows = list[list[arb]]
 
 # What the last coefficient of a step keeps: it is a last bit of the first one.
 _LEAST_BITS: Final = 24
@@ -28,49 +27,17 @@ def falling_bits(count: int) -> list[int]:
     return [_LEAST_BITS + ctx.prec * (count - k) // count for k in range(count)]
 
 
-def state_series(system: Balls, point: Sequence[arb], h: arb, order: int) -> Series:
-    """The coefficients of the motion from a point, up to ``order``.
-
-    Order k of q(z, z) is the sum of DF(z_j) z_(k - j) over j < k/2, and half as much for j = k/2. The
-    matrices of all orders that are known stand side by side; they serve until one more is asked for.
-    """
-    n = len(point)
-    second = system.second * h
-    rows, backward = [list(point)], list(point)
-    beside: list[list[arb]] = [[] for _ in point]
-    known, jacobians = 0, arb_mat(n, 0)
-    with ctx.workprec(ctx.prec):
-        for k, bits in enumerate(falling_bits(order)):
-            ctx.prec = bits
-            if 2 * known <= k:
-                for fresh in rows[known:]:
-                    entries = (second * column(fresh)).entries()
-                    for i, row in enumerate(beside):
-                        row += entries[i * n : i * n + n]
-                known, jacobians = len(rows), arb_mat(beside)
-            others = backward[: (k + 1) // 2 * n]
-            if k % 2 == 0:
-                others += [z / 2 for z in rows[k // 2]]
-            others += [_ZERO] * (known * n - len(others))
-            fresh = [rate / (k + 1) for rate in (jacobians * column(others)).entries()]
-            if k == 0:
-                fresh = [z + h * c for z, c in zip(fresh, system.constant.entries(), strict=True)]
-            rows.append(fresh)
-            backward[:0] = fresh
-    return rows
-
-
-def frame_series(system: Balls, state: Series, h: arb, with_centre: bool) -> Series:
+def frame_series(forms: Forms, state: Rows, h: arb, with_centre: bool) -> Rows:
     """The turn since the beginning of the step as a quaternion q, and the way d since then in body axes.
 
     q' = h q Omega/2 and d' = h (U + d x Omega), with Omega as a quaternion without a scalar part. A row
     holds four entries of q, which begins as 1, and with a centre three of d, which begins as 0.
     """
     order = len(state) - 1
-    spins = _linear(system.spin * h, state)
+    spins = _linear(forms.spin * h, state)
     size = 7 if with_centre else 4
     if with_centre:
-        speeds = _linear(system.velocity * h, state)
+        speeds = _linear(forms.velocity * h, state)
     rows = [[arb(1)] + [_ZERO] * (size - 1)]
     # One column for each order of q and d that is known; the spins stand in reverse.
     columns = arb_mat(size, order)
@@ -96,7 +63,7 @@ def frame_series(system: Balls, state: Series, h: arb, with_centre: bool) -> Ser
     return rows
 
 
-def scaled(series: Series, factor: arb) -> Series:
+def scaled(series: Rows, factor: arb) -> Rows:
     """The series of a step longer by this factor."""
     if not series:
         return []
@@ -109,7 +76,7 @@ def scaled(series: Series, factor: arb) -> Series:
     return rows
 
 
-def value(series: Series, s: arb) -> list[arb]:
+def value(series: Rows, s: arb) -> list[arb]:
     """The sum at s, every entry as one product of matrices."""
     powers = [arb(1)]
     for _ in series[1:]:
@@ -121,5 +88,5 @@ def value(series: Series, s: arb) -> list[arb]:
     return row
 
 
-def _linear(form: arb_mat, series: Series) -> Series:
+def _linear(form: arb_mat, series: Rows) -> Rows:
     return [(form * column(row)).entries() for row in series]

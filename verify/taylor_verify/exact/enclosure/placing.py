@@ -33,9 +33,10 @@ from dataclasses import dataclass
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import balls
-from taylor_verify.exact.enclosure.box import Box, Flow
-from taylor_verify.exact.enclosure.coefficients import Series, value
-from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
+from taylor_verify.exact.enclosure.box import Box
+from taylor_verify.exact.enclosure.coefficients import Rows, value
+from taylor_verify.exact.enclosure.flow import Flow
+from taylor_verify.exact.enclosure.system import Forms, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.exact.rotation import product, rotation_rows
 from taylor_verify.scenes.tensors import Matrix, Vector
@@ -81,7 +82,7 @@ class Place:
 class Leg:
     """The turn and the way of one step: their polynomials, and bounds of what these miss."""
 
-    frame: Series
+    frame: Rows
     turn_error: arb
     path_error: arb
 
@@ -114,10 +115,10 @@ class Leg:
 
 
 def leg(
-    system: Balls,
-    bounds: Balls,
-    state: Series,
-    frame: Series,
+    forms: Forms,
+    sizes: Forms,
+    state: Rows,
+    frame: Rows,
     h: arb,
     tube: Tube,
     flow: Flow | None,
@@ -127,16 +128,16 @@ def leg(
     with ctx.workprec(BOUND_BITS):
         size = h.abs_upper()
         deviations = _deviations(box, flow, tube)
-        spins = [norm((system.spin * column(z)).entries()) for z in state]
-        turned = _accumulated(bounds.spin, deviations) * size
+        spins = [norm((forms.spin * column(z)).entries()) for z in state]
+        turned = _accumulated(sizes.spin, deviations) * size
         left_out = _left_out([norm(row[:4]) for row in frame], spins) * size
         turn_error = ((left_out + turned) / 2).abs_upper()
         path_error = arb(0)
         if len(frame[0]) > 4:
             ways = [norm(row[4:]) for row in frame]
             path_error = _left_out(ways, spins) * size + turned * sum(ways, arb(0))
-            path_error += norm((system.velocity * column(state[-1])).entries()) * size
-            path_error += _accumulated(bounds.velocity, deviations) * size
+            path_error += norm((forms.velocity * column(state[-1])).entries()) * size
+            path_error += _accumulated(sizes.velocity, deviations) * size
         return Leg(frame, turn_error, path_error.abs_upper())
 
 

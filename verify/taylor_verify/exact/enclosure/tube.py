@@ -20,12 +20,14 @@ square of 1e-200 is zero.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from flint import arb, arb_mat
 
-from taylor_verify.exact.enclosure.coefficients import Series
-from taylor_verify.exact.enclosure.system import Balls, column, magnitudes
+from taylor_verify.exact.enclosure.system import column, magnitudes
+
+if TYPE_CHECKING:
+    from taylor_verify.exact.enclosure.bounds import Bounds
 
 BOUND_BITS: Final = 64
 
@@ -52,16 +54,15 @@ class Tube:
     growth: arb_mat
 
 
-def tube(bounds: Balls, sizes: Series, h: arb, apart: arb_mat) -> Tube:
-    """The tube about a polynomial whose coefficients have these ``sizes``, from ``apart`` of it.
+def tube(bounds: Bounds, apart: arb_mat) -> Tube:
+    """The tube about the polynomial that the bounds are of, from all states ``apart`` of its beginning.
 
     Raises StepTooLong where no tube closes.
     """
-    reach = column([sum(entries, arb(0)) for entries in zip(*sizes, strict=True)])
-    defect = truncation(bounds, sizes, h)
-    around = column([arb(0)] * len(sizes[0]))
+    defect, size = bounds.defect(), bounds.series.length.abs_upper()
+    around = column([arb(0)] * apart.nrows())
     for _ in range(_TRIES):
-        growth = rates_of_change(bounds, reached(reach, around)) * h
+        growth = bounds.rates_of_change(around.entries()) * size
         error = accumulated(growth, defect, order=1)
         width = magnitudes(error + accumulated(growth, apart, order=0))
         if is_within(width, around):
@@ -69,38 +70,6 @@ def tube(bounds: Balls, sizes: Series, h: arb, apart: arb_mat) -> Tube:
         # Twice as wide: a component that is zero so far may be reached through the others' width.
         around = width * 2
     raise StepTooLong
-
-
-def reached(polynomial: arb_mat, around: arb_mat) -> arb_mat:
-    """A bound of the size of each component within the tube: on the polynomial, and around it."""
-    return polynomial + around
-
-
-def truncation(bounds: Balls, sizes: Series, h: arb) -> arb_mat:
-    """D: every product of two coefficients whose orders reach that of the polynomial.
-
-    Below that order the polynomial obeys the equations exactly.
-    """
-    n, count = len(sizes[0]), len(sizes)
-    flat = [entry for row in sizes for entry in row]
-    # Row i is to meet the sum of all coefficients from order N - i on.
-    tails = [entry for row in partial_tails(sizes)[::-1] for entry in row]
-    products = arb_mat(count, n, flat).transpose() * arb_mat(count, n, tails)
-    return magnitudes((bounds.hessian * column(products.entries())) * (h / 2))
-
-
-def partial_tails(sizes: Series) -> Series:
-    """Row m: the sum of the rows from m on."""
-    rows = [sizes[-1]]
-    for row in sizes[-2::-1]:
-        rows.append([total + entry for total, entry in zip(rows[-1], row, strict=True)])
-    return rows[::-1]
-
-
-def rates_of_change(bounds: Balls, reach: arb_mat) -> arb_mat:
-    """A bound of |dF/dz|, for all states whose components stay within ``reach``."""
-    n = reach.nrows()
-    return arb_mat(n, n, (bounds.second * reach).entries())
 
 
 def accumulated(growth: arb_mat, source: arb_mat, order: int) -> arb_mat:

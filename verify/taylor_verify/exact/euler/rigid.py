@@ -58,6 +58,9 @@ class Rotating(Kind[B, Spin]):
         undamped = Equations(K @ exact(body.moment), linear, turned, exact(_ONE), _NO_VELOCITY)
         return undamped.damped(body.damping)
 
+    def pushed(self, body: B) -> Matrix:
+        return body.inverse_inertia
+
     def units(self, body: B, z: Vector) -> Units:
         """omega by its size, or what the moment makes of it; time by omega, its fastest wave, h or c."""
         K, motion = body.inverse_inertia, body.manufactured

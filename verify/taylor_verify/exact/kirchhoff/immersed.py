@@ -58,6 +58,9 @@ class Immersed(Kind[ImmersedBody, Impulse]):
         undamped = Equations(loads, nothing(6), hessian, exact(Omega), exact(U))
         return undamped.damped(body.damping)
 
+    def pushed(self, body: ImmersedBody) -> Matrix:
+        return _UNIT
+
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Return units of the blocks: their sizes, or their changes in a unit of time."""
         # What a manufactured motion reaches, not where it begins, is the size of its impulses.

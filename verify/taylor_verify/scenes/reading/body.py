@@ -18,6 +18,7 @@ from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, Immer
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.faults import shown
+from taylor_verify.scenes.reading.loads import entry, hanging, texts
 from taylor_verify.scenes.reading.table import Table, complete
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
 
@@ -27,14 +28,18 @@ _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
     """Return the body of model euler, a gyrostat if wheels turn; None after a fault."""
     inertia = _inertia(table)
-    moment = table.vector("moment", default=ZERO_VECTOR)
+    moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
     rotor = table.vector("rotor", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
-    if inertia is None or moment is None or rotor is None or damping is None:
+    if inertia is None or moment is None or rotor is None or damping is None or hung is None:
         return None
+    loads = texts(RigidBody.MODEL, {"moment": moment}, hung)
+    if loads is not None:
+        moment, loads = ZERO_VECTOR, replace(loads, inertia=inertia)
     if any(rotor):
-        return Gyrostat(inertia, rotor, moment, damping=damping)
-    return RigidBody(inertia, moment, damping=damping)
+        return Gyrostat(inertia, rotor, moment, damping=damping, loads=loads)
+    return RigidBody(inertia, moment, damping=damping, loads=loads)
 
 
 def _inertia(table: Table) -> Matrix | None:
@@ -83,14 +88,21 @@ def _is_positive(
 
 def immersed_body(table: Table) -> ImmersedBody | None:
     """Return the body of model kirchhoff; None after a fault."""
-    force = table.vector("force", default=ZERO_VECTOR)
-    couple = table.vector("couple", default=ZERO_VECTOR)
+    force = table.vector("force", default=ZERO_VECTOR, number=entry)
+    couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
+    current = table.vector("current", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
     form = _form(table)
     body = form(table) if form else None
-    if body is None or force is None or couple is None or damping is None:
+    if body is None or force is None or couple is None or current is None:
         return None
-    return replace(body, force=force, couple=couple, damping=damping)
+    if damping is None or hung is None:
+        return None
+    loads = texts(ImmersedBody.MODEL, {"force": force, "couple": couple}, hung, current)
+    if loads is not None:
+        force = couple = ZERO_VECTOR
+    return replace(body, force=force, couple=couple, damping=damping, loads=loads)
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
@@ -137,6 +149,10 @@ def _mass_matrix(table: Table) -> ImmersedBody | None:
     mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
     if matrix is None or not _is_positive(table, expected, matrix, "mass_matrix", mend):
         return None
+    return _of_mass_matrix(table, matrix)
+
+
+def _of_mass_matrix(table: Table, matrix: Matrix) -> ImmersedBody:
     body = ImmersedBody.of_mass_matrix(matrix)
     table.note(
         "T is given by the mass matrix M of (x, y) = M (U, Omega). The equations hold its inverse "
@@ -145,6 +161,39 @@ def _mass_matrix(table: Table) -> ImmersedBody | None:
     for number, row in enumerate(body.energy_matrix, 1):
         table.note(f"Row {number} of the inverse: {', '.join(map(float_text, row))}.")
     return body
+
+
+def _assembled(table: Table) -> ImmersedBody | None:
+    """Return the body of a mass, an inertia about the centre of mass, and an added mass."""
+    mass, inertia = table.number("mass"), _inertia(table)
+    centre = table.vector("centre_of_mass", default=ZERO_VECTOR)
+    added = _added_mass(table)
+    if mass is None or inertia is None or centre is None or added is None:
+        return None
+    arm = tensors.scaled(mass, centre)
+    square = tensors.product(tensors.cross_matrix(centre), tensors.cross_matrix(arm))
+    about_origin = tuple(map(tensors.minus, inertia, square))
+    rigid = tensors.blocks(
+        tensors.diagonal((mass,) * 3), tensors.transpose(tensors.cross_matrix(arm)), about_origin
+    )
+    matrix = tuple(map(tensors.plus, rigid, added))
+    expected = "a mass and an added mass that make a positive definite mass matrix"
+    mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
+    return (
+        _of_mass_matrix(table, matrix)
+        if _is_positive(table, expected, matrix, "mass", mend)
+        else None
+    )
+
+
+def _added_mass(table: Table) -> Matrix | None:
+    """Return the added mass: 6 x 6, six numbers of its diagonal, or none."""
+    if not table.has("added_mass"):
+        return tensors.diagonal((Fraction(0),) * 6)
+    if any(isinstance(row, list) for row in table.peek("added_mass")):
+        return table.symmetric("added_mass", size=6)
+    diagonal = table.vector("added_mass", length=6)
+    return None if diagonal is None else tensors.diagonal(diagonal)
 
 
 def _ellipsoid(table: Table) -> ImmersedBody | None:
@@ -207,4 +256,5 @@ FORMS: Final[dict[str, Callable[[Table], ImmersedBody | None]]] = {
     "energy": _energy,
     "ellipsoid": _ellipsoid,
     "mass_matrix": _mass_matrix,
+    "mass": _assembled,
 }

@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Callable
 from decimal import Decimal, InvalidOperation
 from functools import partial
+from pathlib import Path
 from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
@@ -25,6 +26,7 @@ from taylor_verify.scenes.reading.faults import Faults, Refused, cut, near, show
 from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.scenes.reading.loads import loaded
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table
@@ -82,7 +84,7 @@ def load(scene: str | os.PathLike[str]) -> Scene:
     except UnicodeDecodeError:
         reason = "bytes that are not UTF-8"
         raise Refused([f"expected a readable scene file, got {reason!r} @ {file}"]) from None
-    return read(text, str(scene))
+    return read(text, str(scene), file.parent)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
@@ -90,8 +92,11 @@ def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
     return scene if isinstance(scene, Scene) else load(scene)
 
 
-def read(text: str, name: str) -> Scene:
-    """Return the scene that this text describes. Raises Refused with every fault of the text."""
+def read(text: str, name: str, folder: Path | None = None) -> Scene:
+    """Return the scene that this text describes; tables from files are looked for in the folder.
+
+    Raises Refused with every fault of the text.
+    """
     faults = Faults()
     top = Table(parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
@@ -99,6 +104,7 @@ def read(text: str, name: str) -> Scene:
     track = _track(top, model)
     body, initial = _posed(top, model) if model else _unread(top)
     time = _part(top, "time", clock)
+    body = loaded(body, top, folder, None if time is None else time.start)
     top.close(hints(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)

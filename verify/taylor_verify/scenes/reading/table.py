@@ -129,12 +129,21 @@ class Table:
                 self.fault(expected, shown(word), f"{key}[{i}]", near(cut(str(word)), known))
         return known.intersection(word for word in value if isinstance(word, str))
 
-    def number(self, key: str, default: Fraction | None = None) -> Fraction | None:
-        """Return an exact number; missing is a fault, unless there is a default."""
+    def number(
+        self, key: str, default: Fraction | None = None, number: Number | None = None
+    ) -> Fraction | None:
+        """Return an exact number; missing is a fault, unless there is a default.
+
+        ``number`` reads it, and is `exact_number` unless given.
+        """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, _NUMBER)
-        return None if value is None else self._exact(value, key)
+        return None if value is None else self._exact(value, key, number)
+
+    def left(self) -> list[str]:
+        """Return the keys that were not taken yet."""
+        return list(self._left)
 
     def numbers(self, key: str, most: int) -> Vector | None:
         """Return an array of at most ``most`` exact numbers."""

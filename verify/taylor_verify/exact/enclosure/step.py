@@ -1,0 +1,281 @@
+"""One step from a box: its length, the polynomial, the tube about it, the derivative, and the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, log2
+from typing import Final
+
+from flint import arb, ctx
+
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.enclosure.bounds import Bounds
+from taylor_verify.exact.enclosure.box import Box, exponent
+from taylor_verify.exact.enclosure.coefficients import Rows, frame_series, scaled
+from taylor_verify.exact.enclosure.crossing import least_length, plan
+from taylor_verify.exact.enclosure.flow import Flow, flow
+from taylor_verify.exact.enclosure.kinks import Kink
+from taylor_verify.exact.enclosure.placing import Leg, leg
+from taylor_verify.exact.enclosure.series import Series
+from taylor_verify.exact.enclosure.system import Forms, System
+from taylor_verify.exact.enclosure.tape import Tape
+from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong, Tube, tube
+from taylor_verify.scenes.precision import floor_log2, power_of_two
+
+# If the convolutions dominate the cost, the cheapest steps are the radius of convergence over e^2, with
+# bits ln 2/2 orders. Work that is done once per order or once per step makes higher orders cheaper.
+_ORDERS_PER_BIT: Final = 0.42
+_STEP_BITS: Final = 8
+# Near a steady motion the series converges everywhere, and the bounds do not close.
+_MOST_GROWTH: Final = 5.0
+_LEAST_CUT: Final = 0.25
+_HALVINGS: Final = 80
+_LEAST_ORDER: Final = 6
+# The last orders of a state may happen to be small beside those of the products that it comes from.
+SPARE_BITS: Final = 12
+# A step that nearly reaches the end is extended to the end.
+_NEARLY: Final = Fraction(63, 64)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of length h from a box, and everything that is known about the motion within it.
+
+    ``terms`` are the sizes of the rates at its beginning if none of their terms cancelled; a step that
+    ``is_flat`` goes across a kink.
+    """
+
+    length: Fraction
+    state: Rows
+    tube: Tube
+    flow: Flow | None
+    leg: Leg | None
+    terms: list[arb]
+    is_flat: bool
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """Makes steps of a system at the ambient precision, which is that of the forms.
+
+    ``is_placed`` and ``has_centre`` say whether the frame and its origin are followed.
+    """
+
+    system: System
+    forms: Forms
+    sizes: Forms
+    is_placed: bool
+    has_centre: bool
+
+    @classmethod
+    def of(cls, system: System, is_placed: bool, has_centre: bool) -> Stepper:
+        forms = Forms.of(system)
+        with ctx.workprec(BOUND_BITS):
+            sizes = forms.magnitudes()
+        return cls(system, forms, sizes, is_placed, has_centre)
+
+    @property
+    def order(self) -> int:
+        return ceil(_ORDERS_PER_BIT * ctx.prec) + 2
+
+    def step(self, box: Box, now: Fraction, guess: Fraction, left: Fraction) -> Step:
+        """A step of at most the time that is left, and within one piece of it.
+
+        Raises StepTooLong where none closes, Touched at a kink that may not be crossed, and Domain where a
+        function has no value.
+        """
+        tape, end = self.system.pieces(now, left > 0)
+        if end is not None and abs(end - now) < abs(left):
+            left = end - now
+        series, frame = self._fitted(tape, box, now, guess, left)
+        for _ in range(_HALVINGS):
+            with ctx.workprec(BOUND_BITS):
+                bounds = Bounds(series)
+                try:
+                    around = tube(bounds, box.apart)
+                    moving = None if box.is_point else flow(bounds, box, around)
+                except StepTooLong:
+                    around = None
+            excess = 0.0 if around is None or series.flat else self._excess(series, around)
+            if around is not None and excess <= 0:
+                way = self._leg(series, frame, around, moving, box)
+                terms, is_flat = bounds.terms(), bool(series.flat)
+                return Step(series.step, series.rows, around, moving, way, terms, is_flat)
+            share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
+            series.rescale(series.step * share)
+            frame = scaled(frame, ball(share))
+        raise StepTooLong
+
+    def _excess(self, series: Series, around: Tube) -> float:
+        """The bits by which what is left out of the series exceeds some last bits of the state."""
+        rows, missed = series.rows[:3], around.truncation.entries()
+        excess = float("-inf")
+        for span in self.system.spans:
+            size = max(size_of(row, span) for row in rows)
+            lost = size_of(missed, span)
+            if lost > float("-inf"):
+                excess = max(excess, lost - size + ctx.prec - SPARE_BITS)
+        return excess
+
+    def _leg(
+        self, series: Series, frame: Rows, around: Tube, moving: Flow | None, box: Box
+    ) -> Leg | None:
+        if not self.is_placed:
+            return None
+        rows, h = series.rows, series.length
+        return leg(self.forms, self.sizes, rows, frame, h, around, moving, box)
+
+    # The length.
+
+    def _fitted(
+        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
+    ) -> tuple[Series, Rows]:
+        """The series of state and frame of a step at whose end they fall below the last bit."""
+        first = self._first(tape, box, now, guess, left)
+        try:
+            series = Series(tape, box.point, now, first, self.order)
+        except Kink as kink:
+            # It lies within the rounding of the start.
+            return self._flat(tape, box, now, left, frozenset((kink.node,)), least_length(left))
+        frame = self._frame(series)
+        length = self._length(box, series, frame, left)
+        if length != first:
+            series.rescale(length)
+            frame = scaled(frame, ball(length / first))
+        if tape.has_kinks:
+            ahead = plan(series, box)
+            if ahead.flat:
+                return self._flat(tape, box, now, left, ahead.flat, abs(ahead.length))
+            if ahead.length != length:
+                series.rescale(ahead.length)
+                frame = scaled(frame, ball(ahead.length / length))
+        return series, frame
+
+    def _flat(
+        self,
+        tape: Tape,
+        box: Box,
+        now: Fraction,
+        left: Fraction,
+        flat: frozenset[int],
+        length: Fraction,
+    ) -> tuple[Series, Rows]:
+        """The series of a short step across kinks, with fewer orders."""
+        step = min(length, abs(left)) * (1 if left > 0 else -1)
+        order = max(_LEAST_ORDER, self.order // 4)
+        while True:
+            try:
+                series = Series(tape, box.point, now, step, order, flat)
+                return series, self._frame(series)
+            except Kink as kink:
+                flat |= {kink.node}
+
+    def _frame(self, series: Series) -> Rows:
+        if not self.is_placed:
+            return []
+        return frame_series(self.forms, series.rows, series.length, self.has_centre)
+
+    def _first(
+        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
+    ) -> Fraction:
+        """A length at which the coefficients are no giants: no guess can make a result wrong."""
+        length = guess if abs(guess) < abs(left) else left
+        try:
+            with ctx.workprec(BOUND_BITS):
+                growth = _growth(Series(tape, box.point, now, length, 1), 0)
+        except Kink:
+            return length
+        if growth is None or growth == float("-inf"):
+            return length
+        limit = power_of_two(ceil(_log2(length) - growth))
+        return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
+
+    def _length(self, box: Box, series: Series, frame: Rows, left: Fraction) -> Fraction:
+        rows = series.rows
+        tests = [self.root_test(rows, self.system.spans)]
+        if frame:
+            tests.append(self.root_test(frame, [range(4)]))
+        if timed := series.of_time():
+            tests.append(self.root_test(timed, [range(len(timed[0]))]))
+        factor = min(*tests, _log2(left) - _log2(series.step))
+        is_constant = all(entry.is_zero() for row in rows[1:] for entry in row)
+        if not (box.is_point and is_constant):
+            with ctx.workprec(BOUND_BITS):
+                factor = _bounded(series, factor)
+        fitted = _cut(series.step, factor)
+        return left if abs(fitted) >= abs(left) * _NEARLY else fitted
+
+    def root_test(self, rows: Rows, spans: Sequence[range]) -> float:
+        """log2 of the factor by which the length may grow; infinite where the series has ended."""
+        factor, order = float("inf"), len(rows) - 1
+        for span in spans:
+            # The size of the block, or of its first change.
+            sizes = (size_of(row, span) for row in rows[:3])
+            size = next((size for size in sizes if size > float("-inf")), float("-inf"))
+            for k in range(max(1, order - 2), order + 1):
+                last = size_of(rows[k], span)
+                if last > float("-inf"):
+                    factor = min(factor, (size - ctx.prec - last) / k)
+        return factor
+
+
+def _bounded(series: Series, factor: float) -> float:
+    """The factor, or less where the linearised motion would outgrow the bounds within the step."""
+    least = factor - _HALVINGS
+    while factor > least:
+        growth = _growth(series, factor)
+        if growth is None:
+            factor -= 1
+            continue
+        excess = growth - log2(_MOST_GROWTH)
+        if excess <= 0:
+            break
+        # The reach may itself grow with the length.
+        factor -= max(excess / 2, _LEAST_CUT)
+    return factor
+
+
+def _growth(series: Series, factor: float) -> float | None:
+    """log2 of the spectral radius of |h dF/dz| over a step longer by 2^factor, within n^(1/8).
+
+    -inf of none; None where a function has no bound over so long a step. The trace of an eighth power does
+    not depend on the units of the components.
+    """
+    bounds = Bounds.rough(series, _power(factor))
+    try:
+        power = bounds.rates_of_change([arb(0)] * series.tape.size)
+    except StepTooLong:
+        return None
+    for _ in range(3):
+        power = power * power
+    trace = power.trace()
+    if trace.is_zero():
+        return float("-inf")
+    return exponent(trace) / 8 + _log2(series.step) + factor
+
+
+def _log2(length: Fraction) -> float:
+    """log2 of a magnitude that no float needs to hold."""
+    return log2(abs(length.numerator)) - log2(length.denominator)
+
+
+def _power(exponent: float) -> arb:
+    """An exact number near 2^exponent, of any size."""
+    whole = int(exponent // 1)
+    return arb(2.0 ** (exponent - whole)) * arb(2) ** whole
+
+
+def _cut(length: Fraction, log2_factor: float) -> Fraction:
+    """The length times 2^log2_factor, cut to so few bits that sums of lengths stay short."""
+    whole = int(log2_factor // 1)
+    wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
+    unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
+    return int(wide / unit) * unit
+
+
+def size_of(entries: Sequence[arb], span: range) -> float:
+    """log2 of the largest entry, rounded upwards; -inf of zeros."""
+    sizes = [exponent(entries[i]) for i in span if not entries[i].abs_upper().is_zero()]
+    return float(max(sizes, default=float("-inf")))

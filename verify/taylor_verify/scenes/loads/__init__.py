@@ -1,0 +1,1 @@
+"""Loads that a scene writes down, as lists of elementary steps."""

@@ -1,0 +1,271 @@
+"""The grammar of expressions: a text becomes elementary steps, and nothing in it is evaluated by Python.
+
++ - * / and powers (^ or **, so that -x^2 is -(x^2)), brackets, functions, names, and ``A if t < B else C``.
+Every fault of a text is noted with its column, counted from 1.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Final, NamedTuple
+
+from taylor_verify.scenes.loads.steps import FUNCTIONS, NoStep, Steps
+
+MOST_CHARACTERS: Final = 4000
+MOST_DEPTH: Final = 100
+_MOST_EXPONENT: Final = 5000
+_LITERAL: Final = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?")
+_NOT_ALLOWED: Final = re.compile(r"[^\w \t.,+\-*/^()<>=]|[^\x00-\x7f]")
+_OPERATIONS: Final[dict[type[ast.operator], str]] = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
+}  # fmt: skip
+_OTHERS: Final = {"atan2": 2, "pow": 2, "clip": 3, "step": 1, "sign": 1, "floor": 1}
+_OF_SEVERAL: Final = ("min", "max", "norm")
+ALL_FUNCTIONS: Final = (*FUNCTIONS, *_OTHERS, *_OF_SEVERAL)
+
+
+class Fault(NamedTuple):
+    """A fault of a text: its column, what was expected there, and what came."""
+
+    column: int
+    expected: str
+    got: str
+
+
+class Unread(Exception):
+    """A text, or a part of it, that has faults; they are noted."""
+
+
+class Grammar:
+    """Reads texts into steps.
+
+    ``named`` gives the step of a name, and raises NoStep for one that is unknown. ``after`` says whether a
+    switch is past: it belongs to the later piece. ``faults`` are those of the texts read so far.
+    """
+
+    def __init__(
+        self, steps: Steps, named: Callable[[str], int], after: Callable[[Fraction], bool]
+    ) -> None:
+        self.steps, self._named, self._after = steps, named, after
+        self.faults: list[Fault] = []
+        self._source = Source.of("0")
+
+    def read(self, text: str) -> int:
+        """The step that a text writes. Raises Unread after noting its faults."""
+        outer, before = self._source, len(self.faults)
+        self._source = Source.of(text)
+        try:
+            place = self._place(self._tree(text), 0)
+        finally:
+            self._source = outer
+        if place is None or len(self.faults) > before:
+            raise Unread
+        return place
+
+    def _tree(self, text: str) -> ast.expr:
+        if len(text) > MOST_CHARACTERS:
+            raise self._refusal(0, f"at most {MOST_CHARACTERS} characters", "more")
+        if strange := _NOT_ALLOWED.search(text):
+            expected = "numbers, names, brackets and + - * / ^"
+            self.faults.append(Fault(strange.start() + 1, expected, ascii(strange[0])))
+            raise Unread
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                return ast.parse(self._source.python, mode="eval").body
+        except SyntaxError as error:
+            offset = (error.offset or 1) - 1
+            rest = self._source.python[offset:].replace("**", "^")[:20]
+            raise self._refusal(
+                offset, "an expression", f"`{rest}`" if rest else "its end"
+            ) from None
+        except (ValueError, RecursionError, MemoryError):
+            raise self._refusal(0, f"brackets at most {MOST_DEPTH} deep", "deeper ones") from None
+
+    def _refusal(self, offset: int, expected: str, got: str) -> Unread:
+        self.faults.append(Fault(self._source.column(offset), expected, got))
+        return Unread()
+
+    # The tree. A part with a fault is None, and so is everything that is made of it.
+
+    def _place(self, node: ast.expr, depth: int) -> int | None:
+        if depth > MOST_DEPTH:
+            return self._fault(node, f"brackets at most {MOST_DEPTH} deep", "deeper ones")
+        match node:
+            case ast.Constant():
+                return self._number(node)
+            case ast.Name(id=name):
+                return self._made(node, lambda: self._named(name))
+            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+                return self._place(operand, depth + 1)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                zero, a = self.steps.number(Fraction(0)), self._place(operand, depth + 1)
+                return (
+                    None
+                    if a is None
+                    else self._made(node, lambda: self.steps.combined("-", zero, a))
+                )
+            case ast.BinOp(left=left, op=ast.Pow(), right=right):
+                return self._power(node, left, right, depth)
+            case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATIONS:
+                a, b = self._place(left, depth + 1), self._place(right, depth + 1)
+                if a is None or b is None:
+                    return None
+                name = _OPERATIONS[type(operator)]
+                return self._made(node, lambda: self.steps.combined(name, a, b))
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
+                return self._call(node, name, arguments, depth)
+            case ast.IfExp(test=test, body=body, orelse=other):
+                return self._choice(test, body, other, depth)
+        return self._fault(node, "numbers, names, + - * / ^ and functions", self._shown(node))
+
+    def _number(self, node: ast.Constant) -> int | None:
+        literal = self._source.python[node.col_offset : node.end_col_offset]
+        number = _LITERAL.fullmatch(literal)
+        if number is None:
+            return self._fault(node, "a decimal number", literal[:20])
+        if abs(int(number[1] or 0)) > _MOST_EXPONENT:
+            return self._fault(node, f"powers of ten up to {_MOST_EXPONENT}", literal[:20])
+        return self._made(node, lambda: self.steps.number(Fraction(Decimal(literal))))
+
+    def _power(self, node: ast.expr, base: ast.expr, exponent: ast.expr, depth: int) -> int | None:
+        a, e = self._place(base, depth + 1), self._place(exponent, depth + 1)
+        return None if a is None or e is None else self._made(node, lambda: self._raised(a, e))
+
+    def _raised(self, a: int, e: int) -> int:
+        """a^e: a rational power, or exp(e log a)."""
+        exponent = self.steps.value(e)
+        if exponent is not None:
+            return self.steps.power(a, exponent)
+        steps = self.steps
+        return steps.function("exp", steps.combined("*", e, steps.function("log", a)))
+
+    def _call(self, node: ast.expr, name: str, arguments: list[ast.expr], depth: int) -> int | None:
+        if name not in ALL_FUNCTIONS:
+            return self._fault(
+                node, f"a function ({', '.join(sorted(ALL_FUNCTIONS))})", f"`{name}`"
+            )
+        count = _OTHERS.get(name, 1)
+        if (name in _OF_SEVERAL and not arguments) or (
+            name not in _OF_SEVERAL and len(arguments) != count
+        ):
+            expected = "some numbers" if name in _OF_SEVERAL else _arguments(count)
+            return self._fault(node, f"{expected} in {name}()", str(len(arguments)))
+        places = [self._place(argument, depth + 1) for argument in arguments]
+        known = [place for place in places if place is not None]
+        if len(known) < len(places):
+            return None
+        return self._made(node, lambda: self._applied(name, known))
+
+    def _applied(self, name: str, places: list[int]) -> int:
+        steps = self.steps
+        match name:
+            case "min" | "max":
+                place = places[0]
+                for other in places[1:]:
+                    place = steps.combined(name, place, other)
+                return place
+            case "norm":
+                return steps.norm(tuple(places))
+            case "clip":
+                x, low, high = places
+                return steps.combined("min", steps.combined("max", x, low), high)
+            case "atan2":
+                return steps.angle(*places)
+            case "pow":
+                return self._raised(*places)
+            case "step":
+                return steps.number(Fraction(int(self._is_past(places[0]))))
+            case "sign":
+                value = steps.value(places[0])
+                if value is None:
+                    value = Fraction(1 if self._is_past(places[0]) else -1)
+                return steps.number(Fraction((value > 0) - (value < 0)))
+            case "floor":
+                value = steps.value(places[0])
+                if value is None:
+                    raise NoStep("a number for floor, which would jump", "an expression")
+                return steps.number(Fraction(value // 1))
+        return steps.function(name, places[0])
+
+    # Switches.
+
+    def _choice(self, test: ast.expr, body: ast.expr, other: ast.expr, depth: int) -> int | None:
+        """The branch that the piece of time asks for; both are read, so that all faults are noted."""
+        places = self._place(body, depth + 1), self._place(other, depth + 1)
+        match test:
+            case ast.Compare(left=left, ops=[operator], comparators=[right]) if isinstance(
+                operator, ast.Lt | ast.LtE | ast.Gt | ast.GtE
+            ):
+                a, b = self._place(left, depth + 1), self._place(right, depth + 1)
+            case _:
+                return self._fault(test, "one comparison with < or >", self._shown(test))
+        if a is None or b is None or None in places:
+            return None
+        is_less = isinstance(operator, ast.Lt | ast.LtE)
+
+        def chosen() -> int:
+            is_past = self._is_past(self.steps.combined("-", a, b))
+            place = places[int(is_past) if is_less else int(not is_past)]
+            assert place is not None
+            return place
+
+        return self._made(test, chosen)
+
+    def _is_past(self, place: int) -> bool:
+        """Return True if a step that is linear in t is not negative in this piece of time."""
+        line = self.steps.line(place)
+        if line is None:
+            raise NoStep(
+                "a condition that is linear in t alone, with rational numbers",
+                "another one: the load would jump with the state",
+            )
+        slope, value = line
+        if not slope:
+            return value >= 0
+        past = self._after(-value / slope)
+        return past if slope > 0 else not past
+
+    # Faults.
+
+    def _made(self, node: ast.expr, make: Callable[[], int]) -> int | None:
+        try:
+            return make()
+        except NoStep as fault:
+            return self._fault(node, fault.expected, fault.got)
+
+    def _fault(self, node: ast.expr, expected: str, got: str) -> None:
+        self.faults.append(Fault(self._source.column(node.col_offset), expected, got))
+
+    def _shown(self, node: ast.expr) -> str:
+        segment = self._source.python[node.col_offset : node.end_col_offset]
+        return f"`{segment.replace('**', '^')[:20]}`"
+
+
+def _arguments(count: int) -> str:
+    return "one number" if count == 1 else f"{count} numbers"
+
+
+class Source(NamedTuple):
+    """A text as Python writes it, with the column in the text as written of each character."""
+
+    python: str
+    columns: list[int]
+
+    @classmethod
+    def of(cls, text: str) -> Source:
+        begin = len(text) - len(text.lstrip())
+        written = [(text[i], i + 1) for i in range(begin, len(text))]
+        pairs = [(c, column) for sign, column in written for c in ("**" if sign == "^" else sign)]
+        return cls("".join(c for c, _ in pairs), [column for _, column in pairs])
+
+    def column(self, offset: int) -> int:
+        """The column of an offset; the one behind the end for what is missing there."""
+        if offset < len(self.columns):
+            return self.columns[offset]
+        return self.columns[-1] + 1 if self.columns else 1

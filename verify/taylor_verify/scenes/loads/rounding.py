@@ -1,0 +1,108 @@
+"""Elementary steps as a solver gets them: only those that are needed, and every number on its rung."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from typing import Any, Final
+
+from flint import arb, ctx, fmpq
+
+from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.precision import Rung, power_of_two
+
+# A constant such as sqrt(2) is rounded to a rung from so many bits more than the rung has.
+_SPARE_BITS: Final = 64
+
+
+def finished(
+    steps: Sequence[Step], outputs: Sequence[int], rung: Rung | None
+) -> tuple[list[Step], list[int]]:
+    """Return the steps that the outputs need, and where the outputs are among them.
+
+    On a rung every number is rounded once, and an expression of numbers alone is one number. The exponent
+    of a power is a part of the operation, and stays what it is.
+    """
+    if rung is not None:
+        steps = _on_rung(steps, rung)
+    needed = _needed(steps, outputs)
+    places = {old: new for new, old in enumerate(needed)}
+    kept = [
+        Step(s.operation, tuple(places[i] for i in s.operands), s.number, s.name)
+        for s in (steps[old] for old in needed)
+    ]
+    return kept, [places[output] for output in outputs]
+
+
+def _needed(steps: Sequence[Step], outputs: Sequence[int]) -> list[int]:
+    needed: set[int] = set()
+    waiting = list(outputs)
+    while waiting:
+        place = waiting.pop()
+        if place not in needed:
+            needed.add(place)
+            waiting += steps[place].operands
+    return sorted(needed)
+
+
+def _on_rung(steps: Sequence[Step], rung: Rung) -> list[Step]:
+    """The steps with a rounded number in place of every expression that has no input."""
+    is_constant: list[bool] = []
+    for step in steps:
+        is_constant.append(
+            step.operation != "input" and all(is_constant[place] for place in step.operands)
+        )
+    return [
+        Step("number", number=rung.round(_value(steps, place, rung.bits + _SPARE_BITS)))
+        if is_constant[place]
+        else step
+        for place, step in enumerate(steps)
+    ]
+
+
+def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
+    """The number that a step without inputs is, to so many bits."""
+    number = steps[place].number
+    if steps[place].operation == "number" and number is not None:
+        return number
+    working = bits
+    while True:
+        with ctx.workprec(working):
+            ball = _ball(steps, place)
+            if ball.rel_accuracy_bits() >= bits:
+                mantissa, exponent = ball.mid().man_exp()
+                return int(mantissa) * power_of_two(int(exponent))
+            if ball.is_zero():
+                return Fraction(0)
+        working *= 2
+
+
+def _ball(steps: Sequence[Step], place: int) -> arb:
+    step = steps[place]
+    if step.number is not None and step.operation == "number":
+        return arb(fmpq(step.number.numerator, step.number.denominator))
+    operands = [_ball(steps, operand) for operand in step.operands]
+    if step.operation == "power" and step.number is not None:
+        exponent = arb(fmpq(step.number.numerator, step.number.denominator))
+        return operands[0] ** exponent
+    return _FUNCTIONS[step.operation](*operands)
+
+
+_FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
+    "pi": arb.pi,
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b,
+    "min": lambda a, b: a.min(b),
+    "max": lambda a, b: a.max(b),
+    "norm": lambda *parts: sum((part * part for part in parts), arb(0)).sqrt(),
+    "atan2": lambda y, x: arb.atan2(y, x),
+    "abs": abs,
+    **{
+        name: getattr(arb, name)
+        for name in (
+            "sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh",
+        )
+    },
+}  # fmt: skip
