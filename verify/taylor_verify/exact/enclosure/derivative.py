@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -121,7 +121,7 @@ def jacobian(bounds: Bounds, around: Sequence[arb], count: int) -> Jacobian:
 
 
 @contextmanager
-def _orders(count: int):
+def _orders(count: int) -> Iterator[None]:
     """Set the orders of python-flint's power series, which are one number for the whole process."""
     before, ctx.cap = ctx.cap, count
     try:

@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.system import Piece, System, natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
-from taylor_verify.exact.equations import Equations, Exact
+from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.loads import loads as written
@@ -150,7 +151,7 @@ class _Frame:
             for i in range(3)
         ]
 
-    def inputs(self) -> Mapping[str, Sum]:
+    def inputs(self) -> dict[str, Sum]:
         inputs: dict[str, Sum] = {}
         if self._turn:
             inputs |= {f"r{i + 1}{j + 1}": self._rotation[i][j] for i in range(3) for j in range(3)}

@@ -180,11 +180,12 @@ class Bilinear(Operation):
         )
 
     def degree(self, of_operands: Sequence[int | None]) -> int | None:
-        if any(degree is None for degree in of_operands):
+        degrees = [degree for degree in of_operands if degree is not None]
+        if len(degrees) < len(of_operands):
             return None
         count = 2 * len(self.products)
-        pairs = zip(of_operands[:count:2], of_operands[1:count:2], strict=True)
-        return max([0, *(a + b for a, b in pairs), *of_operands[count:]])
+        pairs = zip(degrees[:count:2], degrees[1:count:2], strict=True)
+        return max([0, *(a + b for a, b in pairs), *degrees[count:]])
 
     def first(self, i: int, s: Series) -> arb:
         factors = s.factors(i)

@@ -17,10 +17,11 @@ import numpy as np
 from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import balls
+from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.functions import Cosine, Sine
 from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape
-from taylor_verify.exact.equations import Equations, Exact
+from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene

@@ -102,7 +102,7 @@ class Graph:
 
     def _whole(self, value: Sum) -> int:
         time = self._places.get(Time())
-        if set(value.terms) == {time}:
+        if time is not None and set(value.terms) == {time}:
             return self.place(Polynomial(Fraction(0), (value.constant, value.terms[time])))
         sums = tuple((number, node) for node, number in sorted(value.terms.items()))
         return self.place(Bilinear(value.constant, sums=sums))
@@ -143,7 +143,9 @@ class Tape:
         outputs = [graph.whole(rate) for rate in rates]
         joined = _joined(graph.operations, outputs)
         order = sorted(_reached(joined, [*states, *outputs]))
-        places = {node: place for place, node in enumerate(order)}
+        places = [0] * len(joined)
+        for place, node in enumerate(order):
+            places[node] = place
         operations = tuple(joined[node].moved(places) for node in order)
         return cls(operations, tuple(places[n] for n in states), tuple(places[n] for n in outputs))
 

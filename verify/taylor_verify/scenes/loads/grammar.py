@@ -104,12 +104,8 @@ class Grammar:
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self._place(operand, depth + 1)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                zero, a = self.steps.number(Fraction(0)), self._place(operand, depth + 1)
-                return (
-                    None
-                    if a is None
-                    else self._made(node, lambda: self.steps.combined("-", zero, a))
-                )
+                a = self._place(operand, depth + 1)
+                return None if a is None else self._negative(node, a)
             case ast.BinOp(left=left, op=ast.Pow(), right=right):
                 return self._power(node, left, right, depth)
             case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATIONS:
@@ -123,6 +119,10 @@ class Grammar:
             case ast.IfExp(test=test, body=body, orelse=other):
                 return self._choice(test, body, other, depth)
         return self._fault(node, "numbers, names, + - * / ^ and functions", self._shown(node))
+
+    def _negative(self, node: ast.expr, a: int) -> int | None:
+        zero = self.steps.number(Fraction(0))
+        return self._made(node, lambda: self.steps.combined("-", zero, a))
 
     def _number(self, node: ast.Constant) -> int | None:
         literal = self._source.python[node.col_offset : node.end_col_offset]
@@ -239,8 +239,10 @@ class Grammar:
         except NoStep as fault:
             return self._fault(node, fault.expected, fault.got)
 
-    def _fault(self, node: ast.expr, expected: str, got: str) -> None:
+    def _fault(self, node: ast.expr, expected: str, got: str) -> int | None:
+        """Note a fault, and return what a part with one is."""
         self.faults.append(Fault(self._source.column(node.col_offset), expected, got))
+        return None
 
     def _shown(self, node: ast.expr) -> str:
         segment = self._source.python[node.col_offset : node.end_col_offset]

@@ -84,8 +84,10 @@ def _ball(steps: Sequence[Step], place: int) -> arb:
     operands = [_ball(steps, operand) for operand in step.operands]
     if step.operation == "power" and step.number is not None:
         exponent = arb(fmpq(step.number.numerator, step.number.denominator))
-        return operands[0] ** exponent
-    return _FUNCTIONS[step.operation](*operands)
+        operands = [operands[0] ** exponent]
+        return operands[0]
+    value: arb = _FUNCTIONS[step.operation](*operands)
+    return value
 
 
 _FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
