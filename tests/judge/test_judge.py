@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Settled, Unsettled
 from taylor_verify.judge.errors.drifts import drifts
-from taylor_verify.judge.errors.state import Arc, Errors, largest, state_errors
+from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, largest, state_errors
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.models.problem import pose
@@ -33,8 +33,9 @@ from taylor_verify.solvers.taylor.driver import Taylor
 
 
 def errors_of(values: list[float], radius: float = 0.0) -> Errors:
+    column = in_doubles(np.array([mpf(v) for v in values], dtype=object))
     radii = np.full(len(values), radius)
-    return Errors("omega", "max|omega|", np.array(values, dtype=float), radii, {"omega": mpf(1)})
+    return Errors("omega", "max|omega|", column, radii, {"omega": mpf(1)})
 
 
 def motion_of(**quantities: list[list[object]]) -> Motion:
