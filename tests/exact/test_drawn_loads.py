@@ -44,7 +44,7 @@ def answers(seed: int, count: int) -> Counter[str]:
     random, reasons = Random(seed), Counter[str]()
     while reasons.total() < count:
         case = drawn(random)
-        end = end_of(case.scene, case.elapsed, DIGITS, 1, case.switches, columns=9)
+        end = end_of(case.scene, case.elapsed, DIGITS, 1, case.switches, columns=7)
         if end.crosses or end.error > mpf(10) ** -(DIGITS - 2):
             # The other integrator does not end its steps at kinks, or would need more of them.
             reasons["left out"] += 0
