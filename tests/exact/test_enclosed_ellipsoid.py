@@ -15,9 +15,8 @@ from flint import arb, ctx
 from mpmath import mp
 
 from taylor_verify.exact.balls import ball, midpoint
-from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.operations import Bilinear
-from taylor_verify.exact.enclosure.system import Forms
+from taylor_verify.exact.enclosure.system import Forms, posed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
 from taylor_verify.exact.written import as_written

@@ -15,11 +15,10 @@ from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import placing
 from taylor_verify.exact.enclosure.coefficients import frame_series, value
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.placing import norm
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Stepper
-from taylor_verify.exact.enclosure.system import Forms, System
+from taylor_verify.exact.enclosure.system import Forms, System, posed
 from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors

@@ -19,9 +19,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import balls, largest_size, midpoint, radius, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
-from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.system import System, posed
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled

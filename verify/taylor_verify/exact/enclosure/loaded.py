@@ -1,4 +1,4 @@
-"""The equations of a scene: of a body, under the loads that the scene writes down if there are any.
+"""The equations of a body under loads that its scene writes down.
 
 Loads that depend on the attitude bring it into the state: as the quaternion e since the start, e(0) = 1, so
 that R = R_0 R(e) with the attitude R_0 of the start. Those that depend on the centre bring it in too.
@@ -15,7 +15,7 @@ import numpy as np
 from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
-from taylor_verify.exact.enclosure.system import Piece, System, always, driven, natural
+from taylor_verify.exact.enclosure.system import Piece, System, natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
@@ -26,25 +26,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _STATES = ("x", "y")
-
-
-def posed(scene: Scene) -> System:
-    """The equations of a scene's body, and where its motion begins."""
-    body, kind = scene.body, kind_of(scene.body)
-    if body.loads is not None:
-        return LoadedBody(scene, body.loads).system()
-    start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()
-    rates = natural(graph, equations, graph.states(len(start)))
-    if body.manufactured is not None:
-        motion = driven(graph, equations, body.manufactured)
-        rates = [rate + load for rate, load in zip(rates, motion, strict=True)]
-    return always(
-        Tape.of(graph, len(start), rates),
-        tuple(range(3, len(start) + 1, 3)),
-        start,
-        equations.spin,
-        equations.velocity,
-    )
 
 
 class LoadedBody:

@@ -22,7 +22,9 @@ from taylor_verify.exact.enclosure.functions import Cosine, Sine
 from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape
 from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 
@@ -57,6 +59,27 @@ class System:
     def spans(self) -> list[range]:
         """The places of each block in z."""
         return [range(first, last) for first, last in pairwise((0, *self.blocks))]
+
+
+def posed(scene: Scene) -> System:
+    """The equations of a scene's body, and where its motion begins."""
+    body, kind = scene.body, kind_of(scene.body)
+    if body.loads is not None:
+        from taylor_verify.exact.enclosure.loaded import LoadedBody
+
+        return LoadedBody(scene, body.loads).system()
+    start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()
+    rates = natural(graph, equations, graph.states(len(start)))
+    if body.manufactured is not None:
+        motion = driven(graph, equations, body.manufactured)
+        rates = [rate + load for rate, load in zip(rates, motion, strict=True)]
+    return always(
+        Tape.of(graph, len(start), rates),
+        tuple(range(3, len(start) + 1, 3)),
+        start,
+        equations.spin,
+        equations.velocity,
+    )
 
 
 def always(
