@@ -126,8 +126,8 @@ def test_motions_stay_in_their_balls(name: str, length: Fraction) -> None:
 
 # Functions of the time alone: what the operation leaves out is the only error of the step.
 OF_TIME = {
-    operations.Quotient: "1/(2 + t)", operations.Root: "sqrt(2 + t)", functions.Exponential: "exp(t)",
-    functions.Logarithm: "log(2 + t)", operations.Power: "(2 + t)^0.75", functions.Circular: "cos(t)",
+    operations.Quotient: "1/(2 + t)", operations.Root: "sqrt(2 + t)", operations.Exponential: "exp(t)",
+    operations.Logarithm: "log(2 + t)", operations.Power: "(2 + t)^0.75", functions.Circular: "cos(t)",
     functions.Hyperbolic: "cosh(t)", functions.HyperbolicTangent: "tanh(1 + t)",
     functions.Arctangent: "atan(1 + t)", functions.Angle: "atan2(1 + t, 2)", kinks.Norm: "norm(t, 1)",
 }  # fmt: skip

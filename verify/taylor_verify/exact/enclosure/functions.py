@@ -1,6 +1,4 @@
-"""Functions: trigonometric and hyperbolic ones, angles, exponentials and logarithms.
-
-Most come in pairs, or with a helper.
+"""Operations that come in pairs, or with a helper: trigonometric and hyperbolic functions, and angles.
 
 The helper of a node is another one of the tape: the cosine of a sine, 1 - v^2 of a hyperbolic tangent, and
 the divisor of the derivative of an angle.
@@ -211,51 +209,3 @@ class Angle(Operation):
     def differential(self, i: int, b: Bounds) -> Differential:
         parts = [Part(ONE, self.x, self.y), Part(-ONE, self.y, self.x)]
         return Differential(parts, self.divisor, b.least(self.divisor))
-
-
-@dataclass(frozen=True)
-class Exponential(OfOne):
-    """The exponential of a."""
-
-    def first(self, i: int, s: Series) -> arb:
-        return s.forward[self.a][0].exp()
-
-    def following(self, i: int, s: Series, k: int) -> arb:
-        return s.driven(self.a, i, k) / k
-
-    def left_out(self, i: int, b: Bounds) -> arb:
-        return b.weighted_tail(self.a, i)
-
-    def apart(self, i: int, b: Bounds) -> arb:
-        polynomial = b.missed[i] * (2 * b.change[self.a]).exp()
-        return polynomial + (b.length[i] + polynomial) * b.beside[self.a].expm1()
-
-    def slopes(self, i: int, b: Bounds) -> Iterator[Slope]:
-        yield b.reach(i), self.a
-
-    def differential(self, i: int, b: Bounds) -> Differential:
-        return Differential([Part(ONE, i, self.a)])
-
-
-@dataclass(frozen=True)
-class Logarithm(OfOne):
-    """The natural logarithm of a."""
-
-    def first(self, i: int, s: Series) -> arb:
-        return s.positive(self.a, "a logarithm").log()
-
-    def following(self, i: int, s: Series, k: int) -> arb:
-        a = s.forward[self.a]
-        return (k * a[k] - s.weighted(i, self.a, k)) / (k * a[0])
-
-    def left_out(self, i: int, b: Bounds) -> arb:
-        return b.weighted_tail(i, self.a) + b.last(self.a)
-
-    def apart(self, i: int, b: Bounds) -> arb:
-        return (b.missed[i] + b.beside[self.a]) / b.least(self.a)
-
-    def slopes(self, i: int, b: Bounds) -> Iterator[Slope]:
-        yield 1 / b.least(self.a), self.a
-
-    def differential(self, i: int, b: Bounds) -> Differential:
-        return Differential([Part(ONE, None, self.a)], self.a, b.least(self.a))

@@ -10,15 +10,15 @@ from taylor_verify.exact.enclosure.functions import (
     Angle,
     Arctangent,
     Cosine,
-    Exponential,
     HyperbolicCosine,
     HyperbolicSine,
-    Logarithm,
     Sine,
 )
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import (
     Bilinear,
+    Exponential,
+    Logarithm,
     Power,
     Quotient,
     Root,
