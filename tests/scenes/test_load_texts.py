@@ -118,10 +118,10 @@ def answer(text: str) -> tuple[float, str]:
     began = time.process_time()
     try:
         loads = scene(f"{quoted}, 0, 0", tables).body.loads
-        said = "no steps" if loads is None else f"{len(loads.piece(loads.origin).steps)} steps"
+        reply = "no steps" if loads is None else f"{len(loads.piece(loads.origin).steps)} steps"
     except Refused as refused:
-        said = str(refused)
-    return time.process_time() - began, said
+        reply = str(refused)
+    return time.process_time() - began, reply
 
 
 @pytest.mark.parametrize(
@@ -132,19 +132,22 @@ def test_no_text_is_evaluated_or_takes_long(seed: int, count: int) -> None:
     random = Random(seed)
     for _ in range(count):
         text = drawn(random)
-        seconds, said = answer(text)
+        seconds, reply = answer(text)
         assert seconds <= PATIENCE, text
-        for line in said.splitlines():
-            assert "steps" in line or "expected " in line or "and more faults" in line, (text, said)
+        for line in reply.splitlines():
+            assert "steps" in line or "expected " in line or "and more faults" in line, (
+                text,
+                reply,
+            )
             assert len(line) <= 400
 
 
 @pytest.mark.parametrize("text", WHOLE)
 def test_texts_of_unusual_form_are_answered_at_once(text: str) -> None:
     """Deep, long and empty ones, and powers that no memory holds."""
-    seconds, said = answer(text)
+    seconds, reply = answer(text)
     assert seconds <= PATIENCE
-    assert said
+    assert reply
 
 
 @pytest.mark.parametrize(
