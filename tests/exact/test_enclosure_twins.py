@@ -18,8 +18,9 @@ from taylor_verify.exact.enclosure import box, flow, tape
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Step, Stepper
-from taylor_verify.exact.enclosure.system import System, column, posed
+from taylor_verify.exact.enclosure.system import System, always, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution
@@ -36,7 +37,7 @@ def squared() -> System:
     graph = Graph()
     (z,) = graph.states(1)
     tape = Tape.of(graph, 1, [graph.product(z, z)])
-    return System(tape, (1,), (Fraction(1),), exact([[ZERO]] * 3), exact([[ZERO]])[:0])
+    return always(tape, (1,), (Fraction(1),), exact([[ZERO]] * 3), exact([[ZERO]])[:0])
 
 
 SQUARE = squared()

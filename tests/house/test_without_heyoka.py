@@ -151,8 +151,9 @@ def test_nothing_is_published_without_heyoka(tmp_path: Path) -> None:
     measured = [study.name for study in STUDIES if study.needs_heyoka]
     assert len(measured) > 5
     script = (
-        "from taylor_verify.cli import folders, main\n"
-        "folders._checkout = lambda place: place\n"
+        "from taylor_verify.cli import main\n"
+        "from taylor_verify_reports.verbs import checkout\n"
+        "checkout._checkout = lambda place: place\n"
         f"for name in {measured}:\n"
         "    print(main(['publish', name, '--from', 'reports']))"
     )

@@ -1,4 +1,4 @@
-"""One step from a box: its length, the polynomial, the tube about it, the derivative, and the frame."""
+"""A step from a box: its length, the polynomial, the tube about it, the derivative, and the frame."""
 
 from __future__ import annotations
 

@@ -152,7 +152,7 @@ class Loads:
         return not self.inputs.isdisjoint(CENTRE)
 
     def faults(self) -> Iterator[tuple[str, Fault]]:
-        """Every fault of every text, by the place of the text in the scene."""
+        """The faults of all texts, by the place of the text in the scene."""
         yield from _Reading(self, is_scan=True).faults()
 
 

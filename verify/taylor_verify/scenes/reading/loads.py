@@ -51,7 +51,7 @@ def _hung(table: Table, name: str) -> Hung | None:
 
 
 class Vocabulary:
-    """What the texts of a scene may name: its tables [define], [space] and [tables]."""
+    """Words that the texts of a scene may use: its tables [define], [space] and [tables]."""
 
     def __init__(self, top: Table, folder: Path | None) -> None:
         self._folder = folder
