@@ -52,7 +52,7 @@ assert run("euler/rest", "scipy:DOP853").record is not None
 assert run("euler/generic", "closed-form:ellipj").record is not None
 import pathlib, shlex, sys
 rk4 = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
-assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), '0.05'])}")
+assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), 'step=0.05'])}")
 """,
     "runs that are unavailable": STILL
     + f"""
