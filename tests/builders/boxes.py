@@ -16,8 +16,8 @@ from taylor_verify.exact.enclosure import step
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.course import Course, Row
 from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Stepper
-from taylor_verify.exact.enclosure.system import posed
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin, State

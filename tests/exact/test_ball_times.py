@@ -27,6 +27,10 @@ FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
 
 
+# Taylor series are the second route there.
+WITHOUT_MPMATH = {("kirchhoff/weber", "mpmath")}
+
+
 @cache
 def free_forms() -> list[str]:
     """The shipped scenes without loads and wheels that have a closed form."""
@@ -69,7 +73,9 @@ def at_numbers(inner: Solution) -> Solution:
 @pytest.mark.parametrize(
     ("name", "route"),
     # By turns a form has one route, the other, and none.
-    by_turns(product(free_forms(), ["arb", "mpmath"])),
+    by_turns(
+        pair for pair in product(free_forms(), ["arb", "mpmath"]) if pair not in WITHOUT_MPMATH
+    ),
 )
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
     """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""

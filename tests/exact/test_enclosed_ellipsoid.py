@@ -16,7 +16,8 @@ from mpmath import mp
 
 from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.enclosure.operations import Bilinear
-from taylor_verify.exact.enclosure.system import Forms, posed
+from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.system import Forms
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
 from taylor_verify.exact.written import as_written
@@ -82,7 +83,10 @@ def test_the_balls_contain_lambs_coefficients(name: str) -> None:
 def equations(scene: Scene, bits: int) -> list[arb]:
     system = posed(as_written(scene))
     with ctx.workprec(bits):
-        forms, factors = Forms.of(system), filter(None, system.tape.factors())
+        forms, factors = (
+            Forms.of(system),
+            filter(None, system.pieces(Fraction(0), True).tape.factors()),
+        )
     numbers = [
         number
         for each in factors
@@ -124,7 +128,7 @@ def test_a_rounded_coefficient_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("fluid", [0, 1])
 def test_in_a_vacuum_no_mass_is_added(fluid: int) -> None:
     """Then U is x by the mass, and x x U is zero exactly."""
-    tape = posed(as_written(shaped("triaxial", fluid))).tape
+    tape = posed(as_written(shaped("triaxial", fluid))).pieces(Fraction(0), True).tape
     products = [operation for operation in tape.operations if isinstance(operation, Bilinear)]
     linear = {tape.states[i] for i in range(3)}
     assert all({a, b} - linear for each in products for _, a, b in each.products) is (fluid == 0)

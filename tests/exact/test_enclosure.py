@@ -18,8 +18,9 @@ from taylor_verify.exact.enclosure import box, course, placing, step, tube
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import Place
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Stepper
-from taylor_verify.exact.enclosure.system import column, posed
+from taylor_verify.exact.enclosure.system import column
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution

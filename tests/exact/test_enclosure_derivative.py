@@ -17,7 +17,7 @@ from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load

@@ -16,9 +16,10 @@ from taylor_verify.exact.enclosure import placing
 from taylor_verify.exact.enclosure.coefficients import frame_series, value
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import norm
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Stepper
-from taylor_verify.exact.enclosure.system import Forms, System, posed
+from taylor_verify.exact.enclosure.system import Forms, System
 from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes import tensors
@@ -53,7 +54,9 @@ def exactly(rows: list[list[Fraction]]) -> tensors.Matrix:
 
 def series(system: System, step: Fraction, order: int) -> list[list[arb]]:
     """The coefficients of the state from its start, at the ambient precision."""
-    return Series(system.tape, balls(system.start), Fraction(0), step, order).rows
+    return Series(
+        system.pieces(Fraction(0), True).tape, balls(system.start), Fraction(0), step, order
+    ).rows
 
 
 @pytest.mark.parametrize("s", ["0.25", "1"])

@@ -18,8 +18,9 @@ from taylor_verify.exact.enclosure import box, flow, tape
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Step, Stepper
-from taylor_verify.exact.enclosure.system import System, always, column, posed
+from taylor_verify.exact.enclosure.system import System, always, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution

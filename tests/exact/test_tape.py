@@ -21,9 +21,10 @@ from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure import functions, kinks, operations
 from taylor_verify.exact.enclosure.box import Box, within
 from taylor_verify.exact.enclosure.operations import Operation, State
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step, Stepper
-from taylor_verify.exact.enclosure.system import System, posed
+from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.route import solution
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene

@@ -52,7 +52,7 @@ assert run("euler/rest", "scipy:DOP853").record is not None
 assert run("euler/generic", "closed-form:ellipj").record is not None
 import pathlib, shlex, sys
 rk4 = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
-assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), '0.05'])}")
+assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), 'step=0.05'])}")
 """,
     "runs that are unavailable": STILL
     + f"""
@@ -151,8 +151,9 @@ def test_nothing_is_published_without_heyoka(tmp_path: Path) -> None:
     measured = [study.name for study in STUDIES if study.needs_heyoka]
     assert len(measured) > 5
     script = (
-        "from taylor_verify.cli import folders, main\n"
-        "folders._checkout = lambda place: place\n"
+        "from taylor_verify.cli import main\n"
+        "from taylor_verify_reports.verbs import checkout\n"
+        "checkout._checkout = lambda place: place\n"
         f"for name in {measured}:\n"
         "    print(main(['publish', name, '--from', 'reports']))"
     )

@@ -27,7 +27,7 @@ def drawn() -> str:
     """A picture as matplotlib writes it: lines, marks, words."""
     with plotting():
         file = StringIO()
-        figure = diagram.picture(study()).figure()
+        figure = diagram.pictures(study())[0].figure()
         figure.savefig(file, format="svg", metadata={"Title": "A picture", "Date": None})
     return file.getvalue()
 

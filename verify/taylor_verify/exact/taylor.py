@@ -20,7 +20,8 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import balls, largest_size, midpoint, radius, size, width
 from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
 from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.system import System, posed
+from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
@@ -232,7 +233,7 @@ class _Arcs(_Enclosing):
     begins: tuple[Fraction, ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        whole = Course.of(self._system, (), None, bits, most_bits)
+        whole = Course.of(self._system, (), _place(self.scene, self.starts[0]), bits, most_bits)
         for number, span in times.items():
             start = self.starts[number]
             state = balls(kind_of(self.scene.body).state(start))

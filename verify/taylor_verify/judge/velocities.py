@@ -13,8 +13,8 @@ from mpmath import mp
 
 from taylor_verify.exact.solution import Quantities
 from taylor_verify.records.quantities import VELOCITIES
-from taylor_verify.scenes.bodies import Body, ImmersedBody
-from taylor_verify.scenes.tensors import Matrix, transpose
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.tensors import Matrix, inverse, transpose
 
 Array = np.ndarray[Any, Any]
 
@@ -28,18 +28,18 @@ class VelocityForms(NamedTuple):
 
 def has_velocities(body: Body) -> bool:
     """Return True if this body has velocities besides its momenta."""
-    return isinstance(body, ImmersedBody)
+    return body.has_velocities
 
 
 def velocity_forms(body: Body) -> VelocityForms:
     """Return the forms U = A x + B y and Omega = B^T x + C y of a body that has velocities."""
-    assert isinstance(body, ImmersedBody)
-    A, B, C = body.linear, body.coupling, body.angular
+    parts = body.parts()
+    A, B, C = parts["linear"], parts["coupling"], parts["angular"]
     forms = {
         "linear_velocity": {"linear_impulse": A, "angular_impulse": B},
         "omega": {"linear_impulse": transpose(B), "angular_impulse": C},
     }
-    return VelocityForms(forms, body.mass_matrix)
+    return VelocityForms(forms, inverse(body.energy_matrix))
 
 
 def velocity(group: str, body: Body, quantities: Quantities) -> Any:

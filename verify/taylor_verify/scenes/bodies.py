@@ -103,6 +103,11 @@ class Body(Parted):
         """The numbers that the body was given by, where its parts were computed from them."""
         return {}
 
+    @property
+    def has_velocities(self) -> bool:
+        """True if the linear velocity belongs to the motion: U and Omega are linear in the momenta."""
+        return False
+
     def with_motion(self, motion: Manufactured | None) -> Self:
         """Return the same body with this manufactured motion, or with none."""
         changed: Self = replace(cast("Any", self), manufactured=motion)
@@ -202,6 +207,11 @@ class ImmersedBody(Body):
         Part("force", Shape.VECTOR, FORCE, is_load=True),
         Part("couple", Shape.VECTOR, MOMENT, is_load=True),
     )
+
+    @property
+    def has_velocities(self) -> bool:
+        """True: (U, Omega) = energy_matrix (x, y)."""
+        return True
 
     def with_parts(self, values: Mapping[str, Value]) -> Self:
         """Return a copy with other values; with other coefficients it has no ellipsoid."""

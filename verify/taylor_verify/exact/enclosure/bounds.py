@@ -23,7 +23,7 @@ _FEW_ORDERS = 14
 
 
 class Bounds:
-    """What is known of the nodes on the polynomial alone, and then, after `widen`, in a tube about it.
+    """Bounds of the nodes on the polynomial alone, and then, after `widen`, in a tube about it.
 
     Per node: ``length`` is sum |v_k|, ``change`` the same from order 1 on, ``missed`` is tau, ``beside`` is
     delta, ``slopes`` are bounds of its derivatives by the components of the state.
@@ -206,7 +206,7 @@ class Bounds:
     # Kinks.
 
     def below_zero(self, i: int) -> arb:
-        """How far the polynomial under a kink goes beyond zero, to the other side."""
+        """The distance by which the polynomial under a kink goes beyond zero, to the other side."""
         least = self._least_under.get(i, ZERO)
         return least.abs_upper() if least < 0 else ZERO
 

@@ -1,4 +1,4 @@
-"""How a step meets a kink: it ends before it, or it goes flat across it.
+"""Steps that meet a kink: one ends before it, the next goes flat across it.
 
 The operand of a kink is zero at a time that lies in a ball about the zero of its polynomial. A step ends a
 little before that zero. The next one is flat, ends as far behind it, and is so short that the square of its
@@ -90,7 +90,7 @@ class _Kinks:
         self._apart = self._distances()
 
     def _distances(self) -> Sequence[arb]:
-        """How far each node may be at the beginning from its value at the point."""
+        """The distance of each node at the beginning from its value at the point."""
         if self._box.is_point:
             return [ZERO] * len(self._series.forward)
         with ctx.workprec(BOUND_BITS):
@@ -116,7 +116,7 @@ class _Kinks:
         return here, ahead
 
     def _operands(self) -> list[tuple[int, int]]:
-        """Each kink with the node whose sign it depends on."""
+        """The kinks, each with the node whose sign it depends on."""
         operands = []
         for i, operation in enumerate(self._series.tape.operations):
             if self._series.tape.degrees[i] is not None:

@@ -15,14 +15,8 @@ from taylor_verify.exact.enclosure.functions import (
     Sine,
 )
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
-from taylor_verify.exact.enclosure.operations import (
-    Bilinear,
-    Exponential,
-    Logarithm,
-    Power,
-    Quotient,
-    Root,
-)
+from taylor_verify.exact.enclosure.operations import Bilinear
+from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
 from taylor_verify.exact.enclosure.tape import Graph, Sum
 from taylor_verify.numbers.irrational import PI
 from taylor_verify.scenes.loads.steps import Step

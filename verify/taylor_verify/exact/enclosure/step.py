@@ -1,4 +1,4 @@
-"""One step from a box: its length, the polynomial, the tube about it, the derivative, and the frame."""
+"""A step from a box: its length, the polynomial, the tube about it, the derivative, and the frame."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ class Stepper:
         return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
 
     def _usual(self, tape: Tape, box: Box, now: Fraction, guess: Fraction) -> Fraction:
-        """About the length of a step that no end cuts short."""
+        """Return a guess of the length of a step that no end cuts short."""
         return abs(self._first(tape, box, now, guess, guess))
 
     def _length(self, box: Box, series: Series, frame: Rows, left: Fraction) -> Fraction:

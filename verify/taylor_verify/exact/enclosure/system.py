@@ -18,13 +18,8 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.clocks import Exact
-from taylor_verify.exact.enclosure.functions import Cosine, Sine
-from taylor_verify.exact.enclosure.operations import Time
-from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape
+from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, vanishes
 from taylor_verify.exact.equations import Equations
-from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.tensors import Vector
 
 
@@ -61,27 +56,6 @@ class System:
         return [range(first, last) for first, last in pairwise((0, *self.blocks))]
 
 
-def posed(scene: Scene) -> System:
-    """The equations of a scene's body, and where its motion begins."""
-    body, kind = scene.body, kind_of(scene.body)
-    if body.loads is not None:
-        from taylor_verify.exact.enclosure.loaded import LoadedBody
-
-        return LoadedBody(scene, body.loads).system()
-    start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()
-    rates = natural(graph, equations, graph.states(len(start)))
-    if body.manufactured is not None:
-        motion = driven(graph, equations, body.manufactured)
-        rates = [rate + load for rate, load in zip(rates, motion, strict=True)]
-    return always(
-        Tape.of(graph, len(start), rates),
-        tuple(range(3, len(start) + 1, 3)),
-        start,
-        equations.spin,
-        equations.velocity,
-    )
-
-
 def always(
     tape: Tape, blocks: tuple[int, ...], start: Vector, spin: Exact, velocity: Exact
 ) -> System:
@@ -92,29 +66,13 @@ def always(
 def natural(graph: Graph, equations: Equations, z: Sequence[Sum]) -> list[Sum]:
     """N(z) = constant + linear z + z.hessian z/2."""
     rates = [Sum(constant) for constant in equations.constant]
-    for i, j in zip(*np.nonzero(equations.linear), strict=True):
-        rates[i] += z[j].times(equations.linear[i, j])
-    for i, a, b in zip(*np.nonzero(equations.hessian), strict=True):
-        if a <= b:
+    for (i, j), number in np.ndenumerate(equations.linear):
+        rates[i] += z[j].times(number)
+    for (i, a, b), number in np.ndenumerate(equations.hessian):
+        if a <= b and not vanishes(number):
             share = Fraction(1, 2) if a == b else Fraction(1)
-            rates[i] += graph.product(z[a], z[b]).times(share * equations.hessian[i, a, b])
+            rates[i] += graph.product(z[a], z[b]).times(share * number)
     return rates
-
-
-def driven(graph: Graph, equations: Equations, motion: Manufactured) -> list[Sum]:
-    """The loads z*' - N(z*) of a manufactured motion z*."""
-    wanted, rates = (
-        [Sum(constant) for constant in motion.constant],
-        [Sum() for _ in motion.constant],
-    )
-    for wave in motion.waves:
-        angle = graph.node(Time()).times(wave.frequency)
-        sine, cosine = graph.pair(Sine, Cosine, angle)
-        for i, (c, s) in enumerate(zip(wave.cosine, wave.sine, strict=True)):
-            wanted[i] += cosine.times(c) + sine.times(s)
-            rates[i] += cosine.times(wave.frequency * s) - sine.times(wave.frequency * c)
-    needed = natural(graph, equations, wanted)
-    return [rate - other for rate, other in zip(rates, needed, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from taylor_verify.exact.enclosure.operations import (
     State,
     Time,
 )
+from taylor_verify.numbers.irrational import Undecided
 
 # A polynomial of the time of a higher degree is a series like any other.
 _MOST_DEGREE: Final = 6
@@ -43,7 +44,7 @@ class Sum:
         terms = dict(self.terms)
         for node, number in other.terms.items():
             total = terms.pop(node, Fraction(0)) + number
-            if total:
+            if not vanishes(total):
                 terms[node] = total
         return Sum(self.constant + other.constant, terms)
 
@@ -52,9 +53,21 @@ class Sum:
 
     def times(self, number: Any) -> Sum:
         """The multiple by an exact number."""
-        if not number:
+        if vanishes(number):
             return Sum()
         return Sum(self.constant * number, {node: c * number for node, c in self.terms.items()})
+
+
+def vanishes(number: Any) -> bool:
+    """True for a number that is known to be zero; one that may be zero stays."""
+    try:
+        return not number
+    except Undecided:
+        return False
+
+
+def _is_one(number: Any) -> bool:
+    return isinstance(number, Fraction) and number == 1
 
 
 def total(sums: Iterable[Sum]) -> Sum:
@@ -89,7 +102,7 @@ class Graph:
 
     def split(self, value: Sum) -> tuple[Any, int]:
         """Number and node whose product an expression is; multiples of one expression share the node."""
-        if not value.constant and len(value.terms) == 1:
+        if len(value.terms) == 1 and vanishes(value.constant):
             ((node, number),) = value.terms.items()
             return number, node
         leading = value.terms[min(value.terms)] if value.terms else Fraction(1)
@@ -98,7 +111,7 @@ class Graph:
     def whole(self, value: Sum) -> int:
         """The node of an expression."""
         number, node = self.split(value)
-        return node if number == 1 else self._whole(value)
+        return node if _is_one(number) else self._whole(value)
 
     def _whole(self, value: Sum) -> int:
         time = self._places.get(Time())
@@ -198,7 +211,7 @@ def _in_balls(operation: Operation) -> Factors | None:
 
 
 def _factor(number: Any) -> arb | None:
-    return None if number == 1 else ball(number)
+    return None if _is_one(number) else ball(number)
 
 
 def _reached(operations: Sequence[Operation], outputs: Iterable[int]) -> set[int]:
@@ -246,8 +259,16 @@ def _with_parts(
             sums[inner] = sums.get(inner, 0) + factor * number
     return Bilinear(
         constant,
-        tuple((number, a, b) for (a, b), number in sorted(products.items(), key=_places) if number),
-        tuple((number, node) for node, number in sorted(sums.items(), key=_places) if number),
+        tuple(
+            (number, a, b)
+            for (a, b), number in sorted(products.items(), key=_places)
+            if not vanishes(number)
+        ),
+        tuple(
+            (number, node)
+            for node, number in sorted(sums.items(), key=_places)
+            if not vanishes(number)
+        ),
     )
 
 

@@ -151,7 +151,7 @@ class Loads:
         return not self.inputs.isdisjoint(CENTRE)
 
     def faults(self) -> Iterator[Fault]:
-        """Every fault of every text, also of definitions that no load names."""
+        """Yield the faults of all texts, also of definitions that no load names."""
         yield from _Reading(self, is_scan=True).faults()
 
 

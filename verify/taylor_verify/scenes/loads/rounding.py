@@ -27,11 +27,11 @@ def finished(
         steps = _on_rung(steps, rung)
     needed = _needed(steps, outputs)
     places = {old: new for new, old in enumerate(needed)}
-    kept = [
+    left = [
         Step(s.operation, tuple(places[i] for i in s.operands), s.number, s.name)
         for s in (steps[old] for old in needed)
     ]
-    return kept, [places[output] for output in outputs]
+    return left, [places[output] for output in outputs]
 
 
 def _needed(steps: Sequence[Step], outputs: Sequence[int]) -> list[int]:

@@ -44,7 +44,7 @@ class NoStep(ValueError):
 
 @dataclass(frozen=True)
 class Step:
-    """One operation on the steps at the places ``operands``.
+    """Operation on the steps at the places ``operands``.
 
     ``number`` is the value of a "number" and the exponent of a "power"; ``name`` is that of an "input".
     """
@@ -130,7 +130,7 @@ class Steps:
     def _unchanged(
         self, operation: str, a: int, b: int, p: Fraction | None, q: Fraction | None
     ) -> int | None:
-        """One of two operands, where the other changes nothing, or makes it zero."""
+        """The one of two operands, where the other changes nothing, or makes it zero."""
         if operation in ("min", "max") and a == b:
             return a
         if (operation in "+-" and q == 0) or (operation in "*/" and q == 1):

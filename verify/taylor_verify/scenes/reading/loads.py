@@ -65,7 +65,7 @@ def _hung(table: Table, name: str) -> Hung | None:
 
 
 class Vocabulary:
-    """What the texts of a scene may name: its tables [define], [space] and [tables]."""
+    """Words that the texts of a scene may use: its tables [define], [space] and [tables]."""
 
     def __init__(self, top: Table, folder: Path | None) -> None:
         self._folder = folder
@@ -97,7 +97,7 @@ class Vocabulary:
             known.add(name)
 
     def _names(self) -> Iterator[tuple[str, str]]:
-        """Every name that the tables make, with its place."""
+        """Yield all names that the tables make, with their places."""
         for name, _ in self.definitions:
             yield f"define.{name}", name
         for name, _ in self.tables:

@@ -13,7 +13,7 @@ from typing import Final
 from flint import arb, ctx
 
 from taylor_verify.exact.enclosure.placing import norm
-from taylor_verify.exact.enclosure.system import posed
+from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.reading.reader import load
