@@ -18,7 +18,7 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.exact.enclosure import functions, kinks, operations
+from taylor_verify.exact.enclosure import functions, kinks, operations, powers
 from taylor_verify.exact.enclosure.box import Box, within
 from taylor_verify.exact.enclosure.operations import Operation, State
 from taylor_verify.exact.enclosure.posing import posed
@@ -127,8 +127,8 @@ def test_motions_stay_in_their_balls(name: str, length: Fraction) -> None:
 
 # Functions of the time alone: what the operation leaves out is the only error of the step.
 OF_TIME = {
-    operations.Quotient: "1/(2 + t)", operations.Root: "sqrt(2 + t)", operations.Exponential: "exp(t)",
-    operations.Logarithm: "log(2 + t)", operations.Power: "(2 + t)^0.75", functions.Circular: "cos(t)",
+    powers.Quotient: "1/(2 + t)", powers.Root: "sqrt(2 + t)", powers.Exponential: "exp(t)",
+    powers.Logarithm: "log(2 + t)", powers.Power: "(2 + t)^0.75", functions.Circular: "cos(t)",
     functions.Hyperbolic: "cosh(t)", functions.HyperbolicTangent: "tanh(1 + t)",
     functions.Arctangent: "atan(1 + t)", functions.Angle: "atan2(1 + t, 2)", kinks.Norm: "norm(t, 1)",
 }  # fmt: skip
@@ -175,7 +175,7 @@ CURVED = (
 def test_the_width_of_a_node_counts(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where nodes are as wide as their own missed part alone, motions from a wide box leave it."""
     assert stays(TEXTS[name], APART)
-    for module in (operations, functions, kinks):
+    for module in (operations, powers, functions, kinks):
         for kind in vars(module).values():
             if isinstance(kind, type) and "apart" in vars(kind) and kind is not State:
                 monkeypatch.setattr(kind, "apart", lambda _, i, b: b.missed[i])
