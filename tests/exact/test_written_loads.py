@@ -55,7 +55,7 @@ current = ["1/4", 0, "-1/8"]
 def distances(scene: Scene, time: Fraction) -> list[tuple[mpf, mpf]]:
     """How far each vector of the enclosure is from the other integrator's, and its radius."""
     motion = solution(scene).motion([time], DIGITS)
-    end = end_of(scene, time, DIGITS)
+    end = end_of(scene, time, DIGITS).state
     pairs = []
     names = ["omega"] if scene.model == "euler" else ["linear_impulse", "angular_impulse"]
     with mp.workdps(DIGITS + 15):

@@ -16,17 +16,31 @@ STARTS = {
     "euler": "omega = [1, 2, 3]",
     "kirchhoff": "linear_impulse = [1, 2, 3]\nangular_impulse = [1, 2, 3]",
 }
+LOADS = ("define", "space", "tables")
 # The keys that a scene of each model may have, so that none of them is hinted at.
 KNOWN = {
-    ("body", "euler"): {"inertia", "moment"},
-    ("body", "kirchhoff"): {"clebsch", "energy", "ellipsoid", "mass_matrix", "force", "couple"},
+    ("body", "euler"): {"inertia", "moment", "weight", "buoyancy", "rotor", "damping"},
+    ("body", "kirchhoff"): {
+        *("clebsch", "energy", "ellipsoid", "mass_matrix", "mass", "force", "couple"),
+        *("weight", "buoyancy", "current", "damping"),
+    },
     ("initial", "euler"): {"omega", "attitude"},
     ("initial", "kirchhoff"): {
         *("linear_impulse", "angular_impulse", "linear_velocity", "angular_velocity"),
         *("attitude", "centre"),
     },
     ("time", ""): {"start", "end", "samples", "at"},
-    ("", ""): {"title", "model", "source", "track", "body", "initial", "time", "manufactured"},
+    ("", ""): {
+        "title",
+        "model",
+        "source",
+        "track",
+        "body",
+        "initial",
+        "time",
+        "manufactured",
+        *LOADS,
+    },
 }
 
 
@@ -44,9 +58,11 @@ def refusal(model: str, part: str, key: str) -> str:
 
 
 TRIED = [
-    *(("kirchhoff", "body", key, "`mass_matrix`") for key in ("mass", "added_mass", "inertia")),
-    *(("kirchhoff", "body", key, "weight and buoyancy") for key in ("gravity", "buoyancy")),
-    ("kirchhoff", "body", "drag", "ideal"),
+    *(("kirchhoff", "body", key, "`mass_matrix`") for key in ("m_rb", "added_mass", "inertia")),
+    *(("kirchhoff", "body", key, "write `weight = {") for key in ("gravity", "cob")),
+    ("kirchhoff", "body", "drag", '"-20*u1 - 130*abs(u1)*u1"'),
+    ("kirchhoff", "body", "thrust", "text in t and the state"),
+    ("kirchhoff", "body", "flow", "write `current`"),
     ("kirchhoff", "body", "torque", "`couple`"),
     ("kirchhoff", "body", "linear_damping", "write `damping`"),
     ("kirchhoff", "initial", "velocity", "`linear_velocity`"),
@@ -55,7 +71,9 @@ TRIED = [
     ("kirchhoff", "initial", "quaternion", "`attitude = [q0, q1, q2, q3]`"),
     ("euler", "body", "mass", "does not enter"),
     ("euler", "body", "added_mass", '`model = "kirchhoff"`'),
-    ("euler", "body", "gravity", "no moment about the centre of mass"),
+    ("euler", "body", "gravity", "write `weight = {"),
+    ("euler", "body", "drag", '"-0.1*abs(w1)*w1"'),
+    ("euler", "body", "gravity_gradient", "I33 - I22"),
     ("euler", "body", "torque", "`moment`"),
     ("euler", "body", "Ixx", "`inertia`"),
     ("euler", "body", "wheels", "write `rotor`"),
@@ -66,7 +84,7 @@ TRIED = [
     ("euler", "initial", "position", "not modelled"),
     ("euler", "initial", "quaternion", "scalar first"),
     ("euler", "time", "dt", "`samples`"),
-    ("euler", "", "gravity", "not modelled"),
+    ("euler", "", "gravity", "`weight`"),
     ("euler", "", "tolerance", "holds no tolerance"),
 ]
 

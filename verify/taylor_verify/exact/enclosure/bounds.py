@@ -48,7 +48,7 @@ class Bounds:
         bounds = cls.__new__(cls)
         bounds.series, bounds.tape, bounds.order = series, series.tape, series.order
         bounds._measure([list(map(mul, row, powers)) for row in series.forward])
-        bounds.missed = [ZERO] * len(bounds.sizes)
+        bounds._leave_nothing_out()
         return bounds
 
     @classmethod
@@ -57,8 +57,13 @@ class Bounds:
         bounds = cls.__new__(cls)
         bounds.series, bounds.tape, bounds.order = series, series.tape, series.order
         bounds._measure([row[:1] for row in series.forward])
-        bounds.missed = [ZERO] * len(bounds.sizes)
+        bounds._leave_nothing_out()
         return bounds
+
+    def _leave_nothing_out(self) -> None:
+        self.missed = [ZERO] * len(self.sizes)
+        # Kinks that lie within the step are not met.
+        self._least_under = {}
 
     def _measure(self, coefficients: Sequence[Sequence[arb]]) -> None:
         self.sizes = [[entry.abs_upper() for entry in row] for row in coefficients]

@@ -53,13 +53,15 @@ def least_length(length: Fraction) -> Fraction:
     return abs(length) * power_of_two(-(ctx.prec // 2 + _SPARE_BITS))
 
 
-def plan(series: Series, box: Box) -> Plan:
+def plan(series: Series, box: Box, least: Fraction) -> Plan:
     """The step that a series is for, cut before the next kink or flat across it.
+
+    Steps come no nearer to a kink than ``least``, and those across it are at least so long.
 
     Raises Touched for a kink that may be no more than touched.
     """
     whole = Fraction(abs(series.step))
-    here, ahead = _Kinks(series, box).sorted()
+    here, ahead = _Kinks(series, box, least).sorted()
     flat = dict(here)
     for kink in ahead:
         if kink.distance <= 2 * max(kink.nearest, *flat.values(), Fraction(0)):
@@ -82,10 +84,9 @@ def _short(length: Fraction) -> Fraction:
 class _Kinks:
     """The kinks of a series: those at its beginning, with the length of a step across, and those ahead."""
 
-    def __init__(self, series: Series, box: Box) -> None:
-        self._series, self._box = series, box
+    def __init__(self, series: Series, box: Box, least: Fraction) -> None:
+        self._series, self._box, self._least = series, box, least
         self._length = Fraction(abs(series.step))
-        self._least = least_length(self._length)
         self._apart = self._distances()
 
     def _distances(self) -> Sequence[arb]:

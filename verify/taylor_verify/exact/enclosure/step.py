@@ -138,14 +138,19 @@ class Stepper:
             series = Series(tape, box.point, now, first, self.order)
         except Kink as kink:
             # It lies within the rounding of the start.
-            return self._flat(tape, box, now, left, frozenset((kink.node,)), least_length(left))
+            least = least_length(self._usual(tape, box, now, guess))
+            return self._flat(tape, box, now, left, frozenset((kink.node,)), least)
         frame = self._frame(series)
         length = self._length(box, series, frame, left)
         if length != first:
             series.rescale(length)
             frame = scaled(frame, ball(length / first))
         if tape.has_kinks:
-            ahead = plan(series, box)
+            usual = abs(length)
+            if length == left:
+                # What is left may be next to nothing.
+                usual = max(usual, self._usual(tape, box, now, guess))
+            ahead = plan(series, box, least_length(usual))
             if ahead.flat:
                 return self._flat(tape, box, now, left, ahead.flat, abs(ahead.length))
             if ahead.length != length:
@@ -191,6 +196,10 @@ class Stepper:
             return length
         limit = power_of_two(ceil(_log2(length) - growth))
         return length if abs(length) <= limit else limit * (1 if left > 0 else -1)
+
+    def _usual(self, tape: Tape, box: Box, now: Fraction, guess: Fraction) -> Fraction:
+        """Return a guess of the length of a step that no end cuts short."""
+        return abs(self._first(tape, box, now, guess, guess))
 
     def _length(self, box: Box, series: Series, frame: Rows, left: Fraction) -> Fraction:
         rows = series.rows

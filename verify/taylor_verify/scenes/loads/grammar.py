@@ -18,7 +18,11 @@ from taylor_verify.scenes.loads.steps import FUNCTIONS, NoStep, Steps
 
 MOST_CHARACTERS: Final = 4000
 MOST_DEPTH: Final = 100
+# The depth of a text with all that its names lead to; a name counts as this many brackets.
+_MOST_DEPTH_IN_ALL: Final = 150
+_DEPTH_OF_NAME: Final = 3
 _MOST_EXPONENT: Final = 5000
+_NOT_SO_DEEP: Final = f"brackets, or sums without brackets, at most {MOST_DEPTH} deep"
 _LITERAL: Final = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?")
 _NOT_ALLOWED: Final = re.compile(r"[^\w \t.,+\-*/^()<>=]|[^\x00-\x7f]")
 _OPERATIONS: Final[dict[type[ast.operator], str]] = {
@@ -30,21 +34,22 @@ ALL_FUNCTIONS: Final = (*FUNCTIONS, *_OTHERS, *_OF_SEVERAL)
 
 
 class Fault(NamedTuple):
-    """A fault of a text: its column, what was expected there, and what came."""
+    """A fault of a text: the place of the text, the column, what was expected there, and what came."""
 
+    place: str
     column: int
     expected: str
     got: str
 
 
 class Unread(Exception):
-    """A text, or a part of it, that has faults; they are noted."""
+    """A text, or a name that leads to one, that has faults; they are noted."""
 
 
 class Grammar:
     """Reads texts into steps.
 
-    ``named`` gives the step of a name, and raises NoStep for one that is unknown. ``after`` says whether a
+    ``named`` gives the step of a name. It raises NoStep for one that is unknown. ``after`` says whether a
     switch is past: it belongs to the later piece. ``faults`` are those of the texts read so far.
     """
 
@@ -53,26 +58,29 @@ class Grammar:
     ) -> None:
         self.steps, self._named, self._after = steps, named, after
         self.faults: list[Fault] = []
-        self._source = Source.of("0")
+        self._source = Source.of("0", "")
+        self._outer_depth = 0
 
-    def read(self, text: str) -> int:
-        """The step that a text writes. Raises Unread after noting its faults."""
+    def read(self, text: str, place: str = "") -> int:
+        """The step that a text writes. Raises Unread after noting its faults with its place."""
         outer, before = self._source, len(self.faults)
-        self._source = Source.of(text)
+        self._source = Source.of(text, place)
         try:
-            place = self._place(self._tree(text), 0)
+            step = self._place(self._tree(text), 0)
         finally:
             self._source = outer
-        if place is None or len(self.faults) > before:
+        if step is None or len(self.faults) > before:
             raise Unread
-        return place
+        return step
 
     def _tree(self, text: str) -> ast.expr:
         if len(text) > MOST_CHARACTERS:
             raise self._refusal(0, f"at most {MOST_CHARACTERS} characters", "more")
         if strange := _NOT_ALLOWED.search(text):
             expected = "numbers, names, brackets and + - * / ^"
-            self.faults.append(Fault(strange.start() + 1, expected, ascii(strange[0])))
+            self.faults.append(
+                Fault(self._source.place, strange.start() + 1, expected, ascii(strange[0]))
+            )
             raise Unread
         try:
             with warnings.catch_warnings():
@@ -85,22 +93,24 @@ class Grammar:
                 offset, "an expression", f"`{rest}`" if rest else "its end"
             ) from None
         except (ValueError, RecursionError, MemoryError):
-            raise self._refusal(0, f"brackets at most {MOST_DEPTH} deep", "deeper ones") from None
+            raise self._refusal(0, _NOT_SO_DEEP, "a deeper one") from None
 
     def _refusal(self, offset: int, expected: str, got: str) -> Unread:
-        self.faults.append(Fault(self._source.column(offset), expected, got))
+        self.faults.append(Fault(self._source.place, self._source.column(offset), expected, got))
         return Unread()
 
     # The tree. A part with a fault is None, and so is everything that is made of it.
 
     def _place(self, node: ast.expr, depth: int) -> int | None:
         if depth > MOST_DEPTH:
-            return self._fault(node, f"brackets at most {MOST_DEPTH} deep", "deeper ones")
+            return self._fault(node, _NOT_SO_DEEP, "a deeper one")
+        if self._outer_depth + depth > _MOST_DEPTH_IN_ALL:
+            return self._fault(node, "a shorter chain of names", "one that is too deep")
         match node:
             case ast.Constant():
                 return self._number(node)
             case ast.Name(id=name):
-                return self._made(node, lambda: self._named(name))
+                return self._made(node, lambda: self._meaning(name, depth))
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self._place(operand, depth + 1)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
@@ -119,6 +129,13 @@ class Grammar:
             case ast.IfExp(test=test, body=body, orelse=other):
                 return self._choice(test, body, other, depth)
         return self._fault(node, "numbers, names, + - * / ^ and functions", self._shown(node))
+
+    def _meaning(self, name: str, depth: int) -> int:
+        outer, self._outer_depth = self._outer_depth, self._outer_depth + depth + _DEPTH_OF_NAME
+        try:
+            return self._named(name)
+        finally:
+            self._outer_depth = outer
 
     def _negative(self, node: ast.expr, a: int) -> int | None:
         zero = self.steps.number(Fraction(0))
@@ -238,10 +255,12 @@ class Grammar:
             return make()
         except NoStep as fault:
             return self._fault(node, fault.expected, fault.got)
+        except Unread:
+            return None
 
     def _fault(self, node: ast.expr, expected: str, got: str) -> int | None:
         """Note a fault, and return what a part with one is."""
-        self.faults.append(Fault(self._source.column(node.col_offset), expected, got))
+        self._refusal(node.col_offset, expected, got)
         return None
 
     def _shown(self, node: ast.expr) -> str:
@@ -254,17 +273,21 @@ def _arguments(count: int) -> str:
 
 
 class Source(NamedTuple):
-    """A text as Python writes it, with the column in the text as written of each character."""
+    """A text as Python writes it, with the column in the text as written of each character.
+
+    ``place`` is where the text stands in its scene.
+    """
 
     python: str
     columns: list[int]
+    place: str
 
     @classmethod
-    def of(cls, text: str) -> Source:
+    def of(cls, text: str, place: str) -> Source:
         begin = len(text) - len(text.lstrip())
         written = [(text[i], i + 1) for i in range(begin, len(text))]
         pairs = [(c, column) for sign, column in written for c in ("**" if sign == "^" else sign)]
-        return cls("".join(c for c, _ in pairs), [column for _, column in pairs])
+        return cls("".join(c for c, _ in pairs), [column for _, column in pairs], place)
 
     def column(self, offset: int) -> int:
         """The column of an offset; the one behind the end for what is missing there."""

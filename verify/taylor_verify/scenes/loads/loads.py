@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import keyword
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain, pairwise
 from typing import Final, NamedTuple
 
@@ -45,10 +46,8 @@ def names(model: str) -> frozenset[str]:
     return frozenset(("t", "pi", *_OF_BODY[model], *QUATERNION, *ROTATION, *inertia))
 
 
-# No scene may define these, so that a text has one meaning in both models.
-TAKEN: Final = frozenset(
-    chain(names("euler"), names("kirchhoff"), ALL_FUNCTIONS, ("if", "else", "and", "or", "not"))
-)
+# No scene may define these, so that a text has one meaning in both models. Words of Python are no names.
+TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), ALL_FUNCTIONS, keyword.kwlist))
 
 
 class Hung(NamedTuple):
@@ -151,8 +150,8 @@ class Loads:
         """True if a load depends on the centre."""
         return not self.inputs.isdisjoint(CENTRE)
 
-    def faults(self) -> Iterator[tuple[str, Fault]]:
-        """The faults of all texts, by the place of the text in the scene."""
+    def faults(self) -> Iterator[Fault]:
+        """Yield the faults of all texts, also of definitions that no load names."""
         yield from _Reading(self, is_scan=True).faults()
 
 
@@ -179,17 +178,21 @@ class _Reading:
         self._space = {f"{n}{i + 1}": (n, i) for n, _ in loads.space for i in range(3)}
         self._vectors = dict(loads.space)
         self._places: dict[str, int] = {}
+        self._faulty: set[str] = set()
         self._open: list[str] = []
 
     def outputs(self) -> list[int]:
         """The steps of the loads: three of a moment, or six of force and couple."""
         entries = dict(self._loads.vectors)
         vectors = [
-            [self._entry(entry) for entry in entries.get(name, ZERO_VECTOR)]
+            [
+                self._entry(entry, f"body.{name}[{i}]")
+                for i, entry in enumerate(entries.get(name, ZERO_VECTOR))
+            ]
             for name in VECTORS[self._loads.model]
         ]
         for hung in self._loads.hung:
-            force = [self._in_body_axes(hung.force, j) for j in range(3)]
+            force = [self._in_body_axes(hung.force, j, "body") for j in range(3)]
             parts = [force, self._moment(hung.at, force)][-len(vectors) :]
             for vector, part in zip(vectors, parts, strict=True):
                 vector[:] = [
@@ -197,15 +200,19 @@ class _Reading:
                 ]
         return [place for vector in vectors for place in vector]
 
-    def _entry(self, entry: Entry) -> int:
-        return self._grammar.read(entry) if isinstance(entry, str) else self.steps.number(entry)
+    def _entry(self, entry: Entry, place: str) -> int:
+        if isinstance(entry, str):
+            return self._grammar.read(entry, place)
+        return self.steps.number(entry)
 
-    def _in_body_axes(self, vector: Sequence[Entry], j: int) -> int:
+    def _in_body_axes(self, vector: Sequence[Entry], j: int, place: str) -> int:
         """Component j of R^T v, for a vector by its components in space."""
         return self.steps.total(
             [
                 self.steps.combined(
-                    "*", self.steps.input(f"r{i + 1}{j + 1}"), self._entry(vector[i])
+                    "*",
+                    self.steps.input(f"r{i + 1}{j + 1}"),
+                    self._entry(vector[i], f"{place}[{i}]"),
                 )
                 for i in range(3)
             ]
@@ -229,19 +236,24 @@ class _Reading:
             if name in self._open:
                 way = " -> ".join((*self._open, name))
                 raise NoStep("a definition without itself", way)
+            if name in self._faulty:
+                raise Unread
             self._open.append(name)
             try:
                 self._places[name] = self._meaning(name)
+            except Unread:
+                self._faulty.add(name)
+                raise
             finally:
                 self._open.pop()
         return self._places[name]
 
     def _meaning(self, name: str) -> int:
         if name in self._definitions:
-            return self._defined(name, lambda: self._entry(self._definitions[name]))
+            return self._entry(self._definitions[name], f"define.{name}")
         if name in self._space:
             vector, j = self._space[name]
-            return self._defined(name, lambda: self._in_body_axes(self._vectors[vector], j))
+            return self._in_body_axes(self._vectors[vector], j, f"space.{vector}")
         if name in self._tables:
             return self._tabulated(self._tables[name])
         if name == "pi":
@@ -254,12 +266,6 @@ class _Reading:
         if name in names(self._loads.model):
             return self.steps.input(name)
         raise NoStep("a known name", f"`{name}`")
-
-    def _defined(self, name: str, read: Callable[[], int]) -> int:
-        try:
-            return read()
-        except Unread:
-            raise NoStep(f"`{name}` without faults", "one that has some") from None
 
     def _tabulated(self, table: Table) -> int:
         """The polynomial of a table, by Horner's rule."""
@@ -294,25 +300,30 @@ class _Reading:
 
     # Faults.
 
-    def faults(self) -> Iterator[tuple[str, Fault]]:
+    def faults(self) -> Iterator[Fault]:
         loads = self._loads
-        places: list[tuple[str, Entry]] = [
-            (f"body.{name}[{i}]", entry)
-            for name, entries in loads.vectors
-            for i, entry in enumerate(entries)
-        ]
-        places += [(f"define.{name}", entry) for name, entry in loads.definitions]
-        places += [
-            (f"space.{name}[{i}]", entry)
-            for name, entries in loads.space
-            for i, entry in enumerate(entries)
-        ]
-        for place, entry in places:
-            self._grammar.faults.clear()
-            try:
-                self._entry(entry)
-            except (Unread, NoStep):
-                yield from ((place, fault) for fault in self._grammar.faults)
+        for name, entries in loads.vectors:
+            for i, entry in enumerate(entries):
+                self._look_at(f"body.{name}[{i}]", partial(self._entry, entry))
+        for name in self._definitions:
+            self._look_at(f"define.{name}", partial(self._definition, name))
+        for name, entries in loads.space:
+            for i, entry in enumerate(entries):
+                self._look_at(f"space.{name}[{i}]", partial(self._entry, entry))
+        # The components of a vector share their texts.
+        yield from dict.fromkeys(self._grammar.faults)
+
+    def _definition(self, name: str, place: str) -> int:
+        del place
+        return self._named(name)
+
+    def _look_at(self, place: str, read: Callable[[str], int]) -> None:
+        try:
+            read(place)
+        except NoStep as fault:
+            self._grammar.faults.append(Fault(place, 1, fault.expected, fault.got))
+        except Unread:
+            pass
 
 
 def _between(begin: Fraction | None, end: Fraction | None) -> Fraction:

@@ -16,6 +16,8 @@ from typing import Final
 MOST_STEPS: Final = 2000
 MOST_POWER: Final = 64
 MOST_BITS: Final = 100_000
+# Of all rational numbers that are combined: a few products of the longest ones take a tenth of a second.
+MOST_BITS_IN_ALL: Final = 4_000_000
 
 # Operations with one operand, and what they make of zero, if that is rational.
 FUNCTIONS: Final[Mapping[str, int | None]] = {
@@ -60,6 +62,13 @@ class Steps:
         self.steps: list[Step] = []
         self._places: dict[Step, int] = {}
         self._lines: list[tuple[Fraction, Fraction] | None] = []
+        self._bits = 0
+
+    def _count_bits(self, *values: Fraction) -> None:
+        """Count what exact arithmetic works on. Raises NoStep where it is too much for one scene."""
+        self._bits += sum(v.numerator.bit_length() + v.denominator.bit_length() for v in values)
+        if self._bits > MOST_BITS_IN_ALL:
+            raise NoStep(f"exact numbers of at most {MOST_BITS_IN_ALL} bits in all", "more")
 
     def number(self, value: Fraction) -> int:
         """The place of an exact number. Raises NoStep for a number of too many digits."""
@@ -101,6 +110,7 @@ class Steps:
         if operation == "/" and q == 0:
             raise NoStep("a divisor that is not zero", "0")
         if p is not None and q is not None:
+            self._count_bits(p, q)
             return self.number(_ARITHMETIC[operation](p, q))
         if (alike := self._unchanged(operation, a, b, p, q)) is not None:
             return alike
@@ -135,6 +145,7 @@ class Steps:
         first, second = self._lines[a], self._lines[b]
         if first is None or second is None or operation in ("min", "max"):
             return None
+        self._count_bits(*first, *second)
         if operation in "+-":
             rule = _ARITHMETIC[operation]
             return rule(first[0], second[0]), rule(first[1], second[1])
@@ -153,6 +164,7 @@ class Steps:
         """The place of a function of one step."""
         value = self.value(a)
         if value is not None:
+            self._count_bits(value)
             if name == "abs":
                 return self.number(abs(value))
             if name == "log" and value == 1:
@@ -178,6 +190,7 @@ class Steps:
         values = [self.value(place) for place in places]
         known = [value for value in values if value is not None]
         if len(known) == len(values):
+            self._count_bits(*known, *known)
             return self.function("sqrt", self.number(sum((v * v for v in known), Fraction(0))))
         moving = tuple(p for p, value in zip(places, values, strict=True) if value != 0)
         return (
@@ -196,6 +209,7 @@ class Steps:
             raise NoStep(f"a whole power of at most {MOST_POWER}", str(exponent))
         value = self.value(a)
         if value is not None:
+            self._count_bits(value)
             if value == 0 and exponent < 0:
                 raise NoStep("a base that is not zero", "0")
             if exponent.denominator == 1:

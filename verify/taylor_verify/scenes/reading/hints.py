@@ -11,7 +11,10 @@ from types import MappingProxyType
 from typing import Final
 
 _TOP: Final = """\
-gravity fluid environment drag forces: not modelled; loads that are constant in body axes stand in [body]
+gravity fluid environment drag forces current: loads stand in [body]: `weight`, `buoyancy`, `current`, and
+  `moment`, or `force` and `couple`, whose entries may be text such as "-0.1*abs(w1)*w1"
+constants parameters variables definitions: write [define], names for numbers and expressions
+loads: write them in [body]: `moment`, or `force` and `couple`
 tolerance tol rtol atol: a scene holds no tolerance: the bound follows from precision, steps and
   conditioning
 units unit: leave it out: units are any consistent set, and angles are in radians
@@ -26,34 +29,44 @@ _EULER_BODY: Final = """\
 ixx iyy izz ixy ixz iyz i inertia_tensor moments principal_moments moments_of_inertia moment_of_inertia:
   write `inertia`: three principal moments, or the tensor [[Ixx, Ixy, Ixz], [Ixy, Iyy, Iyz], [Ixz, Iyz,
   Izz]] with Ixy = -int xy dm
-mass m density volume: leave it out: the mass does not enter the rotation, and `inertia` holds what does
+mass m density volume: leave it out: the mass does not enter the rotation, and `inertia` holds what does;
+  a force is written as `weight`
 com cog centre_of_mass center_of_mass: leave it out: `inertia` is about the centre of mass, or about a
   point held fixed
-gravity g weight buoyancy: not modelled: gravity has no moment about the centre of mass; a moment that is
-  constant in body axes is `moment`
-torque torques couple moments_applied: write `moment`, constant in body axes
-force: a force does not turn a body; write its moment, constant in body axes, as `moment`
+gravity g: write `weight = { force = [0, 0, -9.81], at = [0, 0, 0.1] }`, a force in space axes at a point of
+  the body, for a body whose origin is held; gravity has no moment about the centre of mass
+gravity_gradient: write it as `moment`: with the direction of the centre in [space] as `o`, its first entry
+  is "3*n^2*(I33 - I22)*o2*o3" for principal axes
+torque torques couple moments_applied control thrusters: write `moment`, in body axes: numbers, or text in
+  t and the state such as "0.1*sin(2*t) - k*w1"
+force: a force does not turn a body; write its moment, in body axes, as `moment`, or a force that is
+  constant in space as `weight`
+current: a fluid is `model = "kirchhoff"`, there as `current`
 mass_matrix added_mass fluid_added_mass fluid_density: a body in a fluid is `model = "kirchhoff"`, there
   as `mass_matrix`
 wheels reaction_wheels: write `rotor`, the momentum of all wheels
 angular_damping linear_damping damping_coefficient: write `damping`, the rate at which the momentum decays
-drag friction viscosity: not modelled: drag has no exact motion to compare with
+drag friction viscosity: write it in `moment`, as in "-0.1*w1" or "-0.1*abs(w1)*w1"
 omega angular_velocity attitude quaternion: it stands in [initial]
 """
 _KIRCHHOFF_BODY: Final = """\
-mass m added_mass fluid_added_mass inertia inertia_tensor inertia_matrix m_a m_rb ixx iyy izz ixy ixz iyz
-  added_inertia centre_of_mass center_of_mass com cog: write `mass_matrix`, the 6x6 matrix of (x, y) = M
-  (U, Omega), which is the rigid body's inertia plus the added mass
+m fluid_added_mass inertia_tensor inertia_matrix m_a m_rb ixx iyy izz ixy ixz iyz added_inertia
+  center_of_mass com cog: write `mass`, `inertia`, `centre_of_mass` and `added_mass`, or `mass_matrix`, the
+  6x6 matrix of (x, y) = M (U, Omega), which is the rigid body's inertia plus the added mass
+inertia centre_of_mass added_mass: write `mass` beside it, or all of them as one `mass_matrix`
 semi_axes density fluid_density rho: write `ellipsoid = { semi_axes = [..], density = .., fluid_density =
   .. }`, or `mass_matrix`
-gravity g weight buoyancy centre_of_buoyancy cob volume: not modelled: weight and buoyancy balance at the
-  origin; loads that are constant in body axes are `force` and `couple`
-drag lift friction viscosity linear_drag quadratic_drag current circulation: not modelled: the fluid is
-  ideal, and an exact motion with viscous forces is not known
+gravity g centre_of_buoyancy cob volume: write `weight = { force = [0, 0, 299], at = [0, 0, 0.02] }` and
+  `buoyancy` likewise: forces in space axes at a point of the body
+drag lift friction viscosity linear_drag quadratic_drag: write it in `force` and `couple`, as in
+  "-20*u1 - 130*abs(u1)*u1"
+flow current_velocity: write `current`, the velocity of the fluid, in space axes
+circulation: not modelled as such: write its force and couple as text in `force` and `couple`
 angular_damping linear_damping damping_coefficient: write `damping`, the rate at which both impulses decay
 rotor wheels reaction_wheels: not modelled: wheels turn in a body of the model euler
-torque torques moment: write `couple`, constant in body axes
-thrust forces wrench propeller: write `force` and `couple`, constant in body axes
+torque torques moment: write `couple`, in body axes: numbers, or text in t and the state
+thrust forces wrench propeller thrusters: write `force` and `couple`, in body axes: numbers, or text in t
+  and the state such as "9*exp(-t/5)"
 linear_velocity angular_velocity linear_impulse angular_impulse attitude: it stands in [initial]
 """
 _INITIAL: Final = """\

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain, pairwise
@@ -21,19 +21,33 @@ from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
 from taylor_verify.scenes.reading.faults import Faults, shown
 from taylor_verify.scenes.reading.measured import columns
-from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral
+from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral, quantity
 from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 HANGING: Final = ("weight", "buoyancy")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_WORD: Final = re.compile(r"[^\W\d_]+|[%°]")
+_UNITS: Final = frozenset(
+    ("deg", "rad", "rpm", "rev", "s", "ms", "min", "h", "m", "mm", "cm", "km", "g", "kg", "N", "mN", "kN",
+     "Nm", "mNm", "kNm", "Hz", "%", "°")
+)  # fmt: skip
 MOST_ROWS: Final = 10_000
 
 
 def entry(value: object) -> Any:
-    """Return a number, or a text that is no number as it is; raises ValueError for anything else."""
-    if isinstance(value, str) and not is_numeral(value.strip()):
+    """Return a number, or a text that is no number as it is.
+
+    Raises ValueError for anything else, and for a number with a unit.
+    """
+    if isinstance(value, str) and not is_numeral(value.strip()) and not _has_unit(value):
         return value
     return exact_number(value)
+
+
+def _has_unit(text: str) -> bool:
+    """Return True for a number and a unit, such as "3 N m", which no product without `*` is."""
+    parts = quantity(text)
+    return parts is not None and set(_WORD.findall(parts[1])) <= _UNITS
 
 
 def hanging(table: Table) -> tuple[Hung, ...] | None:
@@ -55,12 +69,11 @@ class Vocabulary:
 
     def __init__(self, top: Table, folder: Path | None) -> None:
         self._folder = folder
+        self.is_complete = True
         self.definitions = self._named(top, "define", self._definition)
         self.space = self._named(top, "space", self._direction)
         self.tables = self._named(top, "tables", self._data)
-        vectors = [f"{name}{i}" for name, _ in self.space for i in (1, 2, 3)]
-        single = [name for part in (self.definitions, self.tables) for name, _ in part]
-        self._check_names(top.faults, [*single, *vectors])
+        self._check_names(top.faults)
 
     def _named(
         self, top: Table, key: str, read: Callable[[Table, str], Any]
@@ -72,15 +85,25 @@ class Vocabulary:
         for name, _ in pairs:
             if not _NAME.fullmatch(name):
                 table.fault("a name of letters, digits and _", f"`{name[:40]}`", name[:40])
-        return tuple((name, value) for name, value in pairs if value is not None)
+        known = tuple((name, value) for name, value in pairs if value is not None)
+        self.is_complete &= len(known) == len(pairs)
+        return known
 
-    @staticmethod
-    def _check_names(faults: Faults, names: list[str]) -> None:
+    def _check_names(self, faults: Faults) -> None:
         known: set[str] = set()
-        for name in names:
+        for place, name in self._names():
             if name in TAKEN or name in known:
-                faults.add("a name that is free", f"`{name}`", "define, space or tables")
+                faults.add("a name that is free", f"`{name}`", place)
             known.add(name)
+
+    def _names(self) -> Iterator[tuple[str, str]]:
+        """Yield all names that the tables make, with their places."""
+        for name, _ in self.definitions:
+            yield f"define.{name}", name
+        for name, _ in self.tables:
+            yield f"tables.{name}", name
+        for name, _ in self.space:
+            yield from ((f"space.{name}", f"{name}{i}") for i in (1, 2, 3))
 
     @staticmethod
     def _definition(table: Table, name: str) -> Entry | None:
@@ -142,21 +165,21 @@ def loaded(
 ) -> Body | None:
     """Return the body under its texts, with what these name, from this start; None after a fault."""
     words = Vocabulary(top, folder)
-    if body is None or body.loads is None:
-        return body
+    if body is None:
+        return None
+    # What no load names is read all the same.
     loads = replace(
-        body.loads,
+        body.loads or Loads(body.MODEL, ()),
         definitions=words.definitions,
         space=words.space,
         tables=words.tables,
         origin=start or Fraction(0),
     )
-    if top.faults.lines or start is None:
-        return None
-    for place, fault in loads.faults():
-        top.faults.add(fault.expected, fault.got, f"{place}, column {fault.column}")
-    if top.faults.lines:
-        return None
+    if words.is_complete:
+        for place, column, expected, got in loads.faults():
+            top.faults.add(expected, got, f"{place}, column {column}")
+    if top.faults.lines or body.loads is None:
+        return body
     try:
         _ = loads.switches
     except NoStep as fault:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+from fractions import Fraction
 from pathlib import Path
 from typing import Final
 
 from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.scenes.reading.regular_file import read_bytes
-from taylor_verify.scenes.reading.table import Table, exact_number
+from taylor_verify.scenes.reading.table import Table, complete, exact_number
 from taylor_verify.scenes.tensors import Vector
 
 _MOST_BYTES: Final = Limit(2**22, "bytes", "ten thousand rows of many columns")
@@ -39,7 +40,8 @@ def columns(
     if not 2 <= len(rows) <= most_rows + 1:
         table.fault(f"1 to {most_rows} rows", str(len(rows) - 1), "file")
         return None
-    return _numbers(table, rows, head.index(time)), _numbers(table, rows, head.index(value))
+    times, values = (_numbers(table, rows, head.index(column)) for column in (time, value))
+    return None if times is None or values is None else (times, values)
 
 
 def _inside(table: Table, folder: Path | None, name: str) -> Path | None:
@@ -49,15 +51,19 @@ def _inside(table: Table, folder: Path | None, name: str) -> Path | None:
         table.fault(expected, "a scene that is in no folder", "file")
         return None
     root = folder.resolve()
-    path = (root / name).resolve()
+    try:
+        path = (root / name).resolve()
+    except (OSError, ValueError):  # a loop of links, a NUL, or half a character
+        table.fault(expected, "a name that no file has", "file")
+        return None
     if not path.is_relative_to(root):
         table.fault(expected, name[:60], "file")
         return None
     return path
 
 
-def _numbers(table: Table, rows: list[list[str]], place: int) -> Vector:
-    numbers = []
+def _numbers(table: Table, rows: list[list[str]], place: int) -> Vector | None:
+    numbers: list[Fraction | None] = []
     for line, row in enumerate(rows[1:], 2):
         try:
             numbers.append(exact_number(row[place].strip()))
@@ -66,4 +72,5 @@ def _numbers(table: Table, rows: list[list[str]], place: int) -> Vector:
             table.fault(
                 reason, (row[place][:40] if place < len(row) else "nothing"), f"file, line {line}"
             )
-    return tuple(numbers)
+            numbers.append(None)
+    return complete(numbers)

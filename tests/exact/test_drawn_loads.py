@@ -1,0 +1,69 @@
+"""Motions under drawn loads lie within their radii, by an integrator that shares nothing with them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from random import Random
+
+import pytest
+from builders.drawn_loads import Drawn, drawn
+from builders.written_loads import End, end_of, rotation
+from mpmath import mp, mpf
+
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.scenes.motion import Motion
+
+DIGITS = 16
+# What may be refused or given up.
+MOST_GIVEN_UP = 0.02
+
+
+def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
+    """The quantities that are farther from the other integrator's than their radius and its error."""
+    n = 3 if case.scene.model == "euler" else 6
+    state, q, centre = end.state[:n], end.state[n : n + 4], end.state[n + 4 :]
+    vectors = {"attitude": [entry for row in rotation(q) for entry in row]}
+    if n == 3:
+        vectors["omega"] = state
+    else:
+        vectors |= {"linear_impulse": state[:3], "angular_impulse": state[3:], "centre": centre}
+    far = []
+    for name, other in vectors.items():
+        size = mp.norm(other)
+        middle = [e for row in motion[name][0] for e in (row if name == "attitude" else [row])]
+        apart = mp.norm([a - b for a, b in zip(middle, other, strict=True)])
+        radius = motion.radius_of(name)[0] * (size or 1)
+        if not apart <= radius + 10 * end.error + mpf(10) ** -(DIGITS + 10):
+            far.append(f"{name}: {mp.nstr(apart, 3)} of {mp.nstr(radius, 3)}")
+    return far
+
+
+def answers(seed: int, count: int) -> Counter[str]:
+    """What became of so many drawn scenes; a motion outside its radius fails with its scene."""
+    random, reasons = Random(seed), Counter[str]()
+    while reasons.total() < count:
+        case = drawn(random)
+        end = end_of(case.scene, case.elapsed, DIGITS, 1, case.switches, columns=7)
+        if end.crosses or end.error > mpf(10) ** -(DIGITS - 2):
+            # The other integrator does not end its steps at kinks, or would need more of them.
+            reasons["left out"] += 0
+            continue
+        try:
+            motion = solution(case.scene).motion([case.elapsed], DIGITS)
+        except Unsettled as refused:
+            reasons[str(refused)] += 1
+            continue
+        with mp.workdps(DIGITS + 15):
+            assert not outside(case, motion, end), case.text
+        reasons["right"] += 1
+    return reasons
+
+
+@pytest.mark.parametrize(
+    ("seed", "count"), [(1, 100), pytest.param(2, 2000, marks=pytest.mark.slow)]
+)
+def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
+    """Of all of them at most a fiftieth is given up, each with its reason."""
+    reasons = answers(seed, count)
+    assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
