@@ -113,10 +113,23 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         parameters=tuple(choice.numbers[name] for name in form.parameters),
         initial_momenta=tuple(choice.numbers[name] for name in form.states),
         times=times,
-        given=replace(scene, body=data.body, initial=data.initial, clock=clock),
+        given=replace(
+            scene, body=_loaded(data.body, scene, rung), initial=data.initial, clock=clock
+        ),
         replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
         because=choice.because + constant_states_sentence(data.states, form),
     )
+
+
+def _loaded(body: Body, scene: Scene, rung: Rung) -> Body:
+    """Return a body under the loads of a scene, every number of them rounded once to the rung."""
+    loads = scene.body.loads
+    if loads is None:
+        return body
+    try:
+        return body.with_loads(loads.on_rung(rung))
+    except (OverflowError, ValueError) as error:
+        raise NotRepresentable(str(error)) from error
 
 
 def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
@@ -165,7 +178,7 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
     if motion is not None:
         motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
         start = start.with_moving(motion.start)
-    body = scene.body.changed(rounded.part).with_motion(motion)
+    body = _loaded(scene.body.changed(rounded.part).with_motion(motion), scene, rounded.rung)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(
             f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"

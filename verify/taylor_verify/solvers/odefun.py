@@ -18,7 +18,7 @@ from mpmath import mp
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung, held_exactly
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.solver import Solver, raised
+from taylor_verify.solvers.solver import Solver, raised, refused
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
@@ -49,6 +49,8 @@ class Odefun(Solver):
         return f"{self.name} has mpmath's numbers: f64 (their first 53 bits) and mpN alone"
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
         parameters = [held_exactly(value) for value in problem.parameters]

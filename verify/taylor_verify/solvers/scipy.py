@@ -21,7 +21,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised
+from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised, refused
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
@@ -71,6 +71,8 @@ class SciPy(Solver):
         return unavailable(self.name, rung)
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
         asked = perf_counter()

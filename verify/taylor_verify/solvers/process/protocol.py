@@ -80,6 +80,8 @@ class Answer:
 def question(problem: Problem) -> dict[str, Any]:
     """Return the document that a program is asked with."""
     scene = problem.scene
+    if scene.body.loads is not None:
+        raise Unsuited("the protocol does not take loads that a scene writes down")
     return {
         "protocol": _version(scene.body),
         "scene": scene.name,

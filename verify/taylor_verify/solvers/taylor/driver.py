@@ -24,7 +24,7 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
@@ -62,6 +62,8 @@ class Taylor(Solver):
         return unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
