@@ -10,26 +10,30 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import chain
 from math import isqrt, lcm
-from typing import NoReturn
+from typing import Any, NoReturn
 
-from taylor_verify.models import manufactured
+from taylor_verify.models import manufactured, written
+from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.mechanics import components
 from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
+from taylor_verify.models.written import Written
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
+from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
 from taylor_verify.scenes.precision import Rung, floor_log2
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 
 class NotRepresentable(Exception):
@@ -47,7 +51,9 @@ class Problem:
     state) are the same data as exact numbers of the rung, in ``units`` and in the order of ``form``. The
     states of the form are momenta: I omega (not omega), or both impulses; then the attitude and the
     centre if they are tracked. ``replaced`` are coefficients of the body that the equations replace by
-    others. ``because`` says which equations were chosen, and why.
+    others. ``because`` says which equations were chosen, and why. Under loads that a scene writes down the
+    form is that of one piece of time, the first unless ``pieces`` made the problem; ``begin`` is where it
+    starts, elapsed and in ``units``.
     """
 
     scene: Scene
@@ -60,6 +66,7 @@ class Problem:
     given: Scene
     replaced: tuple[tuple[str, Fraction], ...] = ()
     because: tuple[str, ...] = ()
+    begin: Fraction = Fraction(0)
 
     @property
     def initial(self) -> NoReturn:
@@ -82,6 +89,29 @@ class Problem:
         """The initial state by name, in the units of the problem."""
         return dict(zip(self.form.states, self.initial_momenta, strict=True))
 
+    @property
+    def switches(self) -> Sequence[Fraction]:
+        """The elapsed times at which the loads that the scene writes down become others, sorted."""
+        loads = self.given.body.loads
+        return () if loads is None else loads.switches
+
+    def loads(self, t: Any, state: Any, held: None = None) -> Any:
+        """Return the loads that the scene writes down: the moment, or force and couple, body axes.
+
+        ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the centre
+        where a load reads them, all in the scene's units. Arrays may have more axes in front. ``held`` are
+        held states; no scene has any yet. Raises ValueError where the scene writes no loads.
+        """
+        del held
+        if self._acting is None:
+            raise ValueError("expected a scene that writes loads down, got constant ones or none")
+        return self._acting(t, state)
+
+    @cached_property
+    def _acting(self) -> Acting | None:
+        loads = self.given.body.loads
+        return None if loads is None else Acting(self.given, loads)
+
     def with_equations(self, equations: Equations) -> Problem:
         """Return the same data with other equations in the same states, for the negative controls."""
         form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
@@ -102,10 +132,11 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     data = _rounded_data(scene, units, _Rounding(rung))
     if scene.body.manufactured is not None:
         data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
-    data = _with_frame(data, scene.track, units, rung)
+    loads = _rounded_loads(scene, rung)
+    data = _with_frame(data, _framed(scene.track, loads), units, rung)
     choice = data.choice
     form = choice.form(data.states)
-    return Problem(
+    posed = Problem(
         scene=scene,
         rung=rung,
         form=form,
@@ -114,22 +145,69 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         initial_momenta=tuple(choice.numbers[name] for name in form.states),
         times=times,
         given=replace(
-            scene, body=_loaded(data.body, scene, rung), initial=data.initial, clock=clock
+            scene, body=data.body.with_loads(loads), initial=data.initial, clock=clock
         ),
         replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
         because=choice.because + constant_states_sentence(data.states, form),
     )
-
-
-def _loaded(body: Body, scene: Scene, rung: Rung) -> Body:
-    """Return a body under the loads of a scene, every number of them rounded once to the rung."""
-    loads = scene.body.loads
     if loads is None:
-        return body
+        return posed
+    return _with_loads(posed, data, loads)
+
+
+def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
+    """Return the loads that a scene writes down, every number of them rounded once to the rung."""
+    if scene.body.loads is None:
+        return None
     try:
-        return body.with_loads(loads.on_rung(rung))
+        loads = scene.body.loads.on_rung(rung)
+        return replace(loads, current=_Rounding(rung).each(loads.current))
     except (OverflowError, ValueError) as error:
         raise NotRepresentable(str(error)) from error
+
+
+def _framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
+    """Return what is tracked, and attitude and centre where a load reads them."""
+    if loads is None:
+        return track
+    read = {"attitude": loads.reads_attitude, "centre": loads.reads_centre}
+    return {*track, *(name for name, is_read in read.items() if is_read)}
+
+
+def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
+    """Return the problem under the loads of the first piece of time; all components are states."""
+    # The loads need the general coefficients, even if the shorter equations do not.
+    numbers = {**numbers_of(data.body, problem.units), **data.choice.numbers}
+    names = tuple(name for name, value in numbers.items() if value and name not in data.states)
+    return in_piece(
+        replace(
+            problem,
+            form=Form(data.choice.equations, data.states, names),
+            parameters=tuple(numbers[name] for name in names),
+            initial_momenta=tuple(numbers[name] for name in data.states),
+            replaced=tuple(data.choice.replaced.items()),
+            because=data.choice.because + written.sentences(loads),
+        ),
+        loads.piece(Fraction(0), is_later=problem.times[-1] > 0),
+    )
+
+
+def in_piece(problem: Problem, piece: Piece) -> Problem:
+    """Return the problem with the equations of a piece of time of its loads."""
+    equations = problem.form.equations
+    body = equations.free if isinstance(equations, Written) else equations
+    centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
+    steps = written.counted(piece, problem.units, centre)
+    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps.numbers)
+    numbers |= written.drift(problem.given.body.loads.current, problem.units)
+    form = Form(Written(body, steps.steps, steps.outputs), problem.form.states, tuple(numbers))
+    form = replace(form, parameters=form.entering())
+    return replace(
+        problem,
+        form=form,
+        parameters=tuple(numbers[name] for name in form.parameters),
+        replaced=tuple((n, v) for n, v in numbers.items() if n not in form.parameters),
+    )
 
 
 def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
@@ -178,7 +256,8 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
     if motion is not None:
         motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
         start = start.with_moving(motion.start)
-    body = _loaded(scene.body.changed(rounded.part).with_motion(motion), scene, rounded.rung)
+    loads = _rounded_loads(scene, rounded.rung)
+    body = scene.body.changed(rounded.part).with_motion(motion).with_loads(loads)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(
             f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"

@@ -24,6 +24,7 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.equations import equations
@@ -54,6 +55,7 @@ class Taylor(Solver):
     tolerance: Fraction | None = None
     is_optimised: bool = False
     counts_steps = True
+    takes_loads = True
 
     def unavailable(self, rung: Rung) -> str:
         if self.tolerance is not None and not rung.round(self.tolerance) > 0:
@@ -64,6 +66,9 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem):
             return refused(reason)
+        return piece_by_piece(problem, self._solve)
+
+    def _solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
@@ -149,13 +154,17 @@ def _foreseen(problem: Problem) -> float:
     doubles do not reach the end.
     """
     rung = rung_named("f64")
-    end = rung.round(problem.times[-1])
+    begin, end = rung.round(problem.begin), rung.round(problem.times[-1])
     scout = replace(
         problem,
         rung=rung,
         parameters=tuple(map(rung.round, problem.parameters)),
         initial_momenta=tuple(map(rung.round, problem.initial_momenta)),
-        times=[rung.round(end * Fraction(k, _SCOUTED)) for k in range(1, _SCOUTED + 1)],
+        begin=begin,
+        times=[
+            rung.round(begin + (end - begin) * Fraction(k, _SCOUTED))
+            for k in range(1, _SCOUTED + 1)
+        ],
     )
     integrator = compiled(scout.form, rung, None, pays(scout.form, rung))
     return Way(integrator, scout).fastest()
