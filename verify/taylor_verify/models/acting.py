@@ -116,7 +116,7 @@ def _compiled(
             text = f"{step.operation}({', '.join(operands)})"
         lines.append(f" k{place} = {text}")
     results = ", ".join(f"k{output}" for output in outputs)
-    text = [f"def loads(*, {''.join(f'{n}=None, ' for n in sorted(names))}**others):", *lines]
+    text = [f"def loads({''.join(f'{name}, ' for name in sorted(names))}**others):", *lines]
     # The text is made of the names of the grammar, of k0, e0, ... and of + - * / alone.
     exec("\n".join([*text, f" return [{results}]"]), known)
     made: Callable[..., list[Any]] = known["loads"]
