@@ -58,7 +58,9 @@ class Form:
 
         ``time`` is that since the start, which the loads of a scene may read.
         """
-        named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True), t=time)
+        named = Named(
+            zip(self.states + self.parameters, [*state, *parameters], strict=True), t=time
+        )
         rates = self.equations(named)
         return [rates[name] for name in self.states]
 

@@ -144,9 +144,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         parameters=tuple(choice.numbers[name] for name in form.parameters),
         initial_momenta=tuple(choice.numbers[name] for name in form.states),
         times=times,
-        given=replace(
-            scene, body=data.body.with_loads(loads), initial=data.initial, clock=clock
-        ),
+        given=replace(scene, body=data.body.with_loads(loads), initial=data.initial, clock=clock),
         replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
         because=choice.because + constant_states_sentence(data.states, form),
     )

@@ -43,7 +43,7 @@ class Written:
     outputs: tuple[int, ...]
 
     def __call__(self, n: Named) -> dict[str, Any]:
-        values = self._values(n)
+        values = self.values(n)
         return self._rates(n, self._loads([values[k] for k in self.outputs]))
 
     def _rates(self, n: Named, loads: Mapping[str, Any]) -> dict[str, Any]:
@@ -71,7 +71,8 @@ class Written:
             loads |= labelled(letter, values[3 * k : 3 * k + 3])
         return loads
 
-    def _values(self, n: Named) -> list[Any]:
+    def values(self, n: Named) -> list[Any]:
+        """Return the value of each step."""
         functions = functions_of(n["H1"] if "H1" in n else n["x1"])
         inputs, values = _Inputs(n), list[Any]()
         for step in self.steps:

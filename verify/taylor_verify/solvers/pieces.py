@@ -58,7 +58,10 @@ def _legs(problem: Problem) -> Iterator[tuple[Problem, int]]:
         switch = piece.end if is_later else piece.begin
         end = times[-1] if switch is None else rounded(switch / unit)
         if sign * end >= sign * times[-1]:
-            yield replace(in_piece(problem, piece), begin=begin, times=times[done:]), len(times) - done
+            yield (
+                replace(in_piece(problem, piece), begin=begin, times=times[done:]),
+                len(times) - done,
+            )
             return
         count = sum(sign * t <= sign * end for t in times[done:])
         inside = times[done : done + count]

@@ -68,10 +68,10 @@ class Way:
     """A problem on its way from its start through its instants.
 
     ``integrator`` is that of the problem's form, shared with other problems: each run fills it in anew.
-    ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
+    ``looked_at`` is the same problem with the kinks of its loads, where those were taken out. ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
     """
 
-    def __init__(self, integrator: Any, problem: Problem) -> None:
+    def __init__(self, integrator: Any, problem: Problem, looked_at: Problem | None = None) -> None:
         numbers = arithmetic(problem.rung)
         self._integrator, self._problem = integrator, problem
         # Views of heyoka's own memory.
@@ -84,7 +84,7 @@ class Way:
         is_double = self._parameters.dtype == float
         self._is_loaded = problem.given.body.loads is not None
         self._linearised = (
-            Differenced(problem)
+            Differenced(looked_at or problem)
             if self._is_loaded
             else Linearised(problem, self._parameters if is_double else None)
         )
@@ -167,6 +167,8 @@ class Way:
 
     def _was_too_fast(self, ran: Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
+        if not len(ran.rows):
+            return False
         some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
             return not self._is_within(some, _SLACK * self._longest / ran.longest)
@@ -205,7 +207,9 @@ class Way:
         ends = list(exact) if len(grid) == len(times) else [begin, *exact]
         instants, samples = ends[:1], [0]
         for after, before in pairwise(ends):
-            instants += _waypoints(after, before, abs(ends[-1] - begin) / pieces, self._problem.rung)
+            instants += _waypoints(
+                after, before, abs(ends[-1] - begin) / pieces, self._problem.rung
+            )
             samples.append(len(instants))
             instants.append(before)
         return self.numbers.array(instants), samples[len(grid) - len(times) :]
