@@ -98,9 +98,10 @@ class Problem:
     def loads(self, t: Any, state: Any, held: None = None) -> Any:
         """Return the loads that the scene writes down: the moment, or force and couple, body axes.
 
-        ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the centre
-        where a load reads them, all in the scene's units. Arrays may have more axes in front. ``held`` are
-        held states; no scene has any yet. Raises ValueError where the scene writes no loads.
+        ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
+        centre where a load reads them, all in the scene's units. Arrays may have more axes in front.
+        ``held`` are held states; no scene has any yet. Raises ValueError where the scene writes no
+        loads.
         """
         del held
         if self._acting is None:

@@ -4,7 +4,8 @@ v            the velocity of the fluid, space axes, over which the centre drifts
 g1, g2, ..   the numbers of the steps, and the units of what they read: parameters, as all numbers are
 t            the time since the start: it is no state, but handed over with each state
 
-The steps count in the scene's own units. Each input and each load is multiplied by its unit, a power of two.
+The steps count in the scene's own units. Each input and each load is multiplied by its unit, which is a
+power of two.
 """
 
 from __future__ import annotations

@@ -100,6 +100,7 @@ class Callback(Solver):
 
     answer: Callable[[Problem], Any]
     name: str = "callback"
+    takes_loads = True
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()

@@ -23,7 +23,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.process.conversation import LIMIT_VARIABLE, converse
-from taylor_verify.solvers.solver import Callback, Solver, refused
+from taylor_verify.solvers.solver import Callback, Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "process:"
@@ -48,6 +48,7 @@ class Process(Solver):
     name: str
     time_limit: float = DEFAULT_LIMIT
     folder: str | None = None
+    takes_loads = True
 
     @property
     def command(self) -> list[str]:
@@ -58,8 +59,6 @@ class Process(Solver):
         return unavailable()
 
     def solve(self, problem: Problem) -> Trajectory:
-        if reason := self.unsuited(problem):
-            return refused(reason)
         asked = json.dumps(protocol.question(problem)).encode()
         began = perf_counter()
         longest = protocol.longest_answer(problem)

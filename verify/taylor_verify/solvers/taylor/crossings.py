@@ -18,6 +18,8 @@ from taylor_verify.solvers.taylor.numbers import arithmetic
 
 # Vectors whose second singular value is a smaller part of their first lie on one line.
 _ON_A_LINE = 1e-10
+# The power of 1/2, in units of time, after which it shows where a start on a kink goes.
+_LITTLE = 12
 
 
 @final
@@ -30,9 +32,11 @@ class _Choice:
     rung: Rung
 
     def __call__(self, integrator: Any, direction: int) -> bool:
-        # The direction is that in time; a motion backwards in time crosses the other way.
-        if direction:
-            sign = direction if integrator.last_h >= 0 else -direction
+        # The direction is that in time; a motion backwards in time crosses the other way. An event before
+        # the first step is none: the branch was chosen for it.
+        step = float(integrator.last_h)
+        if direction and step:
+            sign = direction if step > 0 else -direction
             numbers = arithmetic(self.rung)
             for k, value in enumerate(self.kink.chosen(sign), start=self.first):
                 integrator.pars[k] = numbers.number(Fraction(value))
@@ -60,7 +64,6 @@ def smoothed(problem: Problem) -> tuple[Problem, tuple[Kink, ...]]:
     form, kinks = smooth(problem.form)
     if not kinks:
         return problem, ()
-    # A sign has to be right on every rung; what is chosen at zero, the first event chooses again.
     parameters = list(problem.parameters)
     for kink in kinks:
         parameters += map(Fraction, kink.chosen(_sign(problem, form, parameters, kink)))
@@ -68,13 +71,34 @@ def smoothed(problem: Problem) -> tuple[Problem, tuple[Kink, ...]]:
 
 
 def _sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -> int:
-    """Return the sign of a kink's difference at the start; later kinks do not enter it."""
-    later = len(form.parameters) - len(known)
+    """Return the sign of a kink's difference just behind the start; later kinks do not enter it."""
+    later = [Fraction(0)] * (len(form.parameters) - len(known))
     with mp.workprec(problem.rung.bits + 64):
-        numbers = [held_exactly(value) for value in (*known, *[Fraction(0)] * later)]
+        numbers = [held_exactly(value) for value in (*known, *later)]
         state = [held_exactly(value) for value in problem.initial_momenta]
-        steps = values(form, state, numbers, held_exactly(problem.begin))
-        return 1 if steps[kink.place] >= 0 else -1
+        time = held_exactly(problem.begin)
+        difference = values(form, state, numbers, time)[kink.place]
+        if not difference:
+            # It may leave zero either way: that is seen a little later.
+            step = mp.mpf(2) ** -_LITTLE * (1 if problem.times[-1] > problem.begin else -1)
+            state = _moved(problem, state, time, step)
+            difference = values(form, state, numbers, time + step)[kink.place]
+        return 1 if difference >= 0 else -1
+
+
+def _moved(problem: Problem, state: Sequence[Any], time: Any, step: Any) -> list[Any]:
+    """Return the state a step later, by the classical method of Runge and Kutta."""
+    parameters = [held_exactly(value) for value in problem.parameters]
+
+    def ahead(rates: Sequence[Any], part: Any) -> list[Any]:
+        return [a + part * step * rate for a, rate in zip(state, rates, strict=True)]
+
+    half = mp.mpf(1) / 2
+    rates = [problem.form.rates(state, parameters, time)]
+    for part in (half, half, mp.one):
+        rates.append(problem.form.rates(ahead(rates[-1], part), parameters, time + part * step))
+    mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(*rates, strict=True)]
+    return ahead(mean, mp.one)
 
 
 def kinks_of_length(form: Form) -> bool:

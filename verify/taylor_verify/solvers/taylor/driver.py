@@ -90,6 +90,8 @@ class Taylor(Solver):
         seconds = perf_counter() - ready
         if lengths(problem.form) and _may_vanish(problem, outcome, rows):
             return refused(f"{self.name} {_NO_LENGTH}")
+        if outcome is Outcome.STEP_LIMIT and smoothed(problem)[1]:
+            return refused(f"{self.name} is made for kinks that are crossed, and not only touched")
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
             # Exact numbers of many samples take longer than the samples: the judge asks for them.

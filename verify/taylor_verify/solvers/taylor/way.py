@@ -68,7 +68,8 @@ class Way:
     """A problem on its way from its start through its instants.
 
     ``integrator`` is that of the problem's form, shared with other problems: each run fills it in anew.
-    ``looked_at`` is the same problem with the kinks of its loads, where those were taken out. ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
+    ``looked_at`` is the same problem with the kinks of its loads, where those were taken out.
+    ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
     """
 
     def __init__(self, integrator: Any, problem: Problem, looked_at: Problem | None = None) -> None:
