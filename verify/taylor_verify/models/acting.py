@@ -99,7 +99,7 @@ def _compiled(
 ) -> Callable[..., list[Any]]:
     """Return the function from the inputs, by name, to the loads."""
     known: dict[str, Any] = dict(FLOATS if is_float else _arrays())
-    lines = []
+    lines: list[str] = []
     for place, step in enumerate(steps):
         operands = [f"k{operand}" for operand in step.operands]
         if step.operation == "number":
@@ -116,8 +116,8 @@ def _compiled(
             text = f"{step.operation}({', '.join(operands)})"
         lines.append(f" k{place} = {text}")
     results = ", ".join(f"k{output}" for output in outputs)
-    text = [f"def loads({''.join(f'{name}, ' for name in sorted(names))}**others):", *lines]
+    head = [f"def loads({''.join(f'{name}, ' for name in sorted(names))}**others):", *lines]
     # The text is made of the names of the grammar, of k0, e0, ... and of + - * / alone.
-    exec("\n".join([*text, f" return [{results}]"]), known)
+    exec("\n".join([*head, f" return [{results}]"]), known)
     made: Callable[..., list[Any]] = known["loads"]
     return made

@@ -33,7 +33,10 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
     state = [float(value) for value in (*initial.moving, *place)]
     end = -span if clock.elapsed[-1] < 0 else span
     with suppress(ArithmeticError, ValueError), np.errstate(all="ignore"):
-        values = [np.hstack(acting(float(clock.start + p * end), state)) for p in _LOOKS]
+        values = [
+            np.concatenate(np.atleast_2d(acting(float(clock.start + p * end), state)))
+            for p in _LOOKS
+        ]
         sizes = np.abs(values).max(axis=0)
         if np.isfinite(sizes).all() and sizes.any():
             return _pushed(units, scene, float(span), sizes)

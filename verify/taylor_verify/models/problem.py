@@ -198,7 +198,8 @@ def in_piece(problem: Problem, piece: Piece) -> Problem:
     centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
     steps = written.counted(piece, problem.units, centre)
     numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps.numbers)
-    numbers |= written.drift(problem.given.body.loads.current, problem.units)
+    loads = problem.given.body.loads
+    numbers |= {} if loads is None else written.drift(loads.current, problem.units)
     form = Form(Written(body, steps.steps, steps.outputs), problem.form.states, tuple(numbers))
     form = replace(form, parameters=form.entering())
     return replace(

@@ -124,7 +124,8 @@ def _power(base: Any, exponent: Fraction, functions: Functions) -> Any:
     """Return a rational power; a whole one by products, so that its base may be zero or negative."""
     if exponent.denominator != 1:
         return functions["power"](base, exponent)
-    result, square, left = None, base, abs(int(exponent))
+    result: Any = None
+    square, left = base, abs(int(exponent))
     while left:
         if left & 1:
             result = square if result is None else result * square

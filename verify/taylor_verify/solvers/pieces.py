@@ -35,8 +35,9 @@ def piece_by_piece(problem: Problem, solve: Solve) -> Trajectory:
         if answer.outcome is not Outcome.FINISHED or not isinstance(quantities, Postponed):
             return _together(gone, replace(answer, quantities={}))
         rows += list(quantities.states[:samples])
-        state = tuple(map(quantities.exact, quantities.states[-1]))
-    return _together(gone, replace(answer, quantities=Postponed(problem, rows, quantities.exact)))
+        exact = quantities.exact
+        state = tuple(map(exact, quantities.states[-1]))
+    return _together(gone, replace(answer, quantities=Postponed(problem, rows, exact)))
 
 
 def _legs(problem: Problem) -> Iterator[tuple[Problem, int]]:

@@ -20,6 +20,10 @@ from taylor_verify.solvers.taylor.numbers import arithmetic
 _ON_A_LINE = 1e-10
 # The power of 1/2, in units of time, after which it shows where a start on a kink goes.
 _LITTLE = 12
+# The power of two, in roundings of a unit of time, that is nothing beside it.
+_NEAR = 10
+# A difference that is no matter of rounding on any rung, beside the largest step.
+_CLEAR = 1e-3
 
 
 @final
@@ -77,13 +81,34 @@ def _sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -
         numbers = [held_exactly(value) for value in (*known, *later)]
         state = [held_exactly(value) for value in problem.initial_momenta]
         time = held_exactly(problem.begin)
-        difference = values(form, state, numbers, time)[kink.place]
-        if not difference:
-            # It may leave zero either way: that is seen a little later.
-            step = mp.mpf(2) ** -_LITTLE * (1 if problem.times[-1] > problem.begin else -1)
-            state = _moved(problem, state, time, step)
-            difference = values(form, state, numbers, time + step)[kink.place]
-        return 1 if difference >= 0 else -1
+        step = mp.mpf(2) ** -_LITTLE * (1 if problem.times[-1] > problem.begin else -1)
+        ahead = _moved(problem, state, time, step)
+        here, there = (
+            values(form, *at)[kink.place]
+            for at in ((state, numbers, time), (ahead, numbers, time + step))
+        )
+        # What crosses zero within a rounding of the start is behind it.
+        is_past = abs(here) * abs(step) < abs(there - here) * mp.mpf(2) ** (
+            _NEAR - problem.rung.bits
+        )
+        return 1 if (there if is_past else here) >= 0 else -1
+
+
+def missed(problem: Problem, kinks: Sequence[Kink], state: Sequence[Any], chosen: Any) -> bool:
+    """Return True where the last state is on another branch than the parameters ``chosen`` say."""
+    numbers = [float(value) for value in chosen]
+    steps = values(problem.form, list(map(float, state)), numbers, float(problem.times[-1]))
+    first = len(numbers) - sum(len(kink.names) for kink in kinks)
+    for kink in kinks:
+        difference, width = steps[kink.place], len(kink.names)
+        expected = [float(value) for value in kink.chosen(1 if difference > 0 else -1)]
+        if (
+            abs(difference) > _CLEAR * max(map(abs, steps))
+            and numbers[first : first + width] != expected
+        ):
+            return True
+        first += width
+    return False
 
 
 def _moved(problem: Problem, state: Sequence[Any], time: Any, step: Any) -> list[Any]:

@@ -31,6 +31,7 @@ from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.crossings import (
     crossings,
     kinks_of_length,
+    missed,
     on_a_line,
     smoothed,
 )
@@ -90,7 +91,10 @@ class Taylor(Solver):
         seconds = perf_counter() - ready
         if lengths(problem.form) and _may_vanish(problem, outcome, rows):
             return refused(f"{self.name} {_NO_LENGTH}")
-        if outcome is Outcome.STEP_LIMIT and smoothed(problem)[1]:
+        turned, kinks = smoothed(problem)
+        if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
+            return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
+        if kinks and outcome is Outcome.STEP_LIMIT:
             return refused(f"{self.name} is made for kinks that are crossed, and not only touched")
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:

@@ -118,6 +118,12 @@ class Way:
             return ran._replace(outcome=Outcome.INTERRUPTED)
         return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
 
+    @property
+    def parameters(self) -> np.ndarray[Any, Any]:
+        """The parameters at the end of the last run: its events may have changed some."""
+        parameters: np.ndarray[Any, Any] = self._pars
+        return parameters
+
     def fastest(self) -> float:
         """Return the fastest rate at the instants; infinite where the way does not reach its end."""
         ran = self.run()
