@@ -97,15 +97,15 @@ def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
     if not isinstance(equations, Written):
         return ()
     steps = equations.steps
-    found = set[tuple[int, ...]]()
+    roots = set[tuple[int, ...]]()
     for step in steps:
         if step.operation == "norm":
-            found.add(step.operands)
+            roots.add(step.operands)
         elif step.operation == "sqrt" or _is_broken(step):
             parts = list(_squared(steps, step.operands[0]))
             if None not in parts:
-                found.add(tuple(part for part in parts if part is not None))
-    return tuple(sorted(found))
+                roots.add(tuple(part for part in parts if part is not None))
+    return tuple(sorted(roots))
 
 
 def _is_broken(step: Step) -> bool:

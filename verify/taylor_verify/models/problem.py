@@ -7,19 +7,19 @@ that an error comes from the solver and never from the data.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from math import isqrt, lcm
 from typing import Any, NoReturn
 
 from taylor_verify.models import manufactured, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.form import Equations, Form
-from taylor_verify.models.mechanics import components
+from taylor_verify.models.frame import unit_quaternion
+from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
@@ -95,15 +95,13 @@ class Problem:
         loads = self.given.body.loads
         return () if loads is None else loads.switches
 
-    def loads(self, t: Any, state: Any, held: None = None) -> Any:
+    def loads(self, t: Any, state: Any) -> Any:
         """Return the loads that the scene writes down: the moment, or force and couple, body axes.
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
         centre where a load reads them, all in the scene's units. Arrays may have more axes in front.
-        ``held`` are held states; no scene has any yet. Raises ValueError where the scene writes no
-        loads.
+        Raises ValueError where the scene writes no loads.
         """
-        del held
         if self._acting is None:
             raise ValueError("expected a scene that writes loads down, got constant ones or none")
         return self._acting(t, state)
@@ -115,6 +113,8 @@ class Problem:
 
     def with_equations(self, equations: Equations) -> Problem:
         """Return the same data with other equations in the same states, for the negative controls."""
+        own = self.form.equations
+        equations = replace(own, free=equations) if isinstance(own, Written) else equations
         form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
         entering = form.entering()
         values = tuple(self.parameter[name] for name in entering)
@@ -283,52 +283,21 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     vectors = {
         momentum_part.name: exact[3 * k : 3 * k + 3] for k, momentum_part in enumerate(kind.momenta)
     }
-    values = _counted(kind.body_letters, kind.values(body), units, rounded)
-    momenta = _counted(kind.momenta, vectors, units, rounded)
+    values = counted(kind.body_letters, kind.values(body), units, rounded)
+    momenta = counted(kind.momenta, vectors, units, rounded)
     try:
-        given = kind.body(_each(kind.body_letters, values, units.physical))
+        given = kind.body(each(kind.body_letters, values, units.physical))
     except ValueError as error:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
-    momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
+    momentum = tuple(chain(*each(kind.momenta, momenta, units.physical).values()))
     place = {
         part.name: units.physical(part, rounded.counted(part, start.part(part), units))
         for part in start.PARTS
         if part.name not in start.MOVING
     }
     initial = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
-    numbers = _named(kind.momenta, momenta) | _named(kind.body_letters, values)
+    numbers = named(kind.momenta, momenta) | named(kind.body_letters, values)
     return _Data(kind.choice(numbers, rounded.rung), kind.states, given, initial)
-
-
-def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
-    """Return every coefficient and load of a body by name, in these units."""
-    kind = mechanics(body)
-    return _named(kind.body_letters, _each(kind.body_letters, kind.values(body), units.counted))
-
-
-# Letters of the equations with their values: exact, in units, rounded.
-
-_Letters = Sequence[Part]
-_Values = Mapping[str, Value]
-
-
-def _each(letters: _Letters, values: _Values, change: Callable[[Part, Value], Value]) -> _Values:
-    """Return the value of each letter in other units."""
-    return {letter.name: change(letter, values[letter.name]) for letter in letters}
-
-
-def _counted(letters: _Letters, values: _Values, units: Units, rounded: _Rounding) -> _Values:
-    """Return the value of each letter, counted in its unit and rounded once."""
-    return {
-        letter.name: rounded.each(values[letter.name], -units.exponent(letter.dimension))
-        for letter in letters
-    }
-
-
-def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
-    return {
-        name: v for letter in letters for name, v in components(letter, values[letter.name]).items()
-    }
 
 
 def _with_clock(
@@ -364,7 +333,7 @@ def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -
     """Return the same with attitude and centre among the states, as far as they are tracked."""
     frame: dict[str, Fraction] = {}
     if "attitude" in track:
-        quaternion = _unit_quaternion(data.initial.attitude, rung)
+        quaternion = unit_quaternion(data.initial.attitude, rung)
         frame |= {f"e{i}": entry for i, entry in enumerate(quaternion)}
     if "centre" in track:
         # The centre is integrated from the origin and its start added exactly afterwards.
@@ -415,18 +384,3 @@ class _Rounding:
         return tuple(
             Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
         )
-
-
-def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
-    """Return the quaternion over its norm, each component rounded once."""
-    if quaternion == IDENTITY:
-        return quaternion
-    # 64 guard bits: the error of the square root changes the rounding only near a tie, with
-    # probability 2^-64 and by one unit in the last place.
-    scale = lcm(*(entry.denominator for entry in quaternion))
-    whole = [entry.numerator * (scale // entry.denominator) for entry in quaternion]
-    squared = sum(n * n for n in whole)
-    shift = max(0, rung.bits + 64 - squared.bit_length() // 2)
-    norm = isqrt(squared << 2 * shift)
-    e0, e1, e2, e3 = (rung.round(Fraction(n << shift, norm)) for n in whole)
-    return (e0, e1, e2, e3)

@@ -26,18 +26,18 @@ def piece_by_piece(problem: Problem, solve: Solve) -> Trajectory:
     if len(legs) == 1:
         return solve(problem)
     rows: list[Any] = []
-    gone: list[Trajectory] = []
+    answers: list[Trajectory] = []
     state = problem.initial_momenta
     for leg, samples in legs:
         answer = solve(replace(leg, initial_momenta=state))
-        gone.append(answer)
+        answers.append(answer)
         quantities = answer.quantities
         if answer.outcome is not Outcome.FINISHED or not isinstance(quantities, Postponed):
-            return _together(gone, replace(answer, quantities={}))
+            return _together(answers, replace(answer, quantities={}))
         rows += list(quantities.states[:samples])
         exact = quantities.exact
         state = tuple(map(exact, quantities.states[-1]))
-    return _together(gone, replace(answer, quantities=Postponed(problem, rows, exact)))
+    return _together(answers, replace(answer, quantities=Postponed(problem, rows, exact)))
 
 
 def _legs(problem: Problem) -> Iterator[tuple[Problem, int]]:
