@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from taylor_verify.models.general import in_general_form
-from taylor_verify.models.problem import Problem, numbers_of, pose
+from taylor_verify.models.letters import numbers_of
+from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.units import Units
 from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody

@@ -6,7 +6,6 @@ left out of the form.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +13,7 @@ from typing import Any
 
 from taylor_verify.models.algebra import ABSENT, is_absent, times
 from taylor_verify.models.frame import attitude_rate, centre_rate
-from taylor_verify.models.symbol import Symbol, operations
+from taylor_verify.models.symbol import Symbol, operations, parts
 
 
 class Named(dict[str, Any]):
@@ -52,9 +51,16 @@ class Form:
     states: tuple[str, ...]
     parameters: tuple[str, ...]
 
-    def rates(self, state: Sequence[Any], parameters: Sequence[Any]) -> list[Any]:
-        """Return d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent."""
-        named = Named(zip(self.states + self.parameters, [*state, *parameters], strict=True))
+    def rates(
+        self, state: Sequence[Any], parameters: Sequence[Any], time: Any = ABSENT
+    ) -> list[Any]:
+        """Return d state/dt, in the arithmetic of the arguments; the int 0 for a rate that is absent.
+
+        ``time`` is that since the start, which the loads of a scene may read.
+        """
+        named = Named(
+            zip(self.states + self.parameters, [*state, *parameters], strict=True), t=time
+        )
         rates = self.equations(named)
         return [rates[name] for name in self.states]
 
@@ -66,14 +72,11 @@ class Form:
         """
         if hasattr(self.equations, "lines"):
             names = self.states + self.parameters
-            lines = self.equations.lines(Named(zip(names, map(Symbol, names), strict=True)))
+            named = Named(zip(names, map(Symbol, names), strict=True), t=Symbol("t"))
+            lines = self.equations.lines(named)
             return tuple(f"{name} = {value}" for name, value in lines.items())
         rates = zip(self.states, self.symbolic(), strict=True)
         return tuple(f"{name}' = {rate}" for name, rate in rates)
-
-    def written(self) -> str:
-        """Return all rates in full."""
-        return " ".join(map(str, self.symbolic()))
 
     def operations(self) -> dict[str, int]:
         """Return the number of distinct sums, products and quotients of one evaluation of the rates."""
@@ -82,7 +85,7 @@ class Form:
     def symbolic(self) -> list[Any]:
         """Return the rates as Symbols; the int 0 for a rate that is absent."""
         states, parameters = map(Symbol, self.states), map(Symbol, self.parameters)
-        return self.rates(list(states), list(parameters))
+        return self.rates(list(states), list(parameters), Symbol("t"))
 
     # There are few forms and many scenes: all bodies of a family have the same form.
     @lru_cache(maxsize=256)  # noqa: B019 (a form is a value, and small)
@@ -97,7 +100,7 @@ class Form:
     @lru_cache(maxsize=256)  # noqa: B019
     def entering(self) -> tuple[str, ...]:
         """Return the parameters that occur in the equations; Clebsch's r' does not if y3 = 0."""
-        written = set(re.findall(r"[A-Za-z]\d*'?", self.written()))
+        written = {symbol.name for symbol in parts(self.symbolic())}
         return tuple(name for name in self.parameters if name in written)
 
 

@@ -6,9 +6,13 @@ c  the body's origin in space axes
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import isqrt, lcm
 from typing import Any
 
 from taylor_verify.models.algebra import Terms, add, cross, dot, minus, plus, times
+from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.precision import Rung
 
 
 def attitude_rate(q: Terms, omega: Terms) -> list[Any]:
@@ -43,3 +47,18 @@ def centre_rate(q: Terms, U: Terms) -> list[Any]:
     q0, *r = q
     turned = cross(r, add(cross(r, U), [times(q0, component) for component in U]))
     return add(U, [times(2, component) for component in turned])
+
+
+def unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
+    """Return the quaternion over its norm, each component rounded once."""
+    if quaternion == IDENTITY:
+        return quaternion
+    # 64 guard bits: the error of the square root changes the rounding only near a tie, with
+    # probability 2^-64 and by one unit in the last place.
+    scale = lcm(*(entry.denominator for entry in quaternion))
+    whole = [entry.numerator * (scale // entry.denominator) for entry in quaternion]
+    squared = sum(n * n for n in whole)
+    shift = max(0, rung.bits + 64 - squared.bit_length() // 2)
+    norm = isqrt(squared << 2 * shift)
+    e0, e1, e2, e3 = (rung.round(Fraction(n << shift, norm)) for n in whole)
+    return (e0, e1, e2, e3)

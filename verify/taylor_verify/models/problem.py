@@ -7,29 +7,33 @@ that an error comes from the solver and never from the data.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import chain
-from math import isqrt, lcm
-from typing import NoReturn
+from typing import Any, NoReturn
 
-from taylor_verify.models import manufactured
+from taylor_verify.models import manufactured, written
+from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.form import Equations, Form
-from taylor_verify.models.mechanics import components
+from taylor_verify.models.frame import unit_quaternion
+from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
+from taylor_verify.models.written import Written
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
+from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
 from taylor_verify.scenes.precision import Rung, floor_log2
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 
 class NotRepresentable(Exception):
@@ -47,7 +51,9 @@ class Problem:
     state) are the same data as exact numbers of the rung, in ``units`` and in the order of ``form``. The
     states of the form are momenta: I omega (not omega), or both impulses; then the attitude and the
     centre if they are tracked. ``replaced`` are coefficients of the body that the equations replace by
-    others. ``because`` says which equations were chosen, and why.
+    others. ``because`` says which equations were chosen, and why. Under loads that a scene writes down the
+    form is that of one piece of time, the first unless ``pieces`` made the problem; ``begin`` is where it
+    starts, elapsed and in ``units``.
     """
 
     scene: Scene
@@ -60,6 +66,7 @@ class Problem:
     given: Scene
     replaced: tuple[tuple[str, Fraction], ...] = ()
     because: tuple[str, ...] = ()
+    begin: Fraction = Fraction(0)
 
     @property
     def initial(self) -> NoReturn:
@@ -82,8 +89,32 @@ class Problem:
         """The initial state by name, in the units of the problem."""
         return dict(zip(self.form.states, self.initial_momenta, strict=True))
 
+    @property
+    def switches(self) -> Sequence[Fraction]:
+        """The elapsed times at which the loads that the scene writes down become others, sorted."""
+        loads = self.given.body.loads
+        return () if loads is None else loads.switches
+
+    def loads(self, t: Any, state: Any) -> Any:
+        """Return the loads that the scene writes down: the moment, or force and couple, body axes.
+
+        ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
+        centre where a load reads them, all in the scene's units. Arrays may have more axes in front.
+        Raises ValueError where the scene writes no loads.
+        """
+        if self._acting is None:
+            raise ValueError("expected a scene that writes loads down, got constant ones or none")
+        return self._acting(t, state)
+
+    @cached_property
+    def _acting(self) -> Acting | None:
+        loads = self.given.body.loads
+        return None if loads is None else Acting(self.given, loads)
+
     def with_equations(self, equations: Equations) -> Problem:
         """Return the same data with other equations in the same states, for the negative controls."""
+        own = self.form.equations
+        equations = replace(own, free=equations) if isinstance(own, Written) else equations
         form = replace(self.form, equations=equations, parameters=tuple(self.parameter))
         entering = form.entering()
         values = tuple(self.parameter[name] for name in entering)
@@ -102,10 +133,11 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     data = _rounded_data(scene, units, _Rounding(rung))
     if scene.body.manufactured is not None:
         data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
-    data = _with_frame(data, scene.track, units, rung)
+    loads = _rounded_loads(scene, rung)
+    data = _with_frame(data, _framed(scene.track, loads), units, rung)
     choice = data.choice
     form = choice.form(data.states)
-    return Problem(
+    posed = Problem(
         scene=scene,
         rung=rung,
         form=form,
@@ -113,9 +145,68 @@ def pose(scene: Scene, rung: Rung) -> Problem:
         parameters=tuple(choice.numbers[name] for name in form.parameters),
         initial_momenta=tuple(choice.numbers[name] for name in form.states),
         times=times,
-        given=replace(scene, body=data.body, initial=data.initial, clock=clock),
+        given=replace(scene, body=data.body.with_loads(loads), initial=data.initial, clock=clock),
         replaced=tuple((n, v) for n, v in choice.replaced.items() if n not in form.parameters),
         because=choice.because + constant_states_sentence(data.states, form),
+    )
+    if loads is None:
+        return posed
+    return _with_loads(posed, data, loads)
+
+
+def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
+    """Return the loads that a scene writes down, every number of them rounded once to the rung."""
+    if scene.body.loads is None:
+        return None
+    try:
+        loads = scene.body.loads.on_rung(rung)
+        return replace(loads, current=_Rounding(rung).each(loads.current))
+    except (OverflowError, ValueError) as error:
+        raise NotRepresentable(str(error)) from error
+
+
+def _framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
+    """Return what is tracked, and attitude and centre where a load reads them."""
+    if loads is None:
+        return track
+    read = {"attitude": loads.reads_attitude, "centre": loads.reads_centre}
+    return {*track, *(name for name, is_read in read.items() if is_read)}
+
+
+def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
+    """Return the problem under the loads of the first piece of time; all components are states."""
+    # The loads need the general coefficients, even if the shorter equations do not.
+    numbers = {**numbers_of(data.body, problem.units), **data.choice.numbers}
+    names = tuple(name for name, value in numbers.items() if value and name not in data.states)
+    return in_piece(
+        replace(
+            problem,
+            form=Form(data.choice.equations, data.states, names),
+            parameters=tuple(numbers[name] for name in names),
+            initial_momenta=tuple(numbers[name] for name in data.states),
+            replaced=tuple(data.choice.replaced.items()),
+            because=data.choice.because + written.sentences(loads),
+        ),
+        loads.piece(Fraction(0), is_later=problem.times[-1] > 0),
+    )
+
+
+def in_piece(problem: Problem, piece: Piece) -> Problem:
+    """Return the problem with the equations of a piece of time of its loads."""
+    equations = problem.form.equations
+    body = equations.free if isinstance(equations, Written) else equations
+    centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
+    steps = written.counted(piece, problem.units, centre)
+    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps.numbers)
+    loads = problem.given.body.loads
+    numbers |= {} if loads is None else written.drift(loads.current, problem.units)
+    form = Form(Written(body, steps.steps, steps.outputs), problem.form.states, tuple(numbers))
+    form = replace(form, parameters=form.entering())
+    return replace(
+        problem,
+        form=form,
+        parameters=tuple(numbers[name] for name in form.parameters),
+        replaced=tuple((n, v) for n, v in numbers.items() if n not in form.parameters),
     )
 
 
@@ -165,7 +256,8 @@ def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
     if motion is not None:
         motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
         start = start.with_moving(motion.start)
-    body = scene.body.changed(rounded.part).with_motion(motion)
+    loads = _rounded_loads(scene, rounded.rung)
+    body = scene.body.changed(rounded.part).with_motion(motion).with_loads(loads)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(
             f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"
@@ -191,52 +283,21 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
     vectors = {
         momentum_part.name: exact[3 * k : 3 * k + 3] for k, momentum_part in enumerate(kind.momenta)
     }
-    values = _counted(kind.body_letters, kind.values(body), units, rounded)
-    momenta = _counted(kind.momenta, vectors, units, rounded)
+    values = counted(kind.body_letters, kind.values(body), units, rounded)
+    momenta = counted(kind.momenta, vectors, units, rounded)
     try:
-        given = kind.body(_each(kind.body_letters, values, units.physical))
+        given = kind.body(each(kind.body_letters, values, units.physical))
     except ValueError as error:
         raise NotRepresentable(f"rounded to {rounded.rung.name}, {error}") from error
-    momentum = tuple(chain(*_each(kind.momenta, momenta, units.physical).values()))
+    momentum = tuple(chain(*each(kind.momenta, momenta, units.physical).values()))
     place = {
         part.name: units.physical(part, rounded.counted(part, start.part(part), units))
         for part in start.PARTS
         if part.name not in start.MOVING
     }
     initial = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
-    numbers = _named(kind.momenta, momenta) | _named(kind.body_letters, values)
+    numbers = named(kind.momenta, momenta) | named(kind.body_letters, values)
     return _Data(kind.choice(numbers, rounded.rung), kind.states, given, initial)
-
-
-def numbers_of(body: Body, units: Units) -> dict[str, Fraction]:
-    """Return every coefficient and load of a body by name, in these units."""
-    kind = mechanics(body)
-    return _named(kind.body_letters, _each(kind.body_letters, kind.values(body), units.counted))
-
-
-# Letters of the equations with their values: exact, in units, rounded.
-
-_Letters = Sequence[Part]
-_Values = Mapping[str, Value]
-
-
-def _each(letters: _Letters, values: _Values, change: Callable[[Part, Value], Value]) -> _Values:
-    """Return the value of each letter in other units."""
-    return {letter.name: change(letter, values[letter.name]) for letter in letters}
-
-
-def _counted(letters: _Letters, values: _Values, units: Units, rounded: _Rounding) -> _Values:
-    """Return the value of each letter, counted in its unit and rounded once."""
-    return {
-        letter.name: rounded.each(values[letter.name], -units.exponent(letter.dimension))
-        for letter in letters
-    }
-
-
-def _named(letters: _Letters, values: _Values) -> dict[str, Fraction]:
-    return {
-        name: v for letter in letters for name, v in components(letter, values[letter.name]).items()
-    }
 
 
 def _with_clock(
@@ -272,7 +333,7 @@ def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -
     """Return the same with attitude and centre among the states, as far as they are tracked."""
     frame: dict[str, Fraction] = {}
     if "attitude" in track:
-        quaternion = _unit_quaternion(data.initial.attitude, rung)
+        quaternion = unit_quaternion(data.initial.attitude, rung)
         frame |= {f"e{i}": entry for i, entry in enumerate(quaternion)}
     if "centre" in track:
         # The centre is integrated from the origin and its start added exactly afterwards.
@@ -323,18 +384,3 @@ class _Rounding:
         return tuple(
             Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
         )
-
-
-def _unit_quaternion(quaternion: Quaternion, rung: Rung) -> Quaternion:
-    """Return the quaternion over its norm, each component rounded once."""
-    if quaternion == IDENTITY:
-        return quaternion
-    # 64 guard bits: the error of the square root changes the rounding only near a tie, with
-    # probability 2^-64 and by one unit in the last place.
-    scale = lcm(*(entry.denominator for entry in quaternion))
-    whole = [entry.numerator * (scale // entry.denominator) for entry in quaternion]
-    squared = sum(n * n for n in whole)
-    shift = max(0, rung.bits + 64 - squared.bit_length() // 2)
-    norm = isqrt(squared << 2 * shift)
-    e0, e1, e2, e3 = (rung.round(Fraction(n << shift, norm)) for n in whole)
-    return (e0, e1, e2, e3)

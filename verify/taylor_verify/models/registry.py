@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from taylor_verify.models.damping import Damped
+from taylor_verify.models.driven import driven
 from taylor_verify.models.gyrostat import Wheeled
 from taylor_verify.models.immersed import Immersed
 from taylor_verify.models.mechanics import Mechanics
@@ -33,4 +34,5 @@ def natural_units(scene: Scene) -> Units:
     clock = scene.clock
     # The instants are monotonic, so one of the two ends is farthest from the start.
     span = max(abs(clock.instants[end] - clock.start) for end in (0, -1))
-    return mechanics(scene.body).units(scene.body, scene.initial, span)
+    units = mechanics(scene.body).units(scene.body, scene.initial, span)
+    return units if scene.body.loads is None else driven(units, scene, span)

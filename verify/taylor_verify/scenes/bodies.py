@@ -83,12 +83,14 @@ class Body(Parted):
     def acting(self) -> tuple[str, ...]:
         """The names of all that moves the body besides its energy.
 
-        Parts of its own kind such as ``rotor``, ``damping``, ``manufactured``, and loads that are not zero.
+        Parts of its own kind such as ``rotor``, ``damping``, ``manufactured``, ``loads`` for texts, and
+        constant loads that are not zero.
         """
         own = (part.name for part in self.PARTS if part.name in self.others)
         changing = (
             "damping" * bool(self.damping),
             "manufactured" * (self.manufactured is not None),
+            "loads" * (self.loads is not None),
         )
         loads = (part.name for part in self.PARTS if part.is_load and any(self.part(part)))
         return tuple(filter(None, (*own, *changing, *loads)))

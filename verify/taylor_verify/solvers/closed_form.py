@@ -52,6 +52,8 @@ class ClosedForm(Solver):
         return unavailable(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
+        if reason := super().unsuited(problem):
+            return reason
         body = problem.given.body
         if problem.given.model != "euler":
             return f"{self.name} is made for Euler's equations, got {problem.given.model}"

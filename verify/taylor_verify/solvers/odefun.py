@@ -18,6 +18,7 @@ from mpmath import mp
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung, held_exactly
 from taylor_verify.solvers.options import options
+from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, raised
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
@@ -42,6 +43,7 @@ class Odefun(Solver):
     tol: Fraction | None = None
     degree: int | None = None
     counts_steps = True
+    takes_loads = True
 
     def unavailable(self, rung: Rung) -> str:
         if rung.name == "f64" or rung.emin is None:
@@ -51,6 +53,9 @@ class Odefun(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
+        return piece_by_piece(problem, self._solve)
+
+    def _solve(self, problem: Problem) -> Trajectory:
         parameters = [held_exactly(value) for value in problem.parameters]
         rates = Counted(problem.form, parameters, _MOST_EVALUATIONS)
         began = perf_counter()
@@ -79,8 +84,8 @@ class Odefun(Solver):
         # odefun only goes forwards: a motion backwards is the forward motion with opposite rates.
         direction = -1 if problem.times[-1] < 0 else 1
         state = mp.odefun(
-            lambda t, state: [direction * rate for rate in rates(t, state)],
-            mp.zero,
+            lambda t, state: [direction * rate for rate in rates(direction * t, state)],
+            held_exactly(abs(problem.begin)),
             [held_exactly(value) for value in problem.initial_momenta],
             tol=None if self.tol is None else mp.mpf(self.tol.numerator) / self.tol.denominator,
             degree=self.degree,

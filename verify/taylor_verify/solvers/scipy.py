@@ -21,6 +21,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.options import options
+from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
@@ -59,6 +60,7 @@ class SciPy(Solver):
     rtol: float = float(_RTOL)
     atol: float = float(_ATOL)
     counts_steps = True
+    takes_loads = True
 
     def __post_init__(self) -> None:
         """Raise ValueError for a tolerance that is no positive number, or a method that is unknown."""
@@ -73,6 +75,9 @@ class SciPy(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
+        return piece_by_piece(problem, self._solve)
+
+    def _solve(self, problem: Problem) -> Trajectory:
         asked = perf_counter()
         import_module("scipy.integrate")
         run = _Run(problem)
@@ -120,7 +125,7 @@ class _Run:
             warnings.simplefilter("ignore")
             return integrate.solve_ivp(
                 self._finite_rates,
-                (0.0, times[-1]),
+                (float(self.problem.begin), times[-1]),
                 [float(value) for value in self.problem.initial_momenta],
                 method=self._counted(getattr(integrate, asked.method)),
                 t_eval=times,

@@ -51,13 +51,15 @@ class Solver(ABC):
     ``name`` is the word of the command line; ``setting`` distinguishes two uses of one solver. A solver
     that ``carries_velocities`` rounds U and Omega of a solid in a fluid, not the impulses.
     ``counts_steps`` is True for solvers whose steps are counted by code of this project. For all others
-    the judge limits the claimed steps to a plausible number.
+    the judge limits the claimed steps to a plausible number. Only one that ``takes_loads`` is asked about
+    a body under loads that a scene writes down.
     """
 
     name: str
     setting: str = ""
     carries_velocities: bool = False
     counts_steps: ClassVar[bool] = False
+    takes_loads: ClassVar[bool] = False
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:
         """Return the problem that the solver is asked, with the data that it takes, rounded once.
@@ -80,8 +82,9 @@ class Solver(ABC):
 
     def unsuited(self, problem: Problem) -> str:
         """Return the reason, known before, why the solver is not made for a problem; empty where it is."""
-        del problem
-        return ""
+        if problem.given.body.loads is None or self.takes_loads:
+            return ""
+        return f"{self.name} does not take loads that a scene writes down"
 
 
 @final
@@ -97,6 +100,7 @@ class Callback(Solver):
 
     answer: Callable[[Problem], Any]
     name: str = "callback"
+    takes_loads = True
 
     def solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
@@ -134,6 +138,11 @@ def made_without(name: str, body: Body, takes: Collection[str] = ()) -> str:
         if part not in takes:
             return f"{name} is made for a body without {_ACTING.get(part, part)}"
     return ""
+
+
+def refused(reason: str) -> Trajectory:
+    """Return the trajectory of a solver that is not made for the problem, for this reason."""
+    return Trajectory(Outcome.UNSUITED, detail=reason)
 
 
 def not_started(reason: str) -> Trajectory:

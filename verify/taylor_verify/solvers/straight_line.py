@@ -11,11 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Final
 
 from taylor_verify.models.form import Form
+from taylor_verify.models.functions import functions_of
 from taylor_verify.models.symbol import Symbol
 
+_ARITHMETIC: Final = ("+", "-", "*", "/")
 Rates = Callable[[Any, Sequence[Any]], list[Any]]
 
 
@@ -24,34 +26,43 @@ class Lines:
     """The equations of a form as assignments in + - * /, an operation a line, which many languages read.
 
     State k is called ``s{k}`` and parameter k ``p{k}``. ``rates`` are the names of the results in the order
-    of the states. ``constants`` are numbers that the equations have besides, by name.
+    of the states. ``constants`` are numbers that the equations have besides, by name, and ``functions`` the
+    names of the functions that written loads call. The time since the start is called ``t``.
     """
 
     lines: tuple[str, ...]
     rates: tuple[str, ...]
     constants: Mapping[str, Any]
+    functions: tuple[str, ...] = ()
 
 
 def lines(form: Form) -> Lines:
     """Return the lines that compute the rates of a form."""
     code = _Code()
-    results = tuple(code.word(rate) for rate in form.rates(*_names(form)))
-    return Lines(tuple(code.lines), results, code.constants)
+    results = tuple(code.word(rate) for rate in form.rates(*_names(form), Symbol("t")))
+    return Lines(tuple(code.lines), results, code.constants, tuple(code.functions))
 
 
 def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
-    """Return ``rates(t, state)`` in the arithmetic of the parameters and the state; t is not looked at."""
-    bound, constants = _bound(form)
-    rates: Rates = bound(*parameters, *constants)
+    """Return ``rates(t, state)`` in the arithmetic of the parameters and the state.
+
+    The loads of a scene may read t, the time since the start; nothing else does.
+    """
+    bound, constants, names = _bound(form)
+    functions = functions_of(parameters[0]) if names else {}
+    rates: Rates = bound(*parameters, *constants, *(functions[name] for name in names))
     return rates
 
 
 @lru_cache(maxsize=32)
-def _bound(form: Form) -> tuple[Callable[..., Rates], tuple[Any, ...]]:
-    """Return the function from parameters and constants to the rates of a form, and its constants."""
+def _bound(form: Form) -> tuple[Callable[..., Rates], tuple[Any, ...], tuple[str, ...]]:
+    """Return the function from parameters, constants and functions to the rates; and the last two.
+
+    The functions are returned by name.
+    """
     code, (states, names) = lines(form), _names(form)
     text = [
-        f"def bound({_listed([*names, *map(Symbol, code.constants)])}):",
+        f"def bound({_listed([*names, *map(Symbol, (*code.constants, *code.functions))])}):",
         " def rates(t, state):",
         f"  {_listed(states)} = state",
         *(f"  {line}" for line in code.lines),
@@ -59,9 +70,9 @@ def _bound(form: Form) -> tuple[Callable[..., Rates], tuple[Any, ...]]:
         " return rates",
     ]
     made: dict[str, Any] = {}
-    # The text is made of the names s0, p0, c0, t0, ... and of + - * / alone.
+    # The text is made of the names s0, p0, c0, t0, ..., of + - * / and of functions of the grammar.
     exec("\n".join(text), made)
-    return made["bound"], tuple(code.constants.values())
+    return made["bound"], tuple(code.constants.values()), code.functions
 
 
 def _names(form: Form) -> tuple[list[Symbol], list[Symbol]]:
@@ -98,6 +109,7 @@ class _Code:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.constants: dict[str, Any] = {}
+        self.functions: dict[str, None] = {}
         self._words: dict[Symbol, str] = {}
 
     def word(self, expression: Any) -> str:
@@ -111,7 +123,10 @@ class _Code:
         if expression not in self._words:
             operands = [self.word(operand) for operand in expression.operands]
             text = f" {expression.operation} ".join(operands)
-            if len(operands) == 1:
+            if expression.operation not in _ARITHMETIC:
+                self.functions[expression.operation] = None
+                text = f"{expression.operation}({', '.join(operands)})"
+            elif len(operands) == 1:
                 text = f"{expression.operation}{operands[0]}"
             name = f"t{len(self.lines)}"
             self.lines.append(f"{name} = {text}")

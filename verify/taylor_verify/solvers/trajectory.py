@@ -18,6 +18,7 @@ from mpmath import mp
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
+from taylor_verify.records.quantities import state_groups
 from taylor_verify.scenes import tensors
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
@@ -69,7 +70,7 @@ class ByRows(Mapping[str, np.ndarray[Any, Any]]):
 
 
 class Postponed(ByRows):
-    """The quantities of a trajectory, formed from a solver's ``rows`` when they are read.
+    """The quantities of a trajectory, formed from a solver's ``states`` when they are read.
 
     ``exact`` converts a number of the solver to a rational. For a long answer only the rows that are read
     are formed, and none is stored.
@@ -81,7 +82,7 @@ class Postponed(ByRows):
         rows: Sequence[Sequence[Any]] | np.ndarray[Any, Any],
         exact: Callable[[Any], Fraction],
     ) -> None:
-        self._problem, self._rows, self._exact = problem, rows, exact
+        self._problem, self.states, self.exact = problem, rows, exact
         self.count = len(rows)
 
     def rows(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
@@ -94,7 +95,7 @@ class Postponed(ByRows):
         return self._made(range(self.count))
 
     def _made(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
-        exact, rows = self._exact, self._rows
+        exact, rows = self.exact, self.states
         return from_scaled(self._problem, [[exact(v) for v in rows[k]] for k in places])
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
@@ -181,9 +182,7 @@ def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 def _names(problem: Problem) -> tuple[str, ...]:
     """Return the quantities that the states of a problem hold."""
-    frame = (("e0", "quaternion"), ("c1", "centre"))
-    moving = problem.given.initial.MOVING
-    return (*moving, *(name for state, name in frame if state in problem.form.states))
+    return state_groups(problem.scene.model, problem.scene.track)
 
 
 def from_scaled(
@@ -208,9 +207,10 @@ def from_scaled(
         name: [vector[3 * k : 3 * k + 3] for vector in moving]
         for k, name in enumerate(given.initial.MOVING)
     }
-    if "e0" in columns:
+    tracked = _names(problem)
+    if "quaternion" in tracked:
         quantities["quaternion"] = list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
-    if "c1" in columns:
+    if "centre" in tracked:
         start = given.initial.parts()["centre"]
         quantities["centre"] = [
             tensors.plus(start, c) for c in _vectors(columns, "c", units.centre)

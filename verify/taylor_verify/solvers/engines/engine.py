@@ -23,7 +23,7 @@ from taylor_verify.solvers.engines.launcher import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.process import process
-from taylor_verify.solvers.solver import Lack, Solver, not_started
+from taylor_verify.solvers.solver import Lack, Solver, not_started, refused
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "outside:"
@@ -147,6 +147,8 @@ class Outside(Solver):
         return answer if isinstance(answer, Lack) else ""
 
     def unsuited(self, problem: Problem) -> str:
+        if reason := super().unsuited(problem):
+            return reason
         models = self.engine.script.about.models
         if problem.given.model not in models:
             return f"{self.name} is made for {' and '.join(models)} alone"
@@ -163,6 +165,8 @@ class Outside(Solver):
         return pose_as_stored(scene, rung) if takes_tensor else pose(scene, rung)
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         if reason := self.unavailable(problem.rung):
             return not_started(reason)
         command = _command(self, _log.warning)

@@ -20,7 +20,7 @@ from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import Outside, command_of
 from taylor_verify.solvers.engines.session import Broken, Session, end_sessions, session
-from taylor_verify.solvers.solver import Lack, Solver, not_started
+from taylor_verify.solvers.solver import Lack, Solver, not_started, refused
 from taylor_verify.solvers.straight_line import lines
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
@@ -49,6 +49,8 @@ class Peer(Solver):
 
     def solve(self, problem: Problem) -> Trajectory:
         """Return the trajectory; its seconds are those of the processor, and compiling is apart."""
+        if reason := self.unsuited(problem):
+            return refused(reason)
         if reason := self.unavailable(problem.rung):
             return not_started(reason)
         command = command_of(self.engine)

@@ -46,6 +46,7 @@ class Recorded(Solver):
     name: str = "file"
     setting: str = ""
     carries_velocities: bool = False
+    takes_loads = True
 
     def solve(self, problem: Problem) -> Trajectory:
         del problem

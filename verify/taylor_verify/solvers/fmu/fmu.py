@@ -24,7 +24,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.process import process
-from taylor_verify.solvers.solver import Lack, Solver, float64_alone, not_started
+from taylor_verify.solvers.solver import Lack, Solver, float64_alone, not_started, refused
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "fmu:"
@@ -72,6 +72,8 @@ class Fmu(Solver):
         return process.unavailable()
 
     def unsuited(self, problem: Problem) -> str:
+        if reason := super().unsuited(problem):
+            return reason
         if problem.given.body.manufactured is not None:
             return f"{self.name} is asked with constant loads, and not with a manufactured motion"
         if min(problem.given.clock.elapsed) < 0:
@@ -79,6 +81,8 @@ class Fmu(Solver):
         return ""
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         if reason := self.unavailable(problem.rung):
             return not_started(reason)
         with TemporaryDirectory(ignore_cleanup_errors=True) as folder:

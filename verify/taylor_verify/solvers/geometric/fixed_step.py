@@ -104,6 +104,8 @@ class FixedStep(Solver):
         return float64_alone(self.name, rung)
 
     def unsuited(self, problem: Problem) -> str:
+        if reason := super().unsuited(problem):
+            return reason
         if problem.given.model != "euler":
             return f"{self.name} is made for Euler's equations, got {problem.given.model}"
         return made_without(self.name, problem.given.body, self.takes)

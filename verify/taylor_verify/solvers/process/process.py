@@ -48,6 +48,7 @@ class Process(Solver):
     name: str
     time_limit: float = DEFAULT_LIMIT
     folder: str | None = None
+    takes_loads = True
 
     @property
     def command(self) -> list[str]:

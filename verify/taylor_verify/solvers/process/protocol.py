@@ -23,25 +23,24 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
 
-import gmpy2
-
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
 from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
+from taylor_verify.solvers.process.loads import written_loads
+from taylor_verify.solvers.process.numbers import exact_text
 from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.values import exact, named_once
 
 # The version of a question, and those of what acts besides constant loads: a program can refuse them.
 VERSION: Final = 1
-VERSIONS: Final = {"manufactured": 2, "rotor": 3, "damping": 4}
+VERSIONS: Final = {"manufactured": 2, "rotor": 3, "damping": 4, "loads": 5}
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, plus one.
 _TIME_ROUNDINGS = 4
 _DOUBLE_BITS = 53
-_PLACES = 30
 _LONGEST_REMARK = 300
 # Seconds, of the order of a century: a double holds it, and no program was waited for so long.
 _LONGEST = 10**10
@@ -90,6 +89,7 @@ def question(problem: Problem) -> dict[str, Any]:
         "bits": problem.rung.bits,
         "columns": column_names(problem),
         **_data(problem),
+        **({} if scene.body.loads is None else {"loads": written_loads(problem)}),
     }
 
 
@@ -150,21 +150,6 @@ def _mapped(write: Callable[[Fraction], str], value: Any) -> Any:
     if isinstance(value, Fraction):
         return write(value)
     return [_mapped(write, entry) for entry in value]
-
-
-def exact_text(value: Fraction) -> str:
-    """Return the decimal that is exactly this number, or "a/b" where there is none."""
-    rest, twos = gmpy2.remove(value.denominator, 2)
-    rest, fives = gmpy2.remove(rest, 5)
-    if rest != 1:
-        # str(int) stops at 4300 digits, and that of a Decimal does not.
-        return f"{Decimal(value.numerator)}/{Decimal(value.denominator)}"
-    places = max(twos, fives)
-    whole = Decimal(int(value * 10**places))
-    if places > _PLACES:
-        return f"{whole}e-{places}"
-    sign, digits, _ = whole.as_tuple()
-    return f"{Decimal((sign, digits, -places)):f}"
 
 
 # The answer.

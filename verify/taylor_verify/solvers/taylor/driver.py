@@ -16,16 +16,25 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from time import perf_counter
-from typing import Any, final
+from typing import Any, Final, final
 
 import numpy as np
 
 from taylor_verify.models.form import Form
+from taylor_verify.models.kinks import Kink, lengths
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.pieces import piece_by_piece
+from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored
+from taylor_verify.solvers.taylor.crossings import (
+    crossings,
+    kinks_of_length,
+    missed,
+    on_a_line,
+    smoothed,
+)
 from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
@@ -37,6 +46,7 @@ _LARGEST_STRAIGHT_LINE = 5
 _MOST_COMPILED = 128
 # Ways are kept for whoever asks many questions in turns, and their instants only where they are few.
 _MOST_WAYS, _MOST_INSTANTS = 128, 1000
+_NO_LENGTH: Final = "is made for loads whose norms and roots do not vanish on the way"
 # As many instants of the way in doubles tell the fastest rate.
 _SCOUTED = 24
 
@@ -54,6 +64,7 @@ class Taylor(Solver):
     tolerance: Fraction | None = None
     is_optimised: bool = False
     counts_steps = True
+    takes_loads = True
 
     def unavailable(self, rung: Rung) -> str:
         if self.tolerance is not None and not rung.round(self.tolerance) > 0:
@@ -62,15 +73,29 @@ class Taylor(Solver):
         return unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
+        return piece_by_piece(problem, self._solve)
+
+    def _solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
+        if kinks_of_length(problem.form):
+            return refused(f"{self.name} takes no root of one square: write abs")
         way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
         way = way_of(problem, tolerance, self.is_optimised)
         ready = perf_counter()
         is_slow = arithmetic(problem.rung).is_software
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
         seconds = perf_counter() - ready
+        if lengths(problem.form) and _may_vanish(problem, outcome, rows):
+            return refused(f"{self.name} {_NO_LENGTH}")
+        turned, kinks = smoothed(problem)
+        if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
+            return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
+        if kinks and outcome is Outcome.STEP_LIMIT:
+            return refused(f"{self.name} is made for kinks that are crossed, and not only touched")
         quantities: Mapping[str, Any] = {}
         if outcome is Outcome.FINISHED:
             # Exact numbers of many samples take longer than the samples: the judge asks for them.
@@ -93,12 +118,13 @@ def compiled(
     tolerance: Fraction | None,
     is_optimised: bool,
     literals: tuple[Fraction, ...] | None = None,
+    kinks: tuple[Kink, ...] = (),
 ) -> Any:
     """Return the one compiled integrator of a form, rung and tolerance; the rest is filled in per problem.
 
     Parameters cost what literals cost, and serve every body: literals are for measuring that. Optimised
     loops compute the same as others to the last bit. Optimised straight-line code of doubles does not,
-    because it fuses products with sums.
+    because it fuses products with sums. ``kinks`` are those that `smooth` has taken out of the form.
     """
     import heyoka as hy
 
@@ -122,6 +148,8 @@ def compiled(
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
+    if kinks:
+        options["t_events"] = crossings(form, kinks, coefficients, rung)
     return stored(hy.taylor_adaptive, system, **options)
 
 
@@ -147,27 +175,42 @@ def _foreseen(problem: Problem) -> float:
     doubles do not reach the end.
     """
     rung = rung_named("f64")
-    end = rung.round(problem.times[-1])
+    begin, end = rung.round(problem.begin), rung.round(problem.times[-1])
     scout = replace(
         problem,
         rung=rung,
         parameters=tuple(map(rung.round, problem.parameters)),
         initial_momenta=tuple(map(rung.round, problem.initial_momenta)),
-        times=[rung.round(end * Fraction(k, _SCOUTED)) for k in range(1, _SCOUTED + 1)],
+        begin=begin,
+        times=[
+            rung.round(begin + (end - begin) * Fraction(k, _SCOUTED))
+            for k in range(1, _SCOUTED + 1)
+        ],
     )
-    integrator = compiled(scout.form, rung, None, pays(scout.form, rung))
-    return Way(integrator, scout).fastest()
+    turned, kinks = smoothed(scout)
+    integrator = compiled(turned.form, rung, None, pays(turned.form, rung), kinks=kinks)
+    return Way(integrator, turned, scout).fastest()
+
+
+def _may_vanish(problem: Problem, outcome: Outcome, rows: Any) -> bool:
+    """Return True where a length that the loads take may have been zero, which no series goes through."""
+    if outcome is Outcome.FINISHED:
+        return on_a_line(problem, rows)
+    return outcome is Outcome.NON_FINITE
 
 
 def _way(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> Way:
     """Return the way of a problem; the tolerance is a quotient, which is found sooner than a Fraction."""
+    turned, kinks = smoothed(problem)
     return Way(
         compiled(
-            problem.form,
+            turned.form,
             problem.rung,
             None if tolerance is None else Fraction(*tolerance),
-            is_optimised or pays(problem.form, problem.rung, problem),
+            is_optimised or pays(turned.form, problem.rung, problem),
+            kinks=kinks,
         ),
+        turned,
         problem,
     )
 

@@ -214,6 +214,8 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
         raise ValueError("expected at least one start, got none @ ensemble")
     form, rung = problems[0].form, problems[0].rung
     for i, problem in enumerate(problems):
+        if problem.given.body.loads is not None:
+            raise ValueError(f"expected a body without loads that a scene writes down @ lane {i}")
         if problem.rung != rung:
             raise ValueError(f"expected starts on {rung.name}, got {problem.rung.name} @ lane {i}")
         if problem.form != form:

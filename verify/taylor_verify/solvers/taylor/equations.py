@@ -14,7 +14,7 @@ def equations(form: Form, coefficients: Sequence[Any]) -> list[tuple[Any, Any]]:
     import heyoka as hy
 
     states = hy.make_vars(*form.states)
-    rates = form.rates(states, coefficients)
+    rates = form.rates(states, coefficients, hy.time)
     return [
         (state, hy.expression(0.0) if is_absent(rate) else rate)
         for state, rate in zip(states, rates, strict=True)

@@ -14,7 +14,7 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.scenes.precision import Rung, exact_value, held_exactly
-from taylor_verify.solvers.solver import Solver, float64_alone
+from taylor_verify.solvers.solver import Solver, float64_alone, refused
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.numbers import unavailable
 from taylor_verify.solvers.taylor.way import outcome_of
@@ -33,6 +33,8 @@ class Plain(Solver):
         return float64_alone(self.name, rung) or unavailable(rung)
 
     def solve(self, problem: Problem) -> Trajectory:
+        if reason := self.unsuited(problem):
+            return refused(reason)
         import heyoka as hy
 
         heyoka_cache_off()

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple, final
 
 import numpy as np
 
+from taylor_verify.models.differenced import Differenced
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.scenes.precision import Rung
@@ -39,6 +40,8 @@ FEW_LOOKS: Final = 10
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
+# Loads may change faster than the motion does.
+_LOADED: Final = 100
 # What would take longer than days is not begun.
 MOST_RADIANS: Final = 1e10
 # That takes about half a second where the processor has the arithmetic. A wide rung calls back after
@@ -65,10 +68,11 @@ class Way:
     """A problem on its way from its start through its instants.
 
     ``integrator`` is that of the problem's form, shared with other problems: each run fills it in anew.
+    ``looked_at`` is the same problem with the kinks of its loads, where those were taken out.
     ``numbers`` are those of its rung, and ``order`` is that of its Taylor series.
     """
 
-    def __init__(self, integrator: Any, problem: Problem) -> None:
+    def __init__(self, integrator: Any, problem: Problem, looked_at: Problem | None = None) -> None:
         numbers = arithmetic(problem.rung)
         self._integrator, self._problem = integrator, problem
         # Views of heyoka's own memory.
@@ -79,12 +83,17 @@ class Way:
         self._start = numbers.array(problem.initial_momenta)
         self._times = numbers.times(problem.times)
         is_double = self._parameters.dtype == float
-        self._linearised = Linearised(problem, self._parameters if is_double else None)
+        self._is_loaded = problem.given.body.loads is not None
+        self._linearised = (
+            Differenced(looked_at or problem)
+            if self._is_loaded
+            else Linearised(problem, self._parameters if is_double else None)
+        )
         self._look_number = 0
         self._look: Look | None = None
         self._rate = self._linearised.fastest(self._start)
         # In these units the motion is of size one, also one that is at rest when it begins.
-        self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]))
+        self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]) - float(problem.begin))
         self._calls = _calls(self._radians, problem.rung)
         self._grid = self._instants(self._calls)
 
@@ -108,6 +117,12 @@ class Way:
         if len(ran.rows) != len(grid):
             return ran._replace(outcome=Outcome.INTERRUPTED)
         return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
+
+    @property
+    def parameters(self) -> np.ndarray[Any, Any]:
+        """The parameters at the end of the last run: its events may have changed some."""
+        parameters: np.ndarray[Any, Any] = self._pars
+        return parameters
 
     def fastest(self) -> float:
         """Return the fastest rate at the instants; infinite where the way does not reach its end."""
@@ -145,7 +160,7 @@ class Way:
         status, _, uncut, steps, _, rows = self._integrator.propagate_grid(
             instants,
             max_delta_t=self.numbers.double(cap),
-            max_steps=most_steps(radians),
+            max_steps=most_steps(radians) * (_LOADED if self._is_loaded else 1),
             callback=self._callback,
         )
         seconds = perf_counter() - began
@@ -159,6 +174,8 @@ class Way:
 
     def _was_too_fast(self, ran: Ran, rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
+        if not len(ran.rows):
+            return False
         some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
             return not self._is_within(some, _SLACK * self._longest / ran.longest)
@@ -170,7 +187,7 @@ class Way:
         Whoever goes one way again and again is timing a solver: that is worth compiled code.
         """
         self._look_number += 1
-        if self._look_number > FEW_LOOKS:
+        if self._look_number > FEW_LOOKS and not self._is_loaded:
             if self._look is None:
                 self._look = Look(self._problem, len(states))
             if self._look.is_within(states, rate):
@@ -189,14 +206,17 @@ class Way:
         so many pieces can be cut there as often as between many.
         """
         times, exact = self._times, self._problem.times
-        zero = self.numbers.array([Fraction(0)])
-        grid = times if times[0] == zero[0] else np.concatenate([zero, times])
+        begin = self._problem.begin
+        first = self.numbers.array([begin])
+        grid = times if times[0] == first[0] else np.concatenate([first, times])
         if len(grid) > pieces:
             return grid, slice(len(grid) - len(times), None)
-        ends = list(exact) if len(grid) == len(times) else [Fraction(0), *exact]
+        ends = list(exact) if len(grid) == len(times) else [begin, *exact]
         instants, samples = ends[:1], [0]
         for after, before in pairwise(ends):
-            instants += _waypoints(after, before, abs(ends[-1]) / pieces, self._problem.rung)
+            instants += _waypoints(
+                after, before, abs(ends[-1] - begin) / pieces, self._problem.rung
+            )
             samples.append(len(instants))
             instants.append(before)
         return self.numbers.array(instants), samples[len(grid) - len(times) :]

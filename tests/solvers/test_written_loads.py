@@ -1,0 +1,226 @@
+"""Solvers under loads that a scene writes down, against the enclosure of the same rounded data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from builders.written_loads import euler, kirchhoff
+from mpmath import mp, mpf
+
+from taylor_verify.exact.route import solution
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.scenes.precision import rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.process.protocol import question
+from taylor_verify.solvers.registry import solver_named, solver_names
+from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+SPACE = """
+[define]
+n = "1/2"
+v = "norm(u1, u2, u3)"
+r = "norm(c1, c2, c3)"
+[space]
+o = ["cos(n*t)", "sin(n*t)", 0]
+d = ["c1", "c2", "c3"]
+[tables]
+p = { times = [0, "1/2", "5/4", 2], values = [0, 0.3, 0.1, -0.4], kind = "cubic" }
+"""
+# r and v need the names of a solid in a fluid.
+TURNING = SPACE.replace('v = "norm(u1, u2, u3)"', "").replace('r = "norm(c1, c2, c3)"', "")
+TURNING = TURNING.replace('d = ["c1", "c2", "c3"]', "")
+SMOOTH: Mapping[str, Scene] = {
+    "sine": euler(("0.1*sin(2*t)", "-w2/20", "(w1 - w3)/30"), "9/4"),
+    "gradient": euler(("3*n^2*o2*o3*I33", "-3*n^2*o3*o1*I22", "o1*o2/5"), "9/4", TURNING),
+    "thrusters": euler(("0.3 if t < 1 else 0", "-0.2*step(t - 1/2)", "0.1"), "9/4"),
+    "backwards": euler(("0.3 if t < 0 else 0.1", "-0.2*step(t + 1/2)", "q1"), "-1"),
+    "table": euler(("p - tanh(5*w1)/9", "-atan(5*w2)/50", "p*w1^(-1/3)"), "9/4", TURNING),
+    "drag": kirchhoff(("-v*u1/5", "-v*u2/5", "-v*u3/5"), ("0", "-w2/9", "0"), "9/4", SPACE),
+    "orbit": kirchhoff(("-d1/r^3", "-d2/r^3", "-d3*r^(-5/2)"), ("0", "0", "y1/9"), "9/4", SPACE),
+}
+HUNG = """
+weight = { force = [0, 0, 2], at = [0, "1/8", "1/10"] }
+current = ["1/4", 0, "-1/8"]
+"""
+TOP = kirchhoff(("0", "x1/9", "0"), ("0", "0", "0"), "9/4", more=HUNG)
+KINKED: Mapping[str, Scene] = {
+    "abs": euler(("-abs(w1)*w1/5", "cos(3*t) - w2*abs(w2)", "-w3*abs(w3)"), "9/4"),
+    "backwards": euler(("cos(3*t)", "abs(w1)/4", "min(w2, 0)"), "-3/4"),
+    "clip": euler(
+        ("clip(-5*w1, -0.2, 0.2)", "-max(w2, w3, 0)", "min(w1 + w3, w2)*max(w1, w2)"), "2"
+    ),
+    "at rest": euler(("-w1*abs(w1 - 1/3)", "abs(w1 - 1/3)", "cos(t)"), "2"),
+}
+
+
+def error(scene: Scene, solver: str, name: str) -> mpf:
+    """The largest error at the last sample, relative to the size of each vector and matrix."""
+    problem = pose(scene, rung(name))
+    return distance(problem, solver_named(solver).solve(problem))
+
+
+def distance(problem: Problem, answered: Trajectory) -> mpf:
+    assert answered.outcome is Outcome.FINISHED, answered.detail
+    digits = int(problem.rung.bits * 0.31) + 3
+    truth = solution(problem.given).motion([problem.given.clock.elapsed[-1]], digits)
+    with mp.workdps(digits + 10):
+        motion = answered.motion(problem.rung.bits + 60)
+        return max(
+            mp.norm([a - b for a, b in zip(motion[q][-1].flat, truth[q][0].flat, strict=True)])
+            / mp.norm(list(truth[q][0].flat))
+            for q in motion.quantities
+        )
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_taylor_loses_a_few_roundings(name: str) -> None:
+    """In doubles, with switches, a table, and loads that read attitude and centre."""
+    assert error(SMOOTH[name], "taylor", "f64") < 1e-14
+
+
+@pytest.mark.parametrize("name", ["f32", "f80", "f128", "mp237"])
+@pytest.mark.parametrize("scene", ["thrusters", "orbit"])
+def test_every_rung_has_its_own_digits(scene: str, name: str) -> None:
+    """One compiled form serves all bodies: numbers are parameters of the rung's own type."""
+    if missing := solver_named("taylor").unavailable(rung(name)):
+        pytest.skip(missing)
+    assert error(SMOOTH[scene], "taylor", name) < 50 * mpf(2) ** -rung(name).bits
+
+
+@pytest.mark.parametrize("name", ["f64", "mp237"])
+@pytest.mark.parametrize("scene", KINKED)
+def test_kinks_are_crossed_at_full_precision(scene: str, name: str) -> None:
+    """Forwards and backwards, and from a start that lies on the kink."""
+    assert error(KINKED[scene], "taylor", name) < 50 * mpf(2) ** -rung(name).bits
+
+
+def test_weight_and_current_act() -> None:
+    """A weight hangs on the body, and the centre drifts with the fluid."""
+    assert error(TOP, "taylor", "f64") < 1e-14
+    assert error(TOP, "scipy:DOP853?rtol=1e-12&atol=1e-13", "f64") < 1e-10
+
+
+@pytest.mark.parametrize("scene", ["sine", "thrusters", "table", "drag", "backwards"])
+def test_scipy_goes_from_switch_to_switch(scene: str) -> None:
+    assert error(SMOOTH[scene], "scipy:DOP853?rtol=1e-11&atol=1e-12", "f64") < 1e-8
+
+
+@pytest.mark.parametrize("scene", ["thrusters", "backwards"])
+def test_odefun_goes_from_switch_to_switch(scene: str) -> None:
+    assert error(SMOOTH[scene], "mpmath:odefun", "f64") < 1e-13
+
+
+LINE = euler(("-norm(w1, w2)*w1", "-norm(w1, w2)*w2", "0"), "3/4")
+REFUSED = {
+    "a norm at rest": euler(("-norm(w1 - 1/3, w2 + 1/2)*w1", "0", "0"), "3/4"),
+    "a root of a square": euler(("sqrt((w1 + w2)^2)", "0", "0"), "3/4"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_length_that_may_vanish_is_refused(name: str) -> None:
+    """Its series would be wrong on the other side, without any sign."""
+    ended = solver_named("taylor").solve(pose(REFUSED[name], rung("f64")))
+    assert ended.outcome is Outcome.UNSUITED
+    assert not ended.quantities
+
+
+# Who takes none.
+
+TAKING = ("taylor", "scipy", "mpmath", "fmu")
+
+
+@pytest.mark.parametrize(
+    "name",
+    sorted({n.partition("?")[0] for n in solver_names() if not n.startswith(TAKING)}),
+)
+def test_a_solver_that_cannot_take_written_loads_says_so(name: str) -> None:
+    """It would answer for another body."""
+    solver = solver_named(name + "?step=1e-2" * name.startswith("geometric"))
+    problem = pose(SMOOTH["sine"], rung("f64"))
+    assert "does not take loads that a scene writes down" in solver.unsuited(problem)
+
+
+# A solver of one's own.
+
+
+def by_hand(problem: Problem) -> np.ndarray:  # type: ignore[type-arg]
+    """Omega and the attitude by the classical method, from switch to switch."""
+    body, initial = problem.given.body, problem.given.initial
+    inertia = np.array(body.energy_matrix, dtype=float)
+    start = float(problem.given.clock.start)
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+        w, q = y[:3], y[3:]
+        turned = np.linalg.solve(inertia, np.cross(inertia @ w, w) + problem.loads(start + t, y))
+        product = [-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))]
+        return np.concatenate([turned, np.array(product) / 2])
+
+    q = np.array([float(e) for e in initial.attitude])
+    y = np.concatenate([[float(w) for w in initial.omega], q / np.linalg.norm(q)])
+    elapsed = [float(t) for t in problem.given.clock.elapsed]
+    stops = sorted({*map(float, problem.switches), *elapsed})
+    rows, now = [], 0.0
+    for stop in (s for s in stops if 0 <= s <= elapsed[-1]):
+        h = (stop - now) / 200
+        for k in range(200):
+            # The last stage stays before the switch.
+            times = [now + (k + part) * h * (1 - 1e-15) for part in (0, 0.5, 1)]
+            a = rates(times[0], y)
+            b = rates(times[1], y + h / 2 * a)
+            c = rates(times[1], y + h / 2 * b)
+            d = rates(times[2], y + h * c)
+            y = y + h / 6 * (a + 2 * b + 2 * c + d)
+        now = stop
+        if stop in elapsed:
+            rows.append(y)
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("name", ["sine", "gradient", "thrusters", "table"])
+def test_loads_and_switches_serve_a_solver_of_ones_own(name: str) -> None:
+    """Its order is that of its method, as it begins anew at the switches."""
+    problem = pose(SMOOTH[name], rung("f64"))
+    assert distance(problem, Callback(by_hand).solve(problem)) < 1e-8
+
+
+@pytest.mark.parametrize("name", ["thrusters", "drag", "orbit"])
+def test_loads_take_many_times_and_states_at_once(name: str) -> None:
+    """The same numbers as one by one, on both sides of the switches."""
+    problem = pose(SMOOTH[name], rung("f64"))
+    random = np.random.default_rng(1)
+    states, times = random.uniform(0.3, 0.9, (20, 13)), np.linspace(-1, 3, 20)
+    together = np.hstack([problem.loads(times, states)])
+    single = [np.hstack([problem.loads(t, y)]) for t, y in zip(times, states, strict=True)]
+    together = np.concatenate(together, axis=-1) if together.ndim == 3 else together
+    single = [row.ravel() for row in single]
+    np.testing.assert_allclose(together, single, rtol=1e-14, atol=1e-15)
+
+
+def test_loads_ask_for_what_they_read() -> None:
+    """A state without the attitude is too short for a load that reads it."""
+    with pytest.raises(ValueError, match="expected a state of 7 numbers, got 3"):
+        pose(SMOOTH["gradient"], rung("f64")).loads(0, [1, 2, 3])
+
+
+def test_the_question_has_the_steps_of_each_piece() -> None:
+    """A reader of one loop computes the moment from them; each constant is a number of the rung."""
+    document = question(pose(SMOOTH["thrusters"], rung("f64")))
+    assert document["protocol"] == 5
+    pieces = document["loads"]["pieces"]
+    assert [piece["to"] for piece in pieces] == ["0.25", "0.75", None]
+    moments = []
+    for piece in pieces:
+        values = [float.fromhex(step[2]) for step in piece["steps"] if step[0] == "number"]
+        moments.append([values[k] for k in piece["moment"]])
+    assert moments == [[0.3, 0.0, 0.1], [0.3, -0.2, 0.1], [0.0, -0.2, 0.1]]
+    assert document["loads"]["text"]["moment"][0] == "0.3 if t < 1 else 0"
+
+
+def test_all_pieces_are_one_span() -> None:
+    """The switches are those of the rounded numbers, elapsed and sorted."""
+    assert pose(SMOOTH["thrusters"], rung("f64")).switches == [Fraction(1, 4), Fraction(3, 4)]

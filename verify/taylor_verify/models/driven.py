@@ -1,0 +1,71 @@
+"""Units for a motion that the loads of its scene speed up."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from math import frexp
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.models.acting import Acting
+from taylor_verify.models.units import Units, largest
+from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.scenes.tensors import ZERO_VECTOR
+
+# The loads are looked at in these parts of the time, at the state of the start.
+_LOOKS: Final = (Fraction(0), Fraction(1, 3), Fraction(2, 3))
+
+
+def driven(units: Units, scene: Scene, span: Fraction) -> Units:
+    """Return the units of a scene for the momenta that its loads give; ``units`` are without loads.
+
+    Within the span a moment M drives a body whose inverse inertia is K to M times the span, or as
+    far as it turns by a radian: (M/K)^(1/2). Both are estimates, as units need them.
+    """
+    loads = scene.body.loads
+    assert loads is not None
+    acting, initial, clock = Acting(scene, loads), scene.initial, scene.clock
+    place = (*initial.attitude, *initial.parts().get("centre", ZERO_VECTOR))
+    state = [float(value) for value in (*initial.moving, *place)]
+    end = -span if clock.elapsed[-1] < 0 else span
+    with suppress(ArithmeticError, ValueError), np.errstate(all="ignore"):
+        values = [
+            np.concatenate(np.atleast_2d(acting(float(clock.start + p * end), state)))
+            for p in _LOOKS
+        ]
+        sizes = np.abs(values).max(axis=0)
+        if np.isfinite(sizes).all() and sizes.any():
+            return _pushed(units, scene, float(span), sizes)
+    return units
+
+
+def _pushed(units: Units, scene: Scene, span: float, sizes: Any) -> Units:
+    matrix = scene.body.energy_matrix
+    is_rigid, moves = len(matrix) == 3, any(scene.initial.moving)
+    block = [row[-3:] for row in matrix[-3:]]
+    angular = 1 / min(float(block[i][i]) for i in range(3)) if is_rigid else float(largest(block))
+    rate = (angular * float(sizes[-3:].max())) ** 0.5
+    time = min(span, 1 / rate) if rate else span
+    momentum, force = _power(float(sizes[-3:].max()) * time), _power(float(sizes[:3].max()) * time)
+    if moves:
+        momentum, force = max(momentum, units.momentum), max(force, units.impulse)
+    momentum, impulse = momentum or force, force or momentum
+    fastest = Fraction(angular) * momentum
+    if is_rigid:
+        unit = min(units.time if moves else 1 / _power(float(fastest)), 1 / _power(float(fastest)))
+        return replace(units, time=unit, momentum=momentum)
+    linear = largest([row[:3] for row in matrix[:3]])
+    coupling = largest([row[3:] for row in matrix[:3]])
+    fastest = max(fastest, linear * impulse**2 / momentum, coupling * impulse)
+    speed = linear * impulse + coupling * momentum
+    path = max(_power(float(speed * Fraction(span) * impulse / momentum)), Fraction(1))
+    return Units(time=1 / _power(float(fastest)), momentum=momentum, impulse=impulse, path=path)
+
+
+def _power(value: float) -> Fraction:
+    """Return the power of two just below a number; 0 for 0."""
+    return power_of_two(frexp(value)[1] - 1) if value else Fraction(0)

@@ -1,0 +1,130 @@
+"""Loads with kinks, for an integrator of smooth equations.
+
+abs, min and max choose between two smooth branches by the sign of a difference. Here the choice becomes
+parameters, s of 1 or -1, or s and z of 1 and 0, that are set anew wherever the difference crosses zero. A
+root of a sum of squares has a kink only where all of them vanish; ``lengths`` says of what.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from taylor_verify.models.form import Form, Named
+from taylor_verify.models.written import Written
+from taylor_verify.scenes.loads.steps import Step
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A kink where the step at ``place`` crosses zero, and the parameters that choose the branch there."""
+
+    place: int
+    operation: str
+    names: tuple[str, ...]
+
+    def chosen(self, sign: int) -> tuple[int, ...]:
+        """Return the values of the parameters behind a crossing to this sign."""
+        if self.operation == "abs":
+            return (sign,)
+        is_first = (sign < 0) == (self.operation == "min")
+        return (int(is_first), int(not is_first))
+
+
+def smooth(form: Form) -> tuple[Form, tuple[Kink, ...]]:
+    """Return a form without kinks, the parameters of the choice behind its own, and the kinks."""
+    equations = form.equations
+    if not isinstance(equations, Written) or not any(map(_is_kinked, equations.steps)):
+        return form, ()
+    made = _Smoothing()
+    for step in equations.steps:
+        made.take(step)
+    outputs = tuple(made.places[output] for output in equations.outputs)
+    names = tuple(name for kink in made.kinks for name in kink.names)
+    turned = replace(equations, steps=tuple(made.steps), outputs=outputs)
+    return replace(form, equations=turned, parameters=form.parameters + names), tuple(made.kinks)
+
+
+def values(form: Form, state: Sequence[Any], parameters: Sequence[Any], time: Any) -> list[Any]:
+    """Return the value of each step, in the arithmetic of the arguments."""
+    equations = form.equations
+    assert isinstance(equations, Written)
+    named = Named(zip(form.states + form.parameters, [*state, *parameters], strict=True), t=time)
+    return equations.values(named)
+
+
+def _is_kinked(step: Step) -> bool:
+    return step.operation in ("abs", "min", "max")
+
+
+class _Smoothing:
+    """Steps that grow, with a choice in place of each kink."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self.places: list[int] = []
+        self.kinks: list[Kink] = []
+
+    def take(self, step: Step) -> None:
+        operands = tuple(self.places[k] for k in step.operands)
+        moved = replace(step, operands=operands)
+        self.places.append(self._chosen(moved) if _is_kinked(step) else self._add(moved))
+
+    def _chosen(self, step: Step) -> int:
+        k = len(self.kinks) + 1
+        names: tuple[str, ...] = (f"s{k}",)
+        difference = step.operands[0]
+        if step.operation != "abs":
+            names = (f"s{k}", f"z{k}")
+            difference = self._add(Step("-", step.operands))
+        self.kinks.append(Kink(difference, step.operation, names))
+        parts = [
+            self._add(Step("*", (self._add(Step("number", name=name)), operand)))
+            for name, operand in zip(names, step.operands, strict=True)
+        ]
+        return parts[0] if len(parts) == 1 else self._add(Step("+", tuple(parts)))
+
+    def _add(self, step: Step) -> int:
+        self.steps.append(step)
+        return len(self.steps) - 1
+
+
+def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
+    """Return, for each root of a sum of squares, the places of the steps that are squared."""
+    equations = form.equations
+    if not isinstance(equations, Written):
+        return ()
+    steps = equations.steps
+    roots = set[tuple[int, ...]]()
+    for step in steps:
+        if step.operation == "norm":
+            roots.add(step.operands)
+        elif step.operation == "sqrt" or _is_broken(step):
+            parts = list(_squared(steps, step.operands[0]))
+            if None not in parts:
+                roots.add(tuple(part for part in parts if part is not None))
+    return tuple(sorted(roots))
+
+
+def _is_broken(step: Step) -> bool:
+    return step.operation == "power" and step.number is not None and step.number.denominator != 1
+
+
+def _squared(steps: Sequence[Step], place: int) -> Iterator[int | None]:
+    """Yield the steps whose squares add up to a step; None for a term that is no square."""
+    step = steps[place]
+    number = step.number or Fraction(0)
+    match step.operation:
+        case "+":
+            for operand in step.operands:
+                yield from _squared(steps, operand)
+        case "*" if step.operands[0] == step.operands[1]:
+            yield step.operands[0]
+        case "*" if "number" in (kinds := [steps[operand].operation for operand in step.operands]):
+            yield from _squared(steps, step.operands[1 - kinds.index("number")])
+        case "power" if number > 0 and number.denominator == 1 and number % 2 == 0:
+            yield step.operands[0]
+        case _:
+            yield None

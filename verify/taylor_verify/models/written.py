@@ -1,0 +1,220 @@
+"""The equations of a body under loads that a scene writes down, as elementary steps.
+
+v            the velocity of the fluid, space axes, over which the centre drifts
+g1, g2, ..   the numbers of the steps, and the units of what they read: parameters, as all numbers are
+t            the time since the start: it is no state, but handed over with each state
+
+The steps count in the scene's own units. Each input and each load is multiplied by its unit, which is a
+power of two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Final
+
+from taylor_verify.models.algebra import add, apply, is_absent, minus, plus, times
+from taylor_verify.models.form import Equations, Named, labelled
+from taylor_verify.models.frame import rotation
+from taylor_verify.models.functions import Functions, functions_of
+from taylor_verify.models.kirchhoff import velocities
+from taylor_verify.models.symbol import Symbol
+from taylor_verify.models.units import Units
+from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
+from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.tensors import Vector
+
+# The letters of the loads and of the momenta, by the number of the loads.
+_LETTERS: Final = {3: ("M",), 6: ("X", "L")}
+_ARITHMETIC: Final = {"+": plus, "-": minus, "*": times}
+
+
+@dataclass(frozen=True)
+class Written:
+    """The equations ``free`` of a body under the loads of some steps.
+
+    A step "number" has the name of its parameter. Two scenes with the same steps share one compiled
+    integrator, whatever their numbers are.
+    """
+
+    free: Equations
+    steps: tuple[Step, ...]
+    outputs: tuple[int, ...]
+
+    def __call__(self, n: Named) -> dict[str, Any]:
+        values = self.values(n)
+        return self._rates(n, self._loads([values[k] for k in self.outputs]))
+
+    def _rates(self, n: Named, loads: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the rates under these loads, and with the drift of the fluid in that of the centre."""
+        rates = dict(self.free(Named({**n, **loads})))
+        if "c1" in rates:
+            rates |= labelled("c", add([rates[f"c{i}"] for i in (1, 2, 3)], n.vector("v")))
+        return rates
+
+    def lines(self, n: Named) -> dict[str, Any]:
+        """Return the rates by the loads, the loads by the steps k0, k1, .., and each step."""
+        names = [Symbol(f"k{place}") for place in range(len(self.steps))]
+        loads = self._loads([names[place] for place in self.outputs])
+        rates = self._rates(n, {name: Symbol(name) for name in loads})
+        functions, inputs = functions_of(names[0]), _Inputs(n)
+        steps = {
+            names[place].name: _value(step, names, functions, inputs)
+            for place, step in enumerate(self.steps)
+        }
+        return {f"{name}'": rate for name, rate in rates.items() if name in n} | loads | steps
+
+    def _loads(self, values: Sequence[Any]) -> dict[str, Any]:
+        loads: dict[str, Any] = {}
+        for k, letter in enumerate(_LETTERS[len(values)]):
+            loads |= labelled(letter, values[3 * k : 3 * k + 3])
+        return loads
+
+    def values(self, n: Named) -> list[Any]:
+        """Return the value of each step."""
+        functions = functions_of(n["H1"] if "H1" in n else n["x1"])
+        inputs, values = _Inputs(n), list[Any]()
+        for step in self.steps:
+            values.append(_value(step, values, functions, inputs))
+        return values
+
+
+class _Inputs:
+    """What steps read, in the units of the problem, each formed where it is asked for."""
+
+    def __init__(self, n: Named) -> None:
+        self._n, self._formed = n, dict[str, Any]()
+
+    def __getitem__(self, name: str) -> Any:
+        if name[0] in "wur" and name not in self._formed:
+            self._formed |= self._turned() if name[0] == "r" else self._moved()
+        return self._n[f"e{name[1]}"] if name[0] == "q" else self._formed.get(name, self._n[name])
+
+    def _moved(self) -> dict[str, Any]:
+        n = self._n
+        if "H1" in n:
+            return labelled("w", apply(n.symmetric("K"), n.vector("H")))
+        blocks = n.symmetric("A"), n.matrix("B"), n.symmetric("C")
+        U, Omega = velocities(n.vector("x"), n.vector("y"), *blocks)
+        return labelled("u", U) | labelled("w", Omega)
+
+    def _turned(self) -> dict[str, Any]:
+        R = rotation(self._n.quaternion())
+        return {f"r{i + 1}{j + 1}": R[i][j] for i in range(3) for j in range(3)}
+
+
+def _value(step: Step, values: Sequence[Any], functions: Functions, inputs: Any) -> Any:
+    """Return the value of a step, from those before it."""
+    operands = [values[place] for place in step.operands]
+    match step.operation:
+        case "number" | "input":
+            return inputs[step.name]
+        case "+" | "-" | "*":
+            return _ARITHMETIC[step.operation](*operands)
+        case "/":
+            return operands[0] if is_absent(operands[0]) else operands[0] / operands[1]
+        case "power":
+            return _power(operands[0], step.number or Fraction(0), functions)
+    return functions[step.operation](*operands)
+
+
+def _power(base: Any, exponent: Fraction, functions: Functions) -> Any:
+    """Return a rational power; a whole one by products, so that its base may be zero or negative."""
+    if exponent.denominator != 1:
+        return functions["power"](base, exponent)
+    result: Any = None
+    square, left = base, abs(int(exponent))
+    while left:
+        if left & 1:
+            result = square if result is None else result * square
+        left >>= 1
+        square = square * square if left else square
+    return 1 / result if exponent < 0 else result
+
+
+# Steps in the units of a problem.
+
+
+@dataclass(frozen=True)
+class Counted:
+    """Steps in the units of a problem: their numbers by name, and the inputs that they read."""
+
+    steps: tuple[Step, ...]
+    outputs: tuple[int, ...]
+    numbers: Mapping[str, Fraction]
+
+
+def counted(piece: Piece, units: Units, centre: Vector) -> Counted:
+    """Return the steps of a piece of time with its inputs and loads in these units.
+
+    ``centre`` is where the body starts: the states have the way from there.
+    """
+    made = _Counting()
+    places: list[int] = []
+    for step in piece.steps:
+        if step.operation == "input":
+            place = made.scaled(made.add(step), _unit(step.name, units))
+            if step.name in CENTRE:
+                start = centre[int(step.name[1]) - 1]
+                place = made.add(Step("+", (place, made.number(start)))) if start else place
+        elif step.operation == "number":
+            place = made.number(step.number or Fraction(0))
+        else:
+            operands = tuple(places[k] for k in step.operands)
+            place = made.add(Step(step.operation, operands, step.number))
+        places.append(place)
+    impulses = (units.momentum,) if len(piece.outputs) == 3 else (units.impulse, units.momentum)
+    outputs = [
+        made.scaled(places[place], units.time / impulses[k // 3])
+        for k, place in enumerate(piece.outputs)
+    ]
+    return Counted(tuple(made.steps), tuple(outputs), made.numbers)
+
+
+class _Counting:
+    """Steps that grow; every number becomes a parameter."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self.numbers: dict[str, Fraction] = {}
+
+    def add(self, step: Step) -> int:
+        self.steps.append(step)
+        return len(self.steps) - 1
+
+    def number(self, value: Fraction) -> int:
+        name = f"g{len(self.numbers) + 1}"
+        self.numbers[name] = value
+        return self.add(Step("number", name=name))
+
+    def scaled(self, place: int, unit: Fraction) -> int:
+        """The place of a step times a power of two."""
+        return place if unit == 1 else self.add(Step("*", (self.number(unit), place)))
+
+
+def _unit(name: str, units: Units) -> Fraction:
+    """Return the unit of an input."""
+    of_letter = {
+        "t": units.time,
+        "w": 1 / units.time,
+        "u": units.length / units.time,
+        "x": units.impulse,
+        "y": units.momentum,
+        "c": units.centre,
+    }
+    return of_letter.get(name[0], Fraction(1))
+
+
+def drift(current: Vector, units: Units) -> dict[str, Fraction]:
+    """Return the velocity of the fluid, as far as it is not zero, in the unit of the centre's rate."""
+    unit = units.centre / units.time
+    return {name: v / unit for name, v in labelled("v", current).items() if v}
+
+
+def sentences(loads: Loads) -> tuple[str, ...]:
+    """Return a sentence that explains the loads to a reader."""
+    count = len(loads.switches)
+    pieces = f", others in each of {count + 1} pieces of time" if count else ""
+    return (f"the loads are elementary steps{pieces}; g1, g2, .. are their numbers and units",)

@@ -1,0 +1,150 @@
+"""Kinks of written loads as terminal events of heyoka, at each of which a branch is chosen anew."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.models.form import Form
+from taylor_verify.models.kinks import Kink, lengths, smooth, values
+from taylor_verify.models.problem import Problem
+from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.solvers.taylor.numbers import arithmetic
+
+# Vectors whose second singular value is a smaller part of their first lie on one line.
+_ON_A_LINE = 1e-10
+# The power of 1/2, in units of time, after which it shows where a start on a kink goes.
+_LITTLE = 12
+# The power of two, in roundings of a unit of time, that is nothing beside it.
+_NEAR = 10
+# A difference that is no matter of rounding on any rung, beside the largest step.
+_CLEAR = 1e-3
+
+
+@final
+@dataclass(frozen=True)
+class _Choice:
+    """What heyoka calls at a crossing: the kink's parameters become those of the branch behind it."""
+
+    kink: Kink
+    first: int
+    rung: Rung
+
+    def __call__(self, integrator: Any, direction: int) -> bool:
+        # The direction is that in time; a motion backwards in time crosses the other way. An event before
+        # the first step is none: the branch was chosen for it.
+        step = float(integrator.last_h)
+        if direction and step:
+            sign = direction if step > 0 else -direction
+            numbers = arithmetic(self.rung)
+            for k, value in enumerate(self.kink.chosen(sign), start=self.first):
+                integrator.pars[k] = numbers.number(Fraction(value))
+        return True
+
+
+def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], rung: Rung) -> Any:
+    """Return the events of a smooth form's kinks; the parameters of their choices are its last."""
+    import heyoka as hy
+
+    if not kinks:
+        return []
+    steps = values(form, hy.make_vars(*form.states), coefficients, hy.time)
+    first, events = len(form.parameters) - sum(len(kink.names) for kink in kinks), []
+    for kink in kinks:
+        choice = _Choice(kink, first, rung)
+        fp_type = arithmetic(rung).fp_type
+        events.append(hy.t_event(steps[kink.place], callback=choice, fp_type=fp_type))
+        first += len(kink.names)
+    return events
+
+
+def smoothed(problem: Problem) -> tuple[Problem, tuple[Kink, ...]]:
+    """Return the problem with smooth equations, the branches chosen as its start needs them."""
+    form, kinks = smooth(problem.form)
+    if not kinks:
+        return problem, ()
+    parameters = list(problem.parameters)
+    for kink in kinks:
+        parameters += map(Fraction, kink.chosen(_sign(problem, form, parameters, kink)))
+    return replace(problem, form=form, parameters=tuple(parameters)), kinks
+
+
+def _sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -> int:
+    """Return the sign of a kink's difference just behind the start; later kinks do not enter it."""
+    later = [Fraction(0)] * (len(form.parameters) - len(known))
+    with mp.workprec(problem.rung.bits + 64):
+        numbers = [held_exactly(value) for value in (*known, *later)]
+        state = [held_exactly(value) for value in problem.initial_momenta]
+        time = held_exactly(problem.begin)
+        step = mp.mpf(2) ** -_LITTLE * (1 if problem.times[-1] > problem.begin else -1)
+        ahead = _moved(problem, state, time, step)
+        here, there = (
+            values(form, *at)[kink.place]
+            for at in ((state, numbers, time), (ahead, numbers, time + step))
+        )
+        # What crosses zero within a rounding of the start is behind it.
+        is_past = abs(here) * abs(step) < abs(there - here) * mp.mpf(2) ** (
+            _NEAR - problem.rung.bits
+        )
+        return 1 if (there if is_past else here) >= 0 else -1
+
+
+def missed(problem: Problem, kinks: Sequence[Kink], state: Sequence[Any], chosen: Any) -> bool:
+    """Return True where the last state is on another branch than the parameters ``chosen`` say."""
+    numbers = [float(value) for value in chosen]
+    steps = values(problem.form, list(map(float, state)), numbers, float(problem.times[-1]))
+    first = len(numbers) - sum(len(kink.names) for kink in kinks)
+    for kink in kinks:
+        difference, width = steps[kink.place], len(kink.names)
+        expected = [float(value) for value in kink.chosen(1 if difference > 0 else -1)]
+        if (
+            abs(difference) > _CLEAR * max(map(abs, steps))
+            and numbers[first : first + width] != expected
+        ):
+            return True
+        first += width
+    return False
+
+
+def _moved(problem: Problem, state: Sequence[Any], time: Any, step: Any) -> list[Any]:
+    """Return the state a step later, by the classical method of Runge and Kutta."""
+    parameters = [held_exactly(value) for value in problem.parameters]
+
+    def ahead(rates: Sequence[Any], part: Any) -> list[Any]:
+        return [a + part * step * rate for a, rate in zip(state, rates, strict=True)]
+
+    half = mp.mpf(1) / 2
+    rates = [problem.form.rates(state, parameters, time)]
+    for part in (half, half, mp.one):
+        rates.append(problem.form.rates(ahead(rates[-1], part), parameters, time + part * step))
+    mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(*rates, strict=True)]
+    return ahead(mean, mp.one)
+
+
+def kinks_of_length(form: Form) -> bool:
+    """Return True where a root of one square alone stands for an abs."""
+    return any(len(set(parts)) == 1 for parts in lengths(form))
+
+
+def on_a_line(problem: Problem, rows: np.ndarray[Any, Any]) -> bool:
+    """Return True where a vector whose length is taken stays on one line: it may go through zero there."""
+    parts = lengths(problem.form)
+    if not parts:
+        return False
+    start = [float(value) for value in problem.initial_momenta]
+    states = np.vstack([start, rows.astype(float)])
+    times = np.array([float(t) for t in (problem.begin, *problem.times)])
+    parameters = [float(value) for value in problem.parameters]
+    with np.errstate(all="ignore"):
+        steps = values(problem.form, list(states.T), parameters, times)
+    for places in parts:
+        vectors = np.array([steps[place] + 0 * times for place in places])
+        sizes = np.linalg.svd(vectors, compute_uv=False)
+        if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:
+            return True
+    return False
