@@ -147,9 +147,7 @@ class Comparison:
         with costs.of(ERRORS):
             block = self._shifted(errors, last)
             with mp.workprec(self.bits):
-                shifts = time_shifts(
-                    block.scene, self.exact, block.truth, block.answer, self.digits, errors
-                )
+                shifts = self._shifts(block, errors)
                 shifted = [self._shift_of(one, block) for one in velocities]
         return Measured(
             errors,
@@ -191,6 +189,10 @@ class Comparison:
     def _determined(self, start: Motion) -> list[Invariant]:
         """Return the conserved quantities that depend on nothing that the answer lacks."""
         has = {_BLOCKS.get(name, name) for name in self._has}
+        loads = self.scene.body.loads
+        if loads is not None and loads.reads_attitude and not self._balanced.track:
+            # An arc begins at an attitude, and here is none that is a rotation to the last digit.
+            return []
         return [
             invariant
             for invariant in invariants(self._balanced)
@@ -203,10 +205,18 @@ class Comparison:
         names = (name for name in VELOCITIES if name not in self.scene.initial.MOVING)
         return [name for name in names if name in self.quantities]
 
+    def _shifts(self, block: Block, errors: Sequence[Errors]) -> list[Shift | None]:
+        """Return the shifts of time; none under written loads, whose rates are not known."""
+        if self.scene.body.loads is not None:
+            return [None] * len(errors)
+        scene, truth, answer = block.scene, block.truth, block.answer
+        return time_shifts(scene, self.exact, truth, answer, self.digits, errors)
+
     def _shift_of(self, velocity: VelocityErrors, block: Block) -> Velocity:
         errors, sizes = velocity.joined()
-        own = block.velocities[velocity.group]
-        shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
+        own, shift = block.velocities[velocity.group], None
+        if self.scene.body.loads is None:
+            shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
         return Velocity(velocity.group, errors, sizes, shift)
 
     # The rows in blocks.

@@ -124,7 +124,8 @@ def judge_file(
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
-            known = conventions(compared, scene, rung)
+            if scene.body.loads is None:
+                known = conventions(compared, scene, rung)
             if accept_conventions:
                 answer = FileRows.of(compared, rung, known)
             if judged is None or (accept_conventions and known.findings):

@@ -214,7 +214,7 @@ def floor(
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
     for conditioned in (asked, given):
-        orbit = _orbit(conditioned)
+        orbit = orbit_of(conditioned)
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
@@ -234,13 +234,14 @@ def floor(
 
 
 @lru_cache(maxsize=32)
-def _orbit(scene: Scene) -> Path:
+def orbit_of(scene: Scene) -> Path:
+    """Return the orbit of a scene and its condition, computed once for all that ask."""
     return path(scene)
 
 
 def radians(scene: Scene) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
-    orbit = _orbit(scene)
+    orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
@@ -248,7 +249,7 @@ def radians(scene: Scene) -> float:
 
 def looked_at(scene: Scene) -> list[int]:
     """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
-    points = set(_orbit(scene).elapsed)
+    points = set(orbit_of(scene).elapsed)
     return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
 
 

@@ -51,8 +51,11 @@ class Course(NamedTuple):
 def with_repeats(rounded: Floats, path: Path, steps_at: Floats, steps: int, bits: int) -> Floats:
     """Return the size of each step's rounding, with the alike roundings before it.
 
-    ``rounded`` is the size of one rounding, shape (n, components), in the path's units.
+    ``rounded`` is the size of one rounding, shape (n, components), in the path's units. Loads that a scene
+    writes down change from step to step: there each rounding counts for itself.
     """
+    if path.scene.body.loads is not None:
+        return rounded
     h = abs(float(path.elapsed[-1] / path.flow.time)) / steps
     x, rate, bend = (abs(np.hstack(columns)) for columns in zip(*_courses(path), strict=True))
     rate += abs(float(path.scene.body.damping * path.flow.time)) * x
