@@ -87,7 +87,9 @@ def _steps(
     rows = rows or [course.first_row()]
     frame = _Frame(scene, flow)
     states = np.array([[float(midpoint(entry)) for entry in row.state] for row in rows])
-    matrices = [frame.counted(states[k - 1], states[k], _floats(rows[k])) for k in range(1, len(rows))]
+    matrices = [
+        frame.counted(states[k - 1], states[k], _floats(rows[k])) for k in range(1, len(rows))
+    ]
     steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
     momentum, centre, attitude = frame.path(states)
     return Steps(steps, products(steps), momentum, centre, attitude)
@@ -187,6 +189,3 @@ def _rotation(e: Any) -> Floats:
             [2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)],
         ]
     )
-
-
-

@@ -244,6 +244,11 @@ def radians(scene: Scene) -> float:
     orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
+    if scene.body.loads is not None and len(times) > 1:
+        # What the loads do to the momenta, over their largest size.
+        size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
+        pushed = np.linalg.norm(np.gradient(orbit.momentum, times, axis=0), axis=1) / size
+        rates = np.maximum(rates, pushed)
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 

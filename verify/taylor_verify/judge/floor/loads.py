@@ -110,7 +110,9 @@ class Along:
     def forces(self, body: Body | None = None) -> Floats:
         """Return the loads at every time; those at another body's velocities with the same state."""
         along = self if body is None else _Beside(self.path, body)
-        return _placed(along, lambda piece: np.column_stack([piece.values[k] for k in piece.outputs]))
+        return _placed(
+            along, lambda piece: np.column_stack([piece.values[k] for k in piece.outputs])
+        )
 
     def sizes(self) -> Floats:
         """Return what the roundings inside the loads add up to, in units of roundoff."""

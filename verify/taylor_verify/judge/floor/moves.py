@@ -58,7 +58,9 @@ class Moves:
 
     def late(self, places: Sequence[int], roundoff: float) -> Motion:
         """Return the motion at times that are later by a rounding of each."""
-        times = np.array([float(t) for t in self._path.scene.clock.start + np.array(self._path.elapsed)])
+        times = np.array(
+            [float(t) for t in self._path.scene.clock.start + np.array(self._path.elapsed)]
+        )
         rates = self._errors(*self._along.rates()) * times[:, None]
         return self.beside(places, roundoff * rates[places])
 
