@@ -83,7 +83,7 @@ def test_the_derivative_is_that_of_differences(name: str) -> None:
 
 
 def test_an_orbit_carries_the_attitude_that_a_load_reads_though_nobody_tracks_it() -> None:
-    """The blocks of the condition are those that move the state, and the centre follows the tracked ones."""
+    """The blocks of the condition are those that move the state, tracked or not."""
     scene = replace(SCENES["attitude"], track=frozenset())
     assert path(scene).blocks == ("momentum", "attitude")
     assert path(replace(SCENES["clock"], track=frozenset())).blocks == ("momentum",)

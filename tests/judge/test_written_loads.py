@@ -1,4 +1,4 @@
-"""Files under loads that a scene writes down: right ones pass, and a wrong load fails the gate of the state.
+"""Files under written loads: right ones pass, and a wrong load fails the gate of the state.
 
 The answers come from integrators that read the texts by Python's own ``eval``.
 """
@@ -9,6 +9,7 @@ import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,7 @@ def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
         y, rows = Evaluated(scene).start(), list[list[Any]]()
         rows.append(y)
         instants = [value(instant) for instant in scene.clock.instants]
-        for begin, end in zip(instants, instants[1:], strict=False):
+        for begin, end in pairwise(instants):
             h = (end - begin) / STEPS
             for k in range(STEPS):
                 y = step(rates, begin + k * h, y, h)

@@ -40,6 +40,7 @@ from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import motion_of, rows_at
@@ -190,14 +191,24 @@ class Comparison:
         """Return the conserved quantities that depend on nothing that the answer lacks."""
         has = {_BLOCKS.get(name, name) for name in self._has}
         loads = self.scene.body.loads
-        if loads is not None and loads.reads_attitude and not self._balanced.track:
-            # An arc begins at an attitude, and here is none that is a rotation to the last digit.
+        if loads is not None and not self._has_arcs(loads):
             return []
         return [
             invariant
             for invariant in invariants(self._balanced)
             if has.issuperset(invariant.sensitivity(start))
         ]
+
+    def _has_arcs(self, loads: Loads) -> bool:
+        """Return True if an arc can begin at a row: where loads read the frame, it needs all of the frame.
+
+        Loads that read the quaternion itself read its sign, which a row does not determine.
+        """
+        if not loads.inputs.isdisjoint(QUATERNION):
+            return False
+        frame = {"quaternion"} if loads.reads_attitude else set()
+        frame |= {"centre"} if loads.reads_centre else set()
+        return frame <= self.quantities.keys()
 
     @property
     def _velocities(self) -> list[str]:

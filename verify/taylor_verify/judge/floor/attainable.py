@@ -178,7 +178,27 @@ class Floor:
         if factors is not None and block in self.orbit.flow.momenta:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
-        return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
+        squares = self.steps_at[:, None] * rows**2
+        if block in self.orbit.flow.momenta and self.orbit.scene.body.loads is not None:
+            squares = squares + self._by_arcs[:, first : first + 3]
+        return np.cumsum(squares, axis=0)
+
+    @cached_property
+    def _by_arcs(self) -> Floats:
+        """Return the squares that the rounded samples add to the momenta at the ends of their arcs.
+
+        The arc of a balance begins at a sample, and written loads act along the arc as its errors say.
+        """
+        orbit, size = self.orbit, 3 * len(self.orbit.blocks)
+        d, samples = orbit.momentum.shape[1], set(orbit.scene.clock.elapsed)
+        squares, begin, arc = np.zeros((len(orbit.elapsed), size)), 0, np.eye(size)
+        for k, step in enumerate(orbit.carried.steps, start=1):
+            arc = step[:size, :size] @ arc
+            if orbit.elapsed[k] in samples:
+                moved = arc[:d] * self.single[begin]
+                squares[k, :d] = np.sum(moved**2, axis=1)
+                begin, arc = k, np.eye(size)
+        return squares
 
     @cached_property
     def _path_times(self) -> Floats:

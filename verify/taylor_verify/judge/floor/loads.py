@@ -1,4 +1,4 @@
-"""The loads that a scene writes down, in float64 along an orbit: how errors inside their texts move the rates.
+"""The loads that a scene writes down, in float64 along an orbit, and their derivatives.
 
 Each elementary step v of a load M may be wrong by a rounding of its own. One sweep backwards through the
 steps gives dM/dv for all of them.
