@@ -19,6 +19,7 @@ from mpmath import mp
 
 from taylor_verify import check, explain, tradeoff
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
+from taylor_verify.judge.files.judgement import NO_BALANCES
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.faults import Refused
@@ -177,3 +178,15 @@ def test_explain_and_tradeoff_refuse_written_loads() -> None:
     for ask in (explain, tradeoff):
         with pytest.raises(Refused, match="loads that its scene writes down"):
             ask(BY_CLOCK)
+
+
+def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Path) -> None:
+    """Loads that read the quaternion read its sign, which is no part of an attitude; a note says so."""
+    scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
+    with mp.workdps(40):
+        rows = [Evaluated(scene).start()]
+        rows += [end_of(scene, time, 20, 3) for time in scene.clock.elapsed[1:]]
+    judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
+    assert judged.passed
+    assert NO_BALANCES in judged.remarks
+    assert "T" not in {verdict.quantity for verdict in judged.verdicts}

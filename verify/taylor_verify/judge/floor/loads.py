@@ -85,7 +85,9 @@ class Along:
     @cached_property
     def attitude(self) -> Floats:
         rows = self.path.carried.attitude
-        return np.tile(np.eye(3), (len(self.path.elapsed), 1, 1)) if rows is None else rows
+        if rows is None:
+            rows = np.tile(np.eye(3), (len(self.path.elapsed), 1, 1))
+        return rows
 
     @cached_property
     def centre(self) -> Floats:
@@ -93,7 +95,8 @@ class Along:
         if not len(self.path.centre):
             return np.empty((0, 3))
         start = np.array(kind_of(self.path.scene.body).centre(self.path.scene.initial), dtype=float)
-        return self.path.centre * float(self.path.units["centre"]) + start
+        centre: Floats = self.path.centre * float(self.path.units["centre"]) + start
+        return centre
 
     def pieces(self) -> Iterator[Piece]:
         """Yield the loads piece by piece."""

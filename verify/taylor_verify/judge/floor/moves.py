@@ -128,7 +128,8 @@ class Moves:
             span = (times[k + 1] - times[k]) / 2
             error = step @ (error + span * counted[k]) + span * counted[k + 1]
             errors.append(error)
-        return np.array(errors) * size
+        every: Floats = np.array(errors) * size
+        return every
 
 
 def _exact(rows: Floats) -> np.ndarray[Any, Any]:
