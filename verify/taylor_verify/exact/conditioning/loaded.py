@@ -135,7 +135,7 @@ class _Frame:
         return step
 
     def _into(self, state: Floats) -> Floats:
-        """What an error of momentum, turn and centre changes in the state."""
+        """Return the matrix from errors of momentum, turn and centre to changes of the state."""
         d, columns = self._d, np.zeros((len(state), self._used))
         columns[:d, :d] = self._state * self._units
         if self._turns:
@@ -145,7 +145,7 @@ class _Frame:
         return columns
 
     def _out(self, state: Floats) -> Floats:
-        """The error of momentum, turn and centre that a change of the state is."""
+        """Return the matrix from changes of the state to errors of momentum, turn and centre."""
         d, rows = self._d, np.zeros((self._used, len(state)))
         rows[:d, :d] = self._momentum / self._units[:, None]
         if self._turns:

@@ -25,6 +25,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.loaded import frame
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
@@ -184,7 +185,11 @@ def _numbers(scene: Scene) -> list[Place]:
 
     _changed(scene, note)
     start = scene.initial
-    unasked = {part.name for part in start.PARTS} - {*start.MOVING, *scene.track}
+    unasked = {part.name for part in start.PARTS} - {
+        *start.MOVING,
+        *scene.track,
+        *frame(scene),
+    }
     asked = [place for place in places if place[0] not in unasked]
     # The attitude comes last.
     return sorted(asked, key=lambda place: place[0] == "attitude")

@@ -177,7 +177,7 @@ class Along:
 
 @dataclass(frozen=True)
 class _Beside(Along):
-    """The same states of a body with other numbers."""
+    """The motion of a path, taken for one of a body with other numbers."""
 
     other: Body
 
