@@ -347,11 +347,11 @@ def test_samples_in_step_with_the_orbit_hide_none_of_it(monkeypatch: pytest.Monk
 
 def _floor_again(asked: Scene, steps: int) -> Array:
     """The floor without what is remembered of the orbit, before and after."""
-    attainable._orbit.cache_clear()
+    attainable.orbit_of.cache_clear()
     try:
         return _floor(asked, steps)
     finally:
-        attainable._orbit.cache_clear()
+        attainable.orbit_of.cache_clear()
 
 
 @pytest.mark.parametrize("samples", [3, 12, 41])

@@ -40,6 +40,8 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     exact.solution.Unsettled if the digits cannot be reached.
     """
     scene = as_written(scene)
+    if scene.body.loads is not None:
+        return Elements(NO_CLOSED_FORM, (), (_WRITTEN,))
     if scene.body.damping:
         return _damped(scene, digits)
     try:
@@ -49,6 +51,9 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     except Undecided as doubt:
         return Elements(NO_CLOSED_FORM, (), (f"The kind of motion is not decided: {doubt}.",))
     return result
+
+
+_WRITTEN: Final = "Loads that the scene writes down act: no closed form is built."
 
 
 def _damped(scene: Scene, digits: int) -> Elements:

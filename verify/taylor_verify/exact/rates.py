@@ -47,8 +47,11 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
     """The derivatives of a motion of this scene, to the roundings of float64.
 
     ``elapsed`` are the times of its rows since the start, the scene's own unless they are given; loads
-    that change with time, those of a manufactured motion, ask for them.
+    that change with time, those of a manufactured motion, ask for them. Raises ValueError for loads that a
+    scene writes down: their rates are not known here.
     """
+    if scene.body.loads is not None:
+        raise ValueError(f"expected a body without written loads, got some @ {scene.name}")
     scale, moving = _units(scene), kind_of(scene.body).moving
     names = (*moving, "attitude", "centre")
     exponents = dict(zip(names, (*scale.blocks, 0, scale.centre), strict=True))

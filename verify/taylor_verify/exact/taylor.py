@@ -216,7 +216,8 @@ def arcs(
     manufactured motion change with time: there each arc has to say when it begins, ``begins`` since the
     start of the scene. Elsewhere that changes nothing.
     """
-    if scene.body.manufactured is not None and len(begins) != len(starts):
+    changes = scene.body.manufactured is not None or scene.body.loads is not None
+    if changes and len(begins) != len(starts):
         raise ValueError(
             f"expected the times at which {len(starts)} arcs under loads that change with time begin, "
             f"got {len(begins)} @ {scene.name}"
@@ -236,7 +237,13 @@ class _Arcs(_Enclosing):
         whole = Course.of(self._system, (), _place(self.scene, self.starts[0]), bits, most_bits)
         for number, span in times.items():
             start = self.starts[number]
-            state = balls(kind_of(self.scene.body).state(start))
+            if len(whole.system.start) > len(start.moving):
+                # The frame is in the state, and counts from the start of its own arc.
+                system = posed(replace(self.scene, initial=start))
+                whole = Course.of(system, (), _place(self.scene, start), bits, most_bits)
+                state = balls(system.start)
+            else:
+                state = balls(kind_of(self.scene.body).state(start))
             begin = self.begins[number] if self.begins else Fraction(0)
             arc = replace(whole, start=state, place=_place(self.scene, start), origin=begin)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()

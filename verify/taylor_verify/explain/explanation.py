@@ -28,6 +28,7 @@ from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded
@@ -43,10 +44,17 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     """Run the scene on a rung and return the document of ``explain``; no number is an estimate.
 
     Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
-    says so.
+    says so. Raises Refused for a body under loads that its scene writes down.
     """
     scene = as_scene(scene)
     body = scene.body
+    if body.loads is not None:
+        raise Refused(
+            [
+                "expected a body without loads that its scene writes down, got some @ body "
+                "(`exact` and `check FILE` take them)"
+            ]
+        )
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
     judged, lacking = _judged(scene, rung_named(rung))
     record = judged.record.document() if judged.record is not None else {}

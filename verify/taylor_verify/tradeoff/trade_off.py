@@ -11,6 +11,7 @@ from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
+from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.tradeoff.accuracy import Truths
 from taylor_verify.tradeoff.attainability import least_error
@@ -81,8 +82,16 @@ def trade_off(
 
     There are ``repeats`` rounds, whose order ``seed`` draws. ``clock`` returns seconds. A setting that has
     taken ``patience`` seconds is timed no further (see `solves.timed`). A setting that cannot run becomes a
-    point with the reason, and without an error.
+    point with the reason, and without an error. Raises Refused for a body under loads that its scene
+    writes down.
     """
+    if scene.body.loads is not None:
+        raise Refused(
+            [
+                "expected a body without loads that its scene writes down, got some @ body "
+                "(`exact` and `check FILE` take them)"
+            ]
+        )
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
     truths, points = Truths(), []

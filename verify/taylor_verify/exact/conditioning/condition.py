@@ -26,6 +26,7 @@ import numpy as np
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
+from taylor_verify.exact.conditioning.loaded import between, enclosed, frame
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
@@ -82,7 +83,8 @@ class Path:
     @cached_property
     def blocks(self) -> tuple[str, ...]:
         """The blocks of the state, of three components each."""
-        tracked = (name for name in ("attitude", "centre") if name in self.scene.track)
+        moved = self.scene.track | frame(self.scene)
+        tracked = (name for name in ("attitude", "centre") if name in moved)
         return (*self.flow.momenta, *tracked)
 
     @property
@@ -212,6 +214,8 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     """
     _refuse_far_decay(scene, elapsed)
     flow = Flow.of(scene)
+    if scene.body.loads is not None:
+        return Path(scene, flow, elapsed, enclosed(scene, flow, elapsed))
     if differs_dearly(scene):
         steps = integrated(scene, flow, elapsed)
         if steps is not None:
@@ -227,6 +231,9 @@ def path(scene: Scene) -> Path:
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
     _refuse_far_decay(scene, elapsed)
+    if scene.body.loads is not None:
+        points = between(elapsed)
+        return Path(scene, flow, points, enclosed(scene, flow, points))
     coarse = _along(scene, flow, few(elapsed))
     if coarse.is_regular:
         return coarse

@@ -34,13 +34,15 @@ class Steps(NamedTuple):
 
     ``steps`` (n - 1, d + 6, d + 6) lead an error of (z, theta, c) from each time to the next,
     ``since_first`` (n, d + 6, d + 6) from the first time to each. ``momentum`` (n, d) is z; ``centre``
-    (n, 3) counts from its start and has no rows where it is not tracked.
+    (n, 3) counts from its start and has no rows where it is not tracked. ``attitude`` (n, 3, 3) is there
+    for bodies under written loads that depend on it or whose scene tracks it.
     """
 
     steps: Floats
     since_first: Floats
     momentum: Floats
     centre: Floats
+    attitude: Floats | None = None
 
 
 def products(steps: Floats) -> Floats:

@@ -61,8 +61,10 @@ def neighbours(
     ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
     the k-th beginning. ``elapsed`` are the times of the beginnings and, behind them, of the ends. Motions
     are in MPFR's numbers, at the ambient precision. None if the estimated error is not far below
-    ``digits`` digits of the motion.
+    ``digits`` digits of the motion, or where a scene writes down loads, which are not known here.
     """
+    if scene.body.loads is not None:
+        return None
     count = len(elapsed) // 2
     arcs = _Arcs(scene, Flow.of(scene), kind_of(scene.body))
     begin, end = exact

@@ -11,11 +11,12 @@ from math import ceil
 from statistics import median
 from typing import Final
 
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.exact.enclosure.box import Box, carried, within
+from taylor_verify.exact.enclosure.box import Box, carried, identity, inverted, within
 from taylor_verify.exact.enclosure.crossing import Touched
+from taylor_verify.exact.enclosure.flow import Flow
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.step import Step, Stepper, size_of
@@ -62,13 +63,33 @@ class Row:
     """The state at one time in balls. ``turn`` is R, nine entries row by row, and may be empty.
 
     ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre. A
-    block is as large as the terms of its rate make it in a step, though they may cancel.
+    block is as large as the terms of its rate make it in a step, though they may cancel. ``since`` is the
+    derivative of the state by the one at the row before it, or at the start, if the course has derivatives.
     """
 
     state: list[arb]
     turn: list[arb]
     centre: list[arb] | None
     largest: tuple[float, ...]
+    since: arb_mat | None = None
+
+
+class _Since:
+    """The derivative of the state by the one at the last row, carried from step to step."""
+
+    def __init__(self, size: int) -> None:
+        self._steps, self._from = identity(size), identity(size)
+
+    def at_row(self, flow: Flow, share: arb) -> arb_mat:
+        """The derivative at a row, from which the next one counts."""
+        self.to(flow, share)
+        reached, self._steps = self._steps, identity(self._steps.nrows())
+        self._from = flow.at(share)
+        return reached
+
+    def to(self, flow: Flow, share: arb) -> None:
+        self._steps = flow.at(share) * inverted(self._from) * self._steps
+        self._from = identity(self._steps.nrows())
 
 
 @dataclass(frozen=True)
@@ -78,6 +99,7 @@ class Course:
     ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
     More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for. ``begin`` is what a clock
     shows at the start, for messages alone; ``origin`` is the start's time since that of the scene.
+    With ``differentiates`` the rows have derivatives; then no component of the start is exact.
     """
 
     stepper: Stepper
@@ -88,6 +110,7 @@ class Course:
     most_steps: int = MOST_STEPS
     begin: Fraction = Fraction(0)
     origin: Fraction = Fraction(0)
+    differentiates: bool = False
 
     @classmethod
     def of(
@@ -124,6 +147,7 @@ class Course:
         pending, lengths, length = list(times[::-1]), [], last
         usual, flat = last, 0
         largest = self._largest(box, place)
+        since = _Since(self.system.size) if self.differentiates else None
         while pending:
             try:
                 step = self.stepper.step(box, self.origin + now, length, last - now)
@@ -144,7 +168,12 @@ class Course:
                 if centre is not None and self.system.current:
                     drift = self.system.current
                     centre = [c + ball(v * time) for c, v in zip(centre, drift, strict=True)]
-                yield time, Row(state, turn, centre, largest)
+                by_last = None
+                if since is not None and step.flow is not None:
+                    by_last = since.at_row(step.flow, share)
+                yield time, Row(state, turn, centre, largest, by_last)
+            if since is not None and step.flow is not None:
+                since.to(step.flow, arb(1))
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
             place = None if place is None or step.leg is None else step.leg.carried(place)
             largest = tuple(map(max, zip(largest, self._largest(box, place), strict=True)))

@@ -29,14 +29,18 @@ _STATES = ("x", "y")
 
 
 class LoadedBody:
-    """The tapes of one scene, each made when a motion comes to its piece of time."""
+    """The tapes of one scene, each made when a motion comes to its piece of time.
 
-    def __init__(self, scene: Scene, loads: Loads) -> None:
+    ``frame`` names what is in the state though no load may depend on it: the attitude, or also the centre.
+    """
+
+    def __init__(self, scene: Scene, loads: Loads, frame: frozenset[str] = frozenset()) -> None:
         self._scene, self._loads = scene, loads
         self._kind = kind_of(scene.body)
         self._equations = self._kind.equations(scene.body)
         self._natural = self._kind.state(scene.initial)
-        self._turns, self._travels = loads.reads_attitude, loads.reads_centre
+        self._turns = loads.reads_attitude or bool(frame)
+        self._travels = loads.reads_centre or "centre" in frame
         self._tapes: dict[Any, Tape] = {}
 
     @property

@@ -41,7 +41,8 @@ class Equations:
     @staticmethod
     def are_known(body: Body) -> bool:
         """Return True if every part of the body has its terms here, and its loads are constant."""
-        return body.others <= _WITH_TERMS and body.manufactured is None
+        is_constant = body.manufactured is None and body.loads is None
+        return body.others <= _WITH_TERMS and is_constant
 
     @classmethod
     def of(cls, body: Body) -> Equations:

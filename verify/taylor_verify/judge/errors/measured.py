@@ -40,6 +40,7 @@ from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import motion_of, rows_at
@@ -147,9 +148,7 @@ class Comparison:
         with costs.of(ERRORS):
             block = self._shifted(errors, last)
             with mp.workprec(self.bits):
-                shifts = time_shifts(
-                    block.scene, self.exact, block.truth, block.answer, self.digits, errors
-                )
+                shifts = self._shifts(block, errors)
                 shifted = [self._shift_of(one, block) for one in velocities]
         return Measured(
             errors,
@@ -191,11 +190,25 @@ class Comparison:
     def _determined(self, start: Motion) -> list[Invariant]:
         """Return the conserved quantities that depend on nothing that the answer lacks."""
         has = {_BLOCKS.get(name, name) for name in self._has}
+        loads = self.scene.body.loads
+        if loads is not None and not self._has_arcs(loads):
+            return []
         return [
             invariant
             for invariant in invariants(self._balanced)
             if has.issuperset(invariant.sensitivity(start))
         ]
+
+    def _has_arcs(self, loads: Loads) -> bool:
+        """Return True if an arc can begin at a row: where loads read the frame, it needs all of the frame.
+
+        Loads that read the quaternion itself read its sign, which a row does not determine.
+        """
+        if not loads.inputs.isdisjoint(QUATERNION):
+            return False
+        frame = {"quaternion"} if loads.reads_attitude else set()
+        frame |= {"centre"} if loads.reads_centre else set()
+        return frame <= self.quantities.keys()
 
     @property
     def _velocities(self) -> list[str]:
@@ -203,10 +216,18 @@ class Comparison:
         names = (name for name in VELOCITIES if name not in self.scene.initial.MOVING)
         return [name for name in names if name in self.quantities]
 
+    def _shifts(self, block: Block, errors: Sequence[Errors]) -> list[Shift | None]:
+        """Return the shifts of time; none under written loads, whose rates are not known."""
+        if self.scene.body.loads is not None:
+            return [None] * len(errors)
+        scene, truth, answer = block.scene, block.truth, block.answer
+        return time_shifts(scene, self.exact, truth, answer, self.digits, errors)
+
     def _shift_of(self, velocity: VelocityErrors, block: Block) -> Velocity:
         errors, sizes = velocity.joined()
-        own = block.velocities[velocity.group]
-        shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
+        own, shift = block.velocities[velocity.group], None
+        if self.scene.body.loads is None:
+            shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
         return Velocity(velocity.group, errors, sizes, shift)
 
     # The rows in blocks.

@@ -52,6 +52,10 @@ from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
+NO_BALANCES: Final = (
+    "energy and momenta are not judged: the loads depend on more of the attitude or the centre than a "
+    "row of the file determines"
+)
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
 
@@ -124,7 +128,8 @@ def judge_file(
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
-            known = conventions(compared, scene, rung)
+            if scene.body.loads is None:
+                known = conventions(compared, scene, rung)
             if accept_conventions:
                 answer = FileRows.of(compared, rung, known)
             if judged is None or (accept_conventions and known.findings):
@@ -145,6 +150,9 @@ def judge_file(
         notes += () if Equations.are_known(scene.body) else (NOT_LOOKED_FOR,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
+    if scene.body.loads is not None and judged.record is not None:
+        has_balances = any(verdict.quantity == "T" for verdict in judged.verdicts)
+        notes += () if has_balances else (NO_BALANCES,)
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions)

@@ -178,7 +178,27 @@ class Floor:
         if factors is not None and block in self.orbit.flow.momenta:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
-        return np.cumsum(self.steps_at[:, None] * rows**2, axis=0)
+        squares = self.steps_at[:, None] * rows**2
+        if block in self.orbit.flow.momenta and self.orbit.scene.body.loads is not None:
+            squares = squares + self._by_arcs[:, first : first + 3]
+        return np.cumsum(squares, axis=0)
+
+    @cached_property
+    def _by_arcs(self) -> Floats:
+        """Return the squares that the rounded samples add to the momenta at the ends of their arcs.
+
+        The arc of a balance begins at a sample, and written loads act along the arc as its errors say.
+        """
+        orbit, size = self.orbit, 3 * len(self.orbit.blocks)
+        d, samples = orbit.momentum.shape[1], set(orbit.scene.clock.elapsed)
+        squares, begin, arc = np.zeros((len(orbit.elapsed), size)), 0, np.eye(size)
+        for k, step in enumerate(orbit.carried.steps, start=1):
+            arc = step[:size, :size] @ arc
+            if orbit.elapsed[k] in samples:
+                moved = arc[:d] * self.single[begin]
+                squares[k, :d] = np.sum(moved**2, axis=1)
+                begin, arc = k, np.eye(size)
+        return squares
 
     @cached_property
     def _path_times(self) -> Floats:
@@ -214,7 +234,7 @@ def floor(
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
     for conditioned in (asked, given):
-        orbit = _orbit(conditioned)
+        orbit = orbit_of(conditioned)
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
@@ -234,21 +254,27 @@ def floor(
 
 
 @lru_cache(maxsize=32)
-def _orbit(scene: Scene) -> Path:
+def orbit_of(scene: Scene) -> Path:
+    """Return the orbit of a scene and its condition, computed once for all that ask."""
     return path(scene)
 
 
 def radians(scene: Scene) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
-    orbit = _orbit(scene)
+    orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
+    if scene.body.loads is not None and len(times) > 1:
+        # What the loads do to the momenta, over their largest size.
+        size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
+        pushed = np.linalg.norm(np.gradient(orbit.momentum, times, axis=0), axis=1) / size
+        rates = np.maximum(rates, pushed)
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 
 def looked_at(scene: Scene) -> list[int]:
     """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
-    points = set(_orbit(scene).elapsed)
+    points = set(orbit_of(scene).elapsed)
     return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
 
 

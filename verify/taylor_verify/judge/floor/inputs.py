@@ -19,11 +19,13 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.loaded import frame
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
@@ -31,7 +33,8 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import norms, state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.floor.attainable import larger_neighbour, looked_at
+from taylor_verify.judge.floor.attainable import larger_neighbour, looked_at, orbit_of
+from taylor_verify.judge.floor.moves import Moves
 from taylor_verify.judge.velocities import has_velocities, velocity
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.manufactured import Manufactured, Wave
@@ -65,6 +68,8 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     computed at the samples of the floor, for the scene ``asked``: near an unstable axis the response is
     large during short passages, which evenly chosen samples could miss.
     """
+    if given.body.loads is not None:
+        return _by_derivative(given, rung, given if asked is None else asked)
     nodes = looked_at(given if asked is None else asked)
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
@@ -93,6 +98,36 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
         for name, squares in total.items()
     }
     return InputRounding(words, at_samples)
+
+
+def _by_derivative(given: Scene, rung: Rung, asked: Scene) -> InputRounding:
+    """Return the response under written loads, whose numbers are inputs too."""
+    nodes, path = looked_at(asked), orbit_of(asked)
+    places = {time: k for k, time in enumerate(path.elapsed)}
+    rows = [places[asked.clock.elapsed[k]] for k in nodes]
+    instants = tuple(asked.clock.instants[k] for k in nodes)
+    scene = replace(asked, clock=Clock(asked.clock.start, instants))
+    changes = [partial(_with_one, asked, place) for place in _numbers(asked)]
+    with mp.workprec(working_bits(rung.bits)):
+        moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
+        here = moves.beside(rows, np.zeros((len(rows), path.momentum.shape[1] + 6)))
+        draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
+        total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
+        words = f"each of the {moves.count} numbers of body, loads and start that are not zero"
+        if not all(rung.holds(t) for t in instants):
+            for name, squares in _squares(scene, here, moves.late(rows, roundoff)).items():
+                total[name] = total[name] + squares
+            words += ", and every time"
+    samples = np.arange(len(given.clock.instants), dtype=float)
+    at_samples = {
+        name: larger_neighbour(np.sqrt(squares), np.array(nodes, dtype=float), samples)
+        for name, squares in total.items()
+    }
+    return InputRounding(words, at_samples)
+
+
+def _with_one(scene: Scene, place: Place, change: Fraction) -> Scene:
+    return _with_factors(scene, {place: 1 + change})
 
 
 def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
@@ -150,7 +185,11 @@ def _numbers(scene: Scene) -> list[Place]:
 
     _changed(scene, note)
     start = scene.initial
-    unasked = {part.name for part in start.PARTS} - {*start.MOVING, *scene.track}
+    unasked = {part.name for part in start.PARTS} - {
+        *start.MOVING,
+        *scene.track,
+        *frame(scene),
+    }
     asked = [place for place in places if place[0] not in unasked]
     # The attitude comes last.
     return sorted(asked, key=lambda place: place[0] == "attitude")

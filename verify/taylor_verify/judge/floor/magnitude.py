@@ -27,6 +27,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
+from taylor_verify.judge.floor.loads import Along
 from taylor_verify.judge.velocities import has_velocities
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
@@ -91,9 +92,11 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     quaternion turns the frame about all axes equally. With ``velocities`` m_i replaces |x_i| where it is
     larger.
     """
-    problem = _posed(given, bits)
+    problem = _posed(_without_loads(given, path), bits)
     sizes = _sizes(problem, path)
     rates = _rates(problem, sizes)
+    if given.body.loads is not None:
+        rates = _with_loads(rates, problem, path)
     moving = [name for name in sizes if name[0] in "Hxy"]
     span = abs(float(given.clock.elapsed[-1] / problem.units.time))
     h = min(span / max(steps, 1), _largest(sizes, moving) / (_largest(rates, moving) or 1.0))
@@ -115,6 +118,25 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
         by_inertia = _through_velocities(given.body, path)
         roundings_at[:, :6] = np.maximum(roundings_at[:, :6], by_inertia)
     return roundings_at
+
+
+def _without_loads(given: Scene, path: Path) -> Scene:
+    """Return the scene without written loads, which tracks what the path carries."""
+    if given.body.loads is None:
+        return given
+    frame = frozenset(path.blocks) & {"attitude", "centre"}
+    return replace(given, body=given.body.with_loads(None), track=frame)
+
+
+def _with_loads(rates: Mapping[str, Floats], problem: Problem, path: Path) -> dict[str, Floats]:
+    """Return the rates with the sizes of the steps of the loads, each carried to the load."""
+    sizes, more = Along(path).sizes(), dict(rates)
+    momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
+    for k, block in enumerate(momenta):
+        unit = float(problem.units.time / _unit(problem, block))
+        for name, size in zip(_COMPONENTS[block], sizes[:, 3 * k : 3 * k + 3].T, strict=True):
+            more[name] = more[name] + unit * size
+    return more
 
 
 def _through_velocities(body: Body, path: Path) -> Floats:

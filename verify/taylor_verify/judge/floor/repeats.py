@@ -33,6 +33,9 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _MOST_UNITS: Final = 1e3
 # The path is known in float64: terms that cancel leave less than this part of their sum.
 _NOISE: Final = 2.0**-40
+# A difference of differences shows a bend that is larger than this, over the noise.
+_ROUGH: Final = 2.0**20
+_FEWEST: Final = 3
 # Digits of the centre's motion, whose derivatives are needed in float64.
 _DIGITS: Final = 15
 
@@ -83,12 +86,38 @@ def _squares(change: Floats, steps_at: Floats) -> Floats:
 
 def _courses(path: Path) -> list[Course]:
     """Return the courses of the momenta, of the attitude and of the centre, as far as tracked."""
+    if path.scene.body.loads is not None:
+        return _by_differences(path)
     courses = [_momenta(path)]
     if "attitude" in path.blocks:
         courses.append(_turns(path, courses[0]))
     if "centre" in path.blocks:
         courses.append(_centre(path))
     return courses
+
+
+def _by_differences(path: Path) -> list[Course]:
+    """Return the courses under written loads, whose derivatives are differences along the path."""
+    momenta = _differences(path, path.momentum)
+    courses = [momenta]
+    if "attitude" in path.blocks:
+        courses.append(_turns(path, momenta))
+    if "centre" in path.blocks:
+        length = path.units["centre"]
+        start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
+        courses.append(_differences(path, path.centre + start))
+    return courses
+
+
+def _differences(path: Path, x: Floats) -> Course:
+    if len(x) < _FEWEST:
+        return Course(x, np.zeros_like(x), np.zeros_like(x))
+    times = np.array([float(t / path.flow.time) for t in path.elapsed])
+    with np.errstate(all="ignore"):
+        rate = np.gradient(x, times, axis=0)
+        bend = np.gradient(rate, times, axis=0)
+    fastest = np.max(abs(rate), axis=0, initial=0.0)
+    return Course(x, rate, _resolved(bend, fastest / abs(times[-1]) * _ROUGH))
 
 
 def _momenta(path: Path) -> Course:

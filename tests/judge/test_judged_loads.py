@@ -1,0 +1,192 @@
+"""Files under written loads: right ones pass, and a wrong load fails the gate of the state.
+
+The answers come from integrators that read the texts by Python's own ``eval``.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
+from mpmath import mp
+
+from taylor_verify import check, explain, tradeoff
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
+from taylor_verify.judge.files.judgement import NO_BALANCES
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.scenes.scene import Scene
+
+GROUPS = {"euler": ("w",), "kirchhoff": ("x", "y")}
+ROWS = 6
+# RK4 in this many steps between two rows is right to about seven digits.
+STEPS = 4
+TOLERANCE = 1e-3
+
+Rates = Callable[[Any, list[Any]], list[Any]]
+
+RIGID = euler(["r31*w2 + sin(2*t)/3", "-r32*tanh(t) - w2/20", "0.3*r11 - 0.1*w3*norm(w1, w2)"], "4")
+SOLID = kirchhoff(
+    ["-0.1*c1*r11 - norm(u1, u2, u3)*u1/4", "0.3*c2*r31", "-0.2*r33"],
+    ["-w1/5", "0.1*sin(t)*r21", "-w3/10"],
+    "3",
+)
+BY_CLOCK = euler(["0.4*sin(2*t)", "-0.05*w2", "0.3*exp(-t)"], "4")
+
+
+def with_rows(scene: Scene, rows: int = ROWS) -> Scene:
+    """The scene with rows at times that a double holds."""
+    start, end = scene.clock.start, scene.clock.instants[-1]
+    parts = 2 ** (rows - 1).bit_length()
+    instants = tuple(start + (end - start) * Fraction(k, parts) for k in range(rows))
+    return replace(scene, clock=Clock(start, instants))
+
+
+def written(path: Path, scene: Scene, rows: Sequence[Sequence[Any]]) -> Path:
+    """A file of these states: omega or both impulses, quaternion and centre."""
+    groups = [f"{letter}{i}" for letter in GROUPS[scene.model] for i in (1, 2, 3)]
+    centre = ["c1", "c2", "c3"] if "centre" in scene.track else []
+    with path.open("w", newline="") as file:
+        out = csv.writer(file)
+        out.writerow(["t", *groups, "q0", "q1", "q2", "q3", *centre])
+        for instant, row in zip(scene.clock.instants, rows, strict=True):
+            out.writerow([repr(float(number)) for number in (value(instant), *row)])
+    return path
+
+
+def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
+    """The states by the classical Runge-Kutta method."""
+    with mp.workdps(17):
+        y, rows = Evaluated(scene).start(), list[list[Any]]()
+        rows.append(y)
+        instants = [value(instant) for instant in scene.clock.instants]
+        for begin, end in pairwise(instants):
+            h = (end - begin) / STEPS
+            for k in range(STEPS):
+                y = step(rates, begin + k * h, y, h)
+            rows.append(y)
+        return rows
+
+
+def step(rates: Rates, t: Any, y: list[Any], h: Any) -> list[Any]:
+    def moved(slope: list[Any], share: Any) -> list[Any]:
+        return [a + share * s for a, s in zip(y, slope, strict=True)]
+
+    first = rates(t, y)
+    second = rates(t + h / 2, moved(first, h / 2))
+    third = rates(t + h / 2, moved(second, h / 2))
+    fourth = rates(t + h, moved(third, h))
+    return [
+        a + h / 6 * (p + 2 * q + 2 * r + s)
+        for a, p, q, r, s in zip(y, first, second, third, fourth, strict=True)
+    ]
+
+
+def with_moment(scene: Scene, texts: Sequence[str]) -> Scene:
+    """The scene with other texts of the moment."""
+    loads = scene.body.loads
+    assert loads is not None
+    other = replace(loads, vectors=(("moment", tuple(texts)),))
+    return replace(scene, body=scene.body.with_loads(other))
+
+
+def in_space(scene: Scene) -> Scene:
+    """The scene with its moment taken for one in space axes: M becomes R^T M."""
+    assert scene.body.loads is not None
+    ((_, m),) = scene.body.loads.vectors
+    return with_moment(
+        scene, [" + ".join(f"r{i}{j}*({m[i - 1]})" for i in (1, 2, 3)) for j in (1, 2, 3)]
+    )
+
+
+def wrong_sign(scene: Scene) -> Scene:
+    assert scene.body.loads is not None
+    ((_, m),) = scene.body.loads.vectors
+    return with_moment(scene, [f"-({m[0]})", str(m[1]), str(m[2])])
+
+
+def of_text(scene: Scene) -> Rates:
+    return Evaluated(scene).rates
+
+
+def late(scene: Scene) -> Rates:
+    """The rates with a clock that stands still over each step, as a load that is set once a step has it."""
+    rates, span = Evaluated(scene).rates, value(scene.clock.instants[1] - scene.clock.start) / STEPS
+    begin = value(scene.clock.start)
+
+    def stepped(t: Any, y: list[Any]) -> list[Any]:
+        return rates(begin + mp.floor((t - begin) / span * (1 - mp.eps * 8)) * span, y)
+
+    return stepped
+
+
+TWINS: Mapping[str, Callable[[Scene], Rates]] = {
+    "sign": lambda scene: of_text(wrong_sign(scene)),
+    "space axes": lambda scene: of_text(in_space(scene)),
+    "load of the step before": late,
+}
+
+
+@pytest.mark.parametrize("scene", [RIGID, SOLID, BY_CLOCK], ids=["rigid", "solid", "clock"])
+def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
+    """Rows that are right to the last digit pass the bounds of the arithmetic, balances among them."""
+    scene = with_rows(scene)
+    with mp.workdps(40):
+        rows = [Evaluated(scene).start()]
+        rows += [end_of(scene, time, 20, 4) for time in scene.clock.elapsed[1:]]
+    judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
+    assert judged.passed, judged.verdicts
+    names = {verdict.quantity for verdict in judged.verdicts}
+    assert {"initial state", "attitude", "T"} <= names
+    assert all((v.bound or 1.0) < 1e-11 for v in judged.verdicts)
+
+
+def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path: Path) -> None:
+    """A Runge-Kutta answer is right to its own digits and no further; no cause is named."""
+    scene = with_rows(RIGID)
+    file = written(tmp_path / "steps.csv", scene, by_steps(scene, of_text(scene)))
+    assert check(scene, file, partial=True, tolerance=TOLERANCE).passed
+    strict = check(scene, file, partial=True)
+    assert not strict.passed
+    assert not strict.causes
+    assert NOT_LOOKED_FOR in strict.remarks
+
+
+@pytest.mark.parametrize("twin", TWINS)
+def test_a_wrong_load_fails_the_state_and_the_energy(twin: str, tmp_path: Path) -> None:
+    """What passes with the right load fails with another sign, in other axes, or late by a step."""
+    scene = with_rows(BY_CLOCK)
+    right = written(tmp_path / "right.csv", scene, by_steps(scene, of_text(scene)))
+    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, TWINS[twin](scene)))
+    assert check(scene, right, partial=True, tolerance=TOLERANCE).passed
+    judged = check(scene, wrong, partial=True, tolerance=TOLERANCE)
+    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
+    assert {"omega", "T"} <= failed
+    assert not judged.causes
+
+
+def test_explain_and_tradeoff_refuse_written_loads() -> None:
+    """One sentence says what they do not know, and what does."""
+    for ask in (explain, tradeoff):
+        with pytest.raises(Refused, match="loads that its scene writes down"):
+            ask(BY_CLOCK)
+
+
+def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Path) -> None:
+    """Loads that read the quaternion read its sign, which is no part of an attitude; a note says so."""
+    scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
+    with mp.workdps(40):
+        rows = [Evaluated(scene).start()]
+        rows += [end_of(scene, time, 20, 3) for time in scene.clock.elapsed[1:]]
+    judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
+    assert judged.passed
+    assert NO_BALANCES in judged.remarks
+    assert "T" not in {verdict.quantity for verdict in judged.verdicts}

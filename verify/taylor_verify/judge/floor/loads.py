@@ -1,0 +1,295 @@
+"""The loads that a scene writes down, in float64 along an orbit, and their derivatives.
+
+Each elementary step v of a load M may be wrong by a rounding of its own. One sweep backwards through the
+steps gives dM/dv for all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.exact.conditioning.condition import Path
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.loads import Piece as Steps
+from taylor_verify.scenes.loads.steps import Step
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+Values = Sequence[Floats]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """The steps of the loads at some times of a path: their values, and dM/dv by output and step."""
+
+    places: Sequence[int]
+    steps: Sequence[Step]
+    outputs: Sequence[int]
+    values: Values
+
+    @cached_property
+    def gradients(self) -> list[list[Floats]]:
+        """Return dM/dv for each output M and each step v."""
+        return [_gradient(self.steps, self.values, output) for output in self.outputs]
+
+    def sizes(self) -> Floats:
+        """Return the sum of |dM/dv| |v| over all steps but the numbers, which are data."""
+        made = [k for k, step in enumerate(self.steps) if step.operation != "number"]
+        columns = [
+            sum((abs(g[k] * self.values[k]) for k in made), np.zeros(len(self.places)))
+            for g in self.gradients
+        ]
+        return np.column_stack(columns)
+
+    def numbers(self) -> Iterator[tuple[Fraction, Floats]]:
+        """Yield each number p of the steps with p dM/dp, (times, outputs)."""
+        places: dict[Fraction, list[int]] = {}
+        for k, step in enumerate(self.steps):
+            if step.operation == "number" and step.number:
+                places.setdefault(abs(step.number), []).append(k)
+        for number, equal in places.items():
+            columns = [sum(g[k] * self.values[k] for k in equal) for g in self.gradients]
+            yield number, np.column_stack(columns)
+
+
+@dataclass(frozen=True)
+class Along:
+    """The motion of a path in the units of its scene, and its loads."""
+
+    path: Path
+
+    @property
+    def loads(self) -> Loads:
+        loads = self.path.scene.body.loads
+        assert loads is not None
+        return loads
+
+    @cached_property
+    def state(self) -> Floats:
+        """The state z, omega or both impulses, at every time."""
+        path, kind = self.path, kind_of(self.path.scene.body)
+        momentum = path.momentum * np.array([float(unit) for unit in path.flow.components])
+        d = momentum.shape[1]
+        unit = [tuple(Fraction(int(i == j)) for j in range(d)) for i in range(d)]
+        inverse = [kind.of_momentum(path.scene.body, e) for e in unit]
+        state: Floats = momentum @ np.array(inverse, dtype=float)
+        return state
+
+    @cached_property
+    def attitude(self) -> Floats:
+        rows = self.path.carried.attitude
+        if rows is None:
+            rows = np.tile(np.eye(3), (len(self.path.elapsed), 1, 1))
+        return rows
+
+    @cached_property
+    def centre(self) -> Floats:
+        """The centre in space axes; no rows if nothing asks for it."""
+        if not len(self.path.centre):
+            return np.empty((0, 3))
+        start = np.array(kind_of(self.path.scene.body).centre(self.path.scene.initial), dtype=float)
+        centre: Floats = self.path.centre * float(self.path.units["centre"]) + start
+        return centre
+
+    def pieces(self) -> Iterator[Piece]:
+        """Yield the loads piece by piece."""
+        elapsed, groups = self.path.elapsed, dict[int, tuple[Steps, list[int]]]()
+        is_later = elapsed[-1] >= 0
+        for k, time in enumerate(elapsed):
+            piece = self.loads.piece(time, is_later)
+            groups.setdefault(id(piece), (piece, []))[1].append(k)
+        for piece, places in groups.values():
+            inputs = {name: rows[places] for name, rows in self._inputs.items()}
+            values = _values(piece.steps, inputs, len(places))
+            yield Piece(places, piece.steps, piece.outputs, values)
+
+    def forces(self, body: Body | None = None) -> Floats:
+        """Return the loads at every time; those at another body's velocities with the same state."""
+        along = self if body is None else _Beside(self.path, body)
+        return _placed(
+            along, lambda piece: np.column_stack([piece.values[k] for k in piece.outputs])
+        )
+
+    def sizes(self) -> Floats:
+        """Return what the roundings inside the loads add up to, in units of roundoff."""
+        return _placed(self, Piece.sizes)
+
+    @property
+    def body(self) -> Body:
+        return self.path.scene.body
+
+    def rates(self, body: Body | None = None) -> tuple[Floats, Floats, Floats]:
+        """Return the rates of z, of the turn and of the centre, (n, d), (n, 3) and (n, 3)."""
+        other = self.body if body is None else body
+        kind, z = kind_of(other), self.state
+        equations = kind.equations(other)
+        constant, linear, hessian, spin, velocity = (
+            np.array(part, dtype=float)
+            for part in (
+                equations.constant,
+                equations.linear,
+                equations.hessian,
+                equations.spin,
+                equations.velocity,
+            )
+        )
+        pushed = self.forces(body) @ np.array(kind.pushed(other), dtype=float).T
+        rate = constant + z @ linear.T + np.einsum("iab,ta,tb->ti", hessian, z, z) / 2 + pushed
+        turn = np.einsum("tij,tj->ti", self.attitude, z @ spin.T)
+        if not len(velocity):
+            return rate, turn, np.zeros_like(turn)
+        current = np.array(self.loads.current, dtype=float)
+        return rate, turn, np.einsum("tij,tj->ti", self.attitude, z @ velocity.T) + current
+
+    @cached_property
+    def _inputs(self) -> Mapping[str, Floats]:
+        equations, z, R = kind_of(self.body).equations(self.body), self.state, self.attitude
+        inputs = {"t": np.array([float(t) for t in self.path.elapsed])}
+        vectors = {"w": z @ np.array(equations.spin, dtype=float).T}
+        if len(equations.velocity):
+            vectors |= {"u": z @ np.array(equations.velocity, dtype=float).T}
+            vectors |= {"x": z[:, :3], "y": z[:, 3:]}
+        if len(self.centre):
+            vectors["c"] = self.centre
+        for letter, rows in vectors.items():
+            inputs |= {f"{letter}{i + 1}": rows[:, i] for i in range(3)}
+        inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
+        return inputs | {f"q{i}": rows for i, rows in enumerate(self._quaternions.T)}
+
+    @cached_property
+    def _quaternions(self) -> Floats:
+        """Unit quaternions of the attitude, continuous from the scene's."""
+        before = np.array(self.path.scene.initial.attitude, dtype=float)
+        rows = []
+        for R in self.attitude:
+            q = _quaternion(R)
+            before = q if q @ before >= 0 else -q
+            rows.append(before)
+        return np.array(rows)
+
+
+@dataclass(frozen=True)
+class _Beside(Along):
+    """The motion of a path, taken for one of a body with other numbers."""
+
+    other: Body
+
+    @property
+    def body(self) -> Body:
+        return self.other
+
+    @cached_property
+    def state(self) -> Floats:
+        return Along(self.path).state
+
+
+def _placed(along: Along, of: Callable[[Piece], Floats]) -> Floats:
+    """Return rows of each piece, in the order of the times."""
+    width = len(along.loads.piece(Fraction(0)).outputs)
+    rows = np.zeros((len(along.path.elapsed), width))
+    for piece in along.pieces():
+        rows[piece.places] = of(piece)
+    return rows
+
+
+def _quaternion(R: Floats) -> Floats:
+    """Return a unit quaternion of a rotation: the eigenvector of its symmetric 4 x 4 matrix."""
+    a, b, c = R
+    K = np.array(
+        [
+            [a[0] + b[1] + c[2], c[1] - b[2], a[2] - c[0], b[0] - a[1]],
+            [c[1] - b[2], a[0] - b[1] - c[2], a[1] + b[0], a[2] + c[0]],
+            [a[2] - c[0], a[1] + b[0], b[1] - a[0] - c[2], b[2] + c[1]],
+            [b[0] - a[1], a[2] + c[0], b[2] + c[1], c[2] - a[0] - b[1]],
+        ]
+    )
+    q: Floats = np.linalg.eigh(K)[1][:, -1]
+    return q
+
+
+# Values and derivatives of the steps.
+
+
+def _values(steps: Sequence[Step], inputs: Mapping[str, Floats], count: int) -> list[Floats]:
+    values: list[Floats] = []
+    with np.errstate(all="ignore"):
+        for step in steps:
+            if step.operation == "input":
+                values.append(inputs[step.name])
+            elif step.operation in ("number", "pi"):
+                number = np.pi if step.number is None else float(step.number)
+                values.append(np.full(count, number))
+            else:
+                operands = [values[place] for place in step.operands]
+                values.append(_VALUES[step.operation](step, *operands))
+    return values
+
+
+def _gradient(steps: Sequence[Step], values: Values, output: int) -> list[Floats]:
+    """Return the derivative of one step by each step."""
+    by = [np.zeros(len(values[output])) for _ in steps]
+    by[output] = np.ones(len(values[output]))
+    with np.errstate(all="ignore"):
+        for k in range(output, -1, -1):
+            step = steps[k]
+            if not step.operands or not by[k].any():
+                continue
+            operands = [values[place] for place in step.operands]
+            slopes = _SLOPES[step.operation](step, values[k], *operands)
+            for place, slope in zip(step.operands, slopes, strict=True):
+                # Where a load has no derivative, as a root at zero, no error is carried.
+                by[place] = by[place] + by[k] * np.where(np.isfinite(slope), slope, 0.0)
+    return by
+
+
+def _exponent(step: Step) -> float:
+    assert step.number is not None
+    return float(step.number)
+
+
+_FUNCTIONS: Final[Mapping[str, tuple[Callable[[Any], Any], Callable[[Any, Any], Any]]]] = {
+    "abs": (np.abs, lambda v, a: np.sign(a)),
+    "sqrt": (np.sqrt, lambda v, a: 0.5 / v),
+    "exp": (np.exp, lambda v, a: v),
+    "log": (np.log, lambda v, a: 1 / a),
+    "sin": (np.sin, lambda v, a: np.cos(a)),
+    "cos": (np.cos, lambda v, a: -np.sin(a)),
+    "tan": (np.tan, lambda v, a: 1 + v * v),
+    "asin": (np.arcsin, lambda v, a: 1 / np.sqrt(1 - a * a)),
+    "acos": (np.arccos, lambda v, a: -1 / np.sqrt(1 - a * a)),
+    "atan": (np.arctan, lambda v, a: 1 / (1 + a * a)),
+    "sinh": (np.sinh, lambda v, a: np.cosh(a)),
+    "cosh": (np.cosh, lambda v, a: np.sinh(a)),
+    "tanh": (np.tanh, lambda v, a: 1 - v * v),
+}
+_VALUES: Final[Mapping[str, Callable[..., Floats]]] = {
+    "+": lambda s, a, b: a + b,
+    "-": lambda s, a, b: a - b,
+    "*": lambda s, a, b: a * b,
+    "/": lambda s, a, b: a / b,
+    "min": lambda s, a, b: np.minimum(a, b),
+    "max": lambda s, a, b: np.maximum(a, b),
+    "atan2": lambda s, a, b: np.arctan2(a, b),
+    "norm": lambda s, *parts: np.sqrt(sum(p * p for p in parts)),
+    "power": lambda s, a: a ** _exponent(s),
+    **{name: lambda s, a, f=f: f(a) for name, (f, _) in _FUNCTIONS.items()},
+}
+_SLOPES: Final[Mapping[str, Callable[..., tuple[Floats, ...]]]] = {
+    "+": lambda s, v, a, b: (np.ones_like(a), np.ones_like(b)),
+    "-": lambda s, v, a, b: (np.ones_like(a), -np.ones_like(b)),
+    "*": lambda s, v, a, b: (b, a),
+    "/": lambda s, v, a, b: (1 / b, -v / b),
+    "min": lambda s, v, a, b: (1.0 * (a <= b), 1.0 * (a > b)),
+    "max": lambda s, v, a, b: (1.0 * (a >= b), 1.0 * (a < b)),
+    "atan2": lambda s, v, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
+    "norm": lambda s, v, *parts: tuple(p / v for p in parts),
+    "power": lambda s, v, a: (_exponent(s) * a ** (_exponent(s) - 1),),
+    **{name: lambda s, v, a, d=d: (d(v, a),) for name, (_, d) in _FUNCTIONS.items()},
+}

@@ -1,0 +1,137 @@
+"""The effect of a rounding of the input under written loads, by the derivative of the motion.
+
+With eta an error of momentum, turn and centre, and p a number of body, loads or start,
+
+    eta(t) = Phi(t, 0) eta_0(p) + int_0^t Phi(t, s) g_p(s) ds,
+
+where g_p is p dF/dp. Exact motions beside this one would each cost as much as the truth.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from mpmath import mp
+
+from taylor_verify.exact.conditioning.condition import Path
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.rows import cross_matrices
+from taylor_verify.judge.floor.loads import Along
+from taylor_verify.scenes.motion import Motion
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+# So small a change of a number shows the derivative to six digits.
+_CHANGE: Final = Fraction(1, 2**20)
+_DRAWS: Final = 8
+
+
+class Moves:
+    """The motions beside an orbit, each of a number that is changed, at some of its times."""
+
+    def __init__(self, path: Path, changed: Sequence[Callable[[Fraction], Scene]]) -> None:
+        self._path, self._along = path, Along(path)
+        kind = kind_of(path.scene.body)
+        d = path.momentum.shape[1]
+        unit = [tuple(Fraction(int(i == j)) for j in range(d)) for i in range(d)]
+        self._momentum = np.array([kind.momentum(path.scene.body, e) for e in unit], dtype=float).T
+        responses = [self._of_scene(change(_CHANGE)) for change in changed]
+        self._responses = [*responses, *self._of_numbers()]
+
+    @property
+    def count(self) -> int:
+        """The numbers of body, start and loads."""
+        return len(self._responses)
+
+    def motions(self, places: Sequence[int], roundoff: float) -> Iterator[Motion]:
+        """Yield draws of all numbers changed at once, up or down at random, at these times of the path."""
+        coin = random.Random(1)
+        for _ in range(_DRAWS):
+            moved = sum(coin.choice((-1, 1)) * response for response in self._responses)
+            yield self.beside(places, roundoff * np.asarray(moved)[places])
+
+    def late(self, places: Sequence[int], roundoff: float) -> Motion:
+        """Return the motion at times that are later by a rounding of each."""
+        times = np.array(
+            [float(t) for t in self._path.scene.clock.start + np.array(self._path.elapsed)]
+        )
+        rates = self._errors(*self._along.rates()) * times[:, None]
+        return self.beside(places, roundoff * rates[places])
+
+    def beside(self, places: Sequence[int], errors: Floats) -> Motion:
+        """Return the motion with these errors of momentum, turn and centre, in the scene's units."""
+        along, scene = self._along, self._path.scene
+        d = along.state.shape[1]
+        inverse = np.linalg.inv(self._momentum)
+        z = _exact(along.state[places]) + _exact(errors[:, :d] @ inverse.T)
+        names = kind_of(scene.body).moving
+        quantities = {name: z[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}
+        if scene.track:
+            R = along.attitude[places]
+            turned = cross_matrices(errors[:, d : d + 3]) @ R
+            quantities["attitude"] = _exact(R) + _exact(turned)
+        if "centre" in scene.track:
+            quantities["centre"] = _exact(along.centre[places]) + _exact(errors[:, d + 3 :])
+        return Motion(quantities, np.array([mp.zero] * len(places), dtype=object))
+
+    # The response to one number.
+
+    def _errors(self, rate: Floats, turn: Floats, centre: Floats) -> Floats:
+        return np.hstack([rate @ self._momentum.T, turn, centre])
+
+    def _of_scene(self, changed: Scene) -> Floats:
+        """Return the response to a change of body and start, over the change."""
+        scene, kind = self._path.scene, kind_of(self._path.scene.body)
+        z, other = (kind.state(s.initial) for s in (scene, changed))
+        first = [self._momentum @ np.array([float(b - a) for a, b in zip(z, other, strict=True)])]
+        R, moved = (
+            np.array(rotation_matrix(s.initial.attitude), dtype=object) for s in (scene, changed)
+        )
+        turn = (moved @ R.T).astype(float)
+        first.append(np.array([turn[2, 1], turn[0, 2], turn[1, 0]]))
+        ends = [kind.centre(s.initial) for s in (scene, changed)]
+        shift = [float(b - a) for a, b in zip(ends[0] or (), ends[1] or (), strict=True)]
+        first.append(np.array(shift or [0.0] * 3))
+        push = np.zeros((len(self._path.elapsed), sum(map(len, first))))
+        if changed.body != scene.body:
+            here, there = self._along.rates(), self._along.rates(changed.body)
+            push = self._errors(*(b - a for a, b in zip(here, there, strict=True)))
+        return self._carried(np.concatenate(first), push) / float(_CHANGE)
+
+    def _of_numbers(self) -> Iterator[Floats]:
+        """Yield the response to each number of the loads."""
+        pushed = np.array(kind_of(self._path.scene.body).pushed(self._path.scene.body), dtype=float)
+        pushes: dict[Fraction, Floats] = {}
+        for piece in self._along.pieces():
+            for number, by in piece.numbers():
+                rows = np.zeros((len(self._path.elapsed), len(self._momentum) + 6))
+                rows[piece.places, :-6] = by @ pushed.T @ self._momentum.T
+                pushes[number] = pushes.get(number, 0) + rows
+        for push in pushes.values():
+            yield self._carried(np.zeros(push.shape[1]), push)
+
+    def _carried(self, first: Floats, push: Floats) -> Floats:
+        """Return what an error of the start, and errors of the rates, become at every time."""
+        path = self._path
+        units = [float(unit) for unit in path.flow.components] + [1.0] * 3
+        size = np.array([*units, *[float(path.flow.length)] * 3])
+        times = np.array([float(t) for t in path.elapsed])
+        counted, error = push / size, first / size
+        errors = [error]
+        for k, step in enumerate(path.carried.steps):
+            span = (times[k + 1] - times[k]) / 2
+            error = step @ (error + span * counted[k]) + span * counted[k + 1]
+            errors.append(error)
+        every: Floats = np.array(errors) * size
+        return every
+
+
+def _exact(rows: Floats) -> np.ndarray[Any, Any]:
+    values = np.array([mp.mpf(float(value)) for value in rows.flat], dtype=object)
+    return values.reshape(rows.shape)
