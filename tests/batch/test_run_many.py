@@ -23,11 +23,11 @@ from taylor_verify.batch.lock import LOCK
 from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 
 SCENES = ["euler/rest", "kirchhoff/whole-motion", "euler/generic"]

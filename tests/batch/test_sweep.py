@@ -24,10 +24,10 @@ from taylor_verify.batch.sweeps.chunk import COLUMNS
 from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 
 WORDS = ["--solver", SOLVER, "--count", "10", "--jobs", "1"]

@@ -14,8 +14,8 @@ from builders.sweeps import FAILING, SOLVER, TEMPLATE, rows, swept
 from taylor_verify.batch.sweeps import chunk as chunks
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.faults import Refused
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 
 # A simulator whose body goes on as it began.

@@ -19,8 +19,8 @@ from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import read

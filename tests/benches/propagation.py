@@ -9,7 +9,7 @@ from typing import Final
 from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
 from benches.scenes import sampled
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays

@@ -19,10 +19,10 @@ from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import diagonal
 
 WIDE = Fraction(1, 10**6)
 

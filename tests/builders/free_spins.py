@@ -6,8 +6,8 @@ from fractions import Fraction
 
 from builders.scenes import vector
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 
 def rotation(*quaternion: int) -> Matrix:

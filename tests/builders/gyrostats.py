@@ -8,11 +8,11 @@ from fractions import Fraction
 from builders.free_spins import OBLIQUE
 from builders.scenes import TENSOR, vector
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Clock, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 # Neither of unit length nor with a rational norm.
 TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))

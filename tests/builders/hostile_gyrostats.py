@@ -17,8 +17,8 @@ from taylor_verify.exact.gyrostat.azimuth import FRAMES
 from taylor_verify.exact.gyrostat.closed import closed_form, enclosed
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 Kind = Callable[[Random], FreeGyrostat]
 

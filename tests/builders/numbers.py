@@ -9,7 +9,7 @@ import numpy as np
 from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Motion
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 Array = np.ndarray[Any, Any]
 

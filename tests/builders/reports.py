@@ -24,11 +24,11 @@ from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
 from builders.verdicts import row
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import save
 from taylor_verify.records import store
 from taylor_verify.run import run
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.defects import DEFECTS
 from taylor_verify_reports.studies import figures, registry, report

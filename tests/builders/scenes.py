@@ -8,13 +8,13 @@ from fractions import Fraction
 from pathlib import Path
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 def vector(*entries: float | str) -> Vector:

@@ -17,8 +17,8 @@ from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.velocities import velocity
 from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

@@ -16,7 +16,7 @@ from mpmath import libmp
 
 from taylor_verify.exact import clocks
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
 
 # Of the two runs, beyond the digits asked for: what one rounding may become, and how they differ.

@@ -9,11 +9,11 @@ from mpmath import mp, mpf
 from builders.numbers import apart
 from builders.scenes import vector
 from taylor_verify.exact.euler.moments.washboard.board import Washboard
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 45
 FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))

@@ -11,11 +11,11 @@ import pytest
 from builders.scenes import vector
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 CLEBSCH = ("1", "3/2", "1/2")
 ALIKE = ("3/4", "3/4", "3/4")

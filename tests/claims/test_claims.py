@@ -16,9 +16,9 @@ from mpmath import mp
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.euler import heinbockel_moment
 from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates
+from taylor_verify.numbers.tensors import dot, is_positive_definite
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import dot, is_positive_definite
 from taylor_verify_reports.claims.check import All, Residual, measured, worse
 from taylor_verify_reports.claims.claim import Claim, Verdict, examine
 from taylor_verify_reports.claims.field import Element, Field

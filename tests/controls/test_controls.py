@@ -12,10 +12,10 @@ from builders.studies.stored import publish_document
 
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records import store
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.answers import ANSWERS
 from taylor_verify_reports.controls.defect import Defect

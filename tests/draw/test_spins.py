@@ -11,7 +11,7 @@ from mpmath import mp
 from taylor_verify.draw.spins import Wheels, number
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.spins import steady_spins
-from taylor_verify.scenes.tensors import diagonal
+from taylor_verify.numbers.tensors import diagonal
 
 MOMENTS = (Fraction(1), Fraction(2), Fraction(3))
 PLAIN = Wheels(np.array([1.0, 2.0, 3.0]), np.array([0.3, -0.2, 0.5]))

@@ -17,8 +17,8 @@ from mpmath import mp, mpf
 from taylor_verify.exact import balls as module
 from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, midpoint, sign, upper
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.numbers.precision import exact_value, held_exactly
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import exact_value, held_exactly
 
 DIGITS = 20
 NOT_A_NUMBER, INFINITE, WIDE = arb("nan"), arb("inf"), arb(0, 1)

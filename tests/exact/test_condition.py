@@ -30,12 +30,8 @@ from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.exact.units import exponent, later
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import (
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import (
     ZERO_MATRIX,
     Matrix,
     apply,
@@ -45,6 +41,10 @@ from taylor_verify.scenes.tensors import (
     scaled,
     transpose,
 )
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Clock, Spin
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 

@@ -23,14 +23,14 @@ from taylor_verify.exact.kirchhoff.quartic import Nutation, value
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.judge.floor.carrying import Carrying, carrying
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 DIGITS = 30
 # A number of 30 digits, times rates of some units, moves a motion by less than this.

@@ -14,11 +14,11 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.numbers.irrational import PI
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes import ellipsoid
 from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
 from taylor_verify.scenes.ellipsoid import LambIntegral
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn, written
-from taylor_verify.scenes.tensors import Vector
 
 BITS = STAND_IN_BITS
 

@@ -13,15 +13,15 @@ from taylor_verify.exact.ellipsoid import sentences
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import cross, dot
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.parts import entrywise
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn
-from taylor_verify.scenes.tensors import cross, dot
 
 SCENES = [
     name for name in library.names("kirchhoff") if "/ellipsoid-" in name or "-about-axis-" in name

@@ -22,11 +22,11 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
 from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import entrywise
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import StandIn
 

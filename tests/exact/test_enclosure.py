@@ -24,11 +24,11 @@ from taylor_verify.exact.enclosure.system import column
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.tensors import ZERO_MATRIX, diagonal
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 

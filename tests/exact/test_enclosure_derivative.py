@@ -18,11 +18,11 @@ from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.numbers.precision import exact_value
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 Array = np.ndarray[Any, Any]
 

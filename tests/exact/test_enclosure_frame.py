@@ -22,12 +22,12 @@ from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import Forms, System
 from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import diagonal
 
 MOVING = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
 GENERAL_SCENE = one_instant(GENERAL, MOVING, "attitude", "centre")

@@ -24,10 +24,10 @@ from taylor_verify.exact.enclosure.system import System, always, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.tensors import diagonal
 
 ZERO = Fraction(0)
 

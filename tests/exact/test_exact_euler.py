@@ -20,7 +20,7 @@ from taylor_verify.exact.euler.jacobi import free_rotation
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import decades
-from taylor_verify.scenes.tensors import Matrix
+from taylor_verify.numbers.tensors import Matrix
 
 DIGITS = 50
 

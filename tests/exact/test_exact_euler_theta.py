@@ -28,7 +28,7 @@ from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.euler.theta import free_rotation
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene

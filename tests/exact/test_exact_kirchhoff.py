@@ -48,9 +48,9 @@ from taylor_verify.exact.kirchhoff.weierstrass import Orbit
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Motion
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

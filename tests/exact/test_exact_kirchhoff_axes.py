@@ -23,11 +23,11 @@ from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 30
 TIMES = [Fraction(-3, 2), Fraction(0), Fraction(7, 2)]

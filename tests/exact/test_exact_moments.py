@@ -27,13 +27,13 @@ from taylor_verify.exact.kirchhoff.solid import short_digits
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 40
 ROUTES = ("arb", "mpmath")

@@ -15,10 +15,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution, arcs
+from taylor_verify.numbers.tensors import Vector, diagonal, scaled
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector, diagonal, scaled
 
 Array = np.ndarray[Any, Any]
 

@@ -13,7 +13,7 @@ from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.kirchhoff.displaced import moved, symmetric_origin
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Clock, Impulse, Spin, State

@@ -38,7 +38,7 @@ from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.scene import Scene

@@ -12,9 +12,9 @@ import pytest
 from taylor_verify.exact.elements import elements
 from taylor_verify.judge.floor import inputs
 from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

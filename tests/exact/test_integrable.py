@@ -19,15 +19,15 @@ from taylor_verify.exact.kirchhoff import integrable
 from taylor_verify.exact.kirchhoff.integrable import Fourth, fourth_integral
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 SCENES = {
     "clebsch-second-case": "clebsch2",

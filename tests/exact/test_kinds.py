@@ -11,11 +11,11 @@ from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
 from taylor_verify.exact.equations import Equations, exact
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
+from taylor_verify.numbers.tensors import apply, dot
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.tensors import apply, dot
 
 SAMPLES = {
     "euler": (RigidBody(TENSOR, MOMENT), SPIN),

@@ -15,9 +15,9 @@ from taylor_verify.exact.kirchhoff.closed import case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.library import EXTREMES, WORST, names
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

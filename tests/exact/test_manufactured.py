@@ -26,6 +26,7 @@ from taylor_verify.models.kirchhoff import kirchhoff_equations, velocities
 from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import mechanics
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
@@ -33,7 +34,6 @@ from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named

@@ -18,8 +18,8 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import CLOSED_ROUTES, solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import PI, Constant, Pi, generator
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load, read

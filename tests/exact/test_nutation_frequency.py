@@ -10,8 +10,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion, Spin
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

@@ -12,11 +12,11 @@ from mpmath import mp, mpf
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.kirchhoff.plane import plane, regime
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 DIGITS = 25
 TIMES = [Fraction(1, 3), Fraction(5), Fraction(-7, 2), Fraction(9)]

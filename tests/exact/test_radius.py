@@ -17,7 +17,7 @@ from taylor_verify.exact import balls, taylor
 from taylor_verify.exact.printed import _printed, document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
-from taylor_verify.scenes.precision import exact_value
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 
 ROUTES = ("arb", "mpmath", "taylor")

@@ -14,8 +14,8 @@ from taylor_verify.exact.balls import ball
 from taylor_verify.exact.lattice import Periods, lattice
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.spectrum import Cubic
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 
 BITS = 200
 # Some twenty operations, each of half a last place, on numbers that lose two bits at most.

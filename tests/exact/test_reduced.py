@@ -27,14 +27,14 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Number, Time
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.precisions import LADDER
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DIGITS = 25
 TIMES = [Fraction(0), Fraction(5, 4), Fraction(-2, 3)]

@@ -29,11 +29,11 @@ from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled, _distance
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector, diagonal
 from taylor_verify.scenes.bodies import Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector, diagonal
 
 BITS = 60
 DIGITS = 12

@@ -27,13 +27,13 @@ from taylor_verify.exact.kirchhoff.screws import (
 )
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value, rung
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.precisions import LADDER
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.tensors import Matrix
 
 F2 = Fraction(5, 4)
 

@@ -12,11 +12,11 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_MATRIX, diagonal
 
 TRIAXIAL = RigidBody(diagonal(vector(1, 2, 3)))
 # A disturbance of the spin about the middle axis grows by exp(0.577 t).

@@ -18,13 +18,13 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 Triple = tuple[Fraction, Fraction, Fraction]
 

@@ -12,12 +12,12 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import entrywise
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 TIMES = [Fraction(0), Fraction(7, 3), Fraction(-2)]
 X = vector("0.5", "-0.25", 1)

@@ -32,14 +32,14 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value, rung
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.precisions import LADDER
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Motion, Spin
-from taylor_verify.scenes.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 SHIPPED = {
     "moment-middle-axis": "washboard-swing",

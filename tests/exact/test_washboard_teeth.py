@@ -23,12 +23,12 @@ from taylor_verify.exact.euler.moments.washboard.turnings import MOST_TEETH, loc
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import diagonal
 
 # A spin against a moment that is too small to stop it before it has passed so many teeth. In the first two
 # the teeth are so deep that the body all but stops on each of the last.

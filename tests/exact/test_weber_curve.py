@@ -19,8 +19,8 @@ from taylor_verify.exact.kirchhoff.weber.characteristics import (
 from taylor_verify.exact.kirchhoff.weber.curve import curve
 from taylor_verify.exact.kirchhoff.weber.integrals import branch_points
 from taylor_verify.exact.solution import NoClosedForm
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 
 # The curve.
 

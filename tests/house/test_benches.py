@@ -23,8 +23,8 @@ from rich.console import Console
 from taylor_verify.batch.sweeps.chunk import judge
 from taylor_verify.judge.provenance import processor
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.library import find
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Postponed

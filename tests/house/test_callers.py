@@ -19,9 +19,9 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series.convergence import sweep
 from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import cases_directory
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.tradeoff.recommendation import recommend

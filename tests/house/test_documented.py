@@ -22,8 +22,8 @@ import taylor_verify
 from taylor_verify.cli.arguments import parse
 from taylor_verify.records import answers, reason
 from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.library import cases_directory, names
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify_reports.claims.document import Verdict as ClaimVerdict

@@ -19,9 +19,9 @@ from taylor_verify.batch.failure import Failed
 from taylor_verify.cli import main
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import Rung, rung
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.precision import Rung, rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.recommendation import recommend

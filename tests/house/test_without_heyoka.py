@@ -65,7 +65,7 @@ for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f
 """,
     "a trade-off": f"""
 from taylor_verify import tradeoff
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.tradeoff.setting import setting
 names = ["taylor", "geometric:splitting?step=1/4"]
 found = tradeoff("euler/spherical", [setting(n, rung("f64")) for n in names], repeats=1)
@@ -171,7 +171,7 @@ def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
     script = (
         "import sys\nfrom taylor_verify import cli\n"
         "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"
-        " from taylor_verify.scenes.precision import rung\n batch_width(rung('f64'))\n"
+        " from taylor_verify.numbers.precision import rung\n batch_width(rung('f64'))\n"
         "import taylor_verify.cli.list as verb\nverb.answer = act\n"
         "sys.exit(cli.main(['list']))"
     )

@@ -29,17 +29,17 @@ from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.floor.magnitude import Magnitude, roundings
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import power_of_two, rung
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
 from taylor_verify.scenes.mpfr import in_mpfr
-from taylor_verify.scenes.precision import power_of_two, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 from taylor_verify.solvers.taylor.plain import Plain
 
 Array = np.ndarray[Any, Any]

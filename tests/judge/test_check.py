@@ -32,14 +32,14 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.floor.inputs import input_rounding
 from taylor_verify.models.problem import adopt, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS, COMPLETE, INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.values import as_mpf, exact

@@ -22,11 +22,11 @@ from taylor_verify.judge.floor.steps import (
     count_steps,
 )
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback, Solver

@@ -36,11 +36,11 @@ from taylor_verify.judge.conventions.fits import EXPLAINS
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.search import conventions
 from taylor_verify.judge.files.judgement import FileJudgement
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 

@@ -11,10 +11,10 @@ import pytest
 from taylor_verify.exact.conditioning.condition import path, transition
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

@@ -24,8 +24,8 @@ from taylor_verify.judge.files.stored import storing
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.velocities import momenta, velocities
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 
 

@@ -16,8 +16,8 @@ from taylor_verify.judge.causes.material import Material, Pairs
 from taylor_verify.judge.causes.readings import omega_reading
 from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.causes.single_precision import single_precision
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 
 

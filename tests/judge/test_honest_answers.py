@@ -11,13 +11,13 @@ from builders.honest import answers, arithmetic
 from builders.scenes import vector
 
 from taylor_verify import check
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.status import Status
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 ZERO = Fraction(0)
 # A rotation with rational entries, and a unit quaternion.

@@ -11,9 +11,9 @@ from builders.scenes import CLEBSCH, GENERAL, TENSOR, asked_at, sample_scene
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor import inputs
 from taylor_verify.judge.floor.inputs import InputRounding, input_rounding
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.scene import Scene
 
 F64 = rung("f64")

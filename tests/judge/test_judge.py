@@ -17,15 +17,15 @@ from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, largest, s
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.gates import index_of_largest, judge
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status, summary
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback

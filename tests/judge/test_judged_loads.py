@@ -20,9 +20,9 @@ from mpmath import mp
 from taylor_verify import check, explain, tradeoff
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_BALANCES
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 
 GROUPS = {"euler": ("w",), "kirchhoff": ("x", "y")}

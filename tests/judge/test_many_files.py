@@ -21,13 +21,13 @@ from taylor_verify.cli import main
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.judge.series.files import FilesJudgement
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting import order as order_picture
 from taylor_verify.plotting.picture import plotting
 from taylor_verify.records.answers import Order, Stall
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows

@@ -32,13 +32,13 @@ from taylor_verify.models.form import Form, Named
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.kirchhoff import ClebschAbout, clebsch_equations, kirchhoff_equations
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Impulse, Motion, Quaternion, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory

@@ -14,10 +14,10 @@ from builders.scenes import LOADED, TENSOR, sample_scene, tracking_all, vector
 from taylor_verify import check
 from taylor_verify.exact.conditioning.condition import path
 from taylor_verify.judge.floor.repeats import _squares, with_repeats
+from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import CONSERVED_QUANTITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body, Clebsch, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene

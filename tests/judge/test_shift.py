@@ -26,15 +26,15 @@ from taylor_verify.judge.errors.shift import LEAVES, Shift, time_shifts
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value, power_of_two, rung
 from taylor_verify.records.reason import Kind
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import load as load_report
 from taylor_verify.records.store import write
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
-from taylor_verify.scenes.precision import exact_value, power_of_two, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback

@@ -12,7 +12,7 @@ from taylor_verify.exact.registry import kind_of
 from taylor_verify.models.damping import WithDamping
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import NotRepresentable, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

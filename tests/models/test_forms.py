@@ -26,11 +26,11 @@ from taylor_verify.models.kirchhoff import (
 )
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.rates import Linearised
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

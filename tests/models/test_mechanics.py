@@ -15,10 +15,10 @@ from taylor_verify.models.letters import numbers_of
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.units import Units
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Part, Parted, Shape, Value, entrywise
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify_reports.studies.portraits.equations import equations

@@ -10,12 +10,12 @@ from statistics import median
 import pytest
 
 from taylor_verify.exact.elements import elements
+from taylor_verify.numbers import tensors
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.quantities import STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene

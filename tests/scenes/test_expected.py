@@ -13,12 +13,12 @@ import taylor_verify
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
 from taylor_verify.batch.selection import select
 from taylor_verify.cli import main
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes import library
 from taylor_verify.scenes.expected import Expectation, Expectations, left_out, read, shipped
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.trajectory import Outcome
 

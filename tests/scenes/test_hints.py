@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.reader import read
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from builders.scenes import LISTED_INSTANTS
 
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.clock import MOST_SAMPLES
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import MOST_BYTES, load, read
 
 # Seconds of the processor that a scene of a hundred kilobytes may take.

@@ -15,16 +15,16 @@ from builders.scenes import vector
 from mpmath import mp
 
 from taylor_verify.cli import main
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.faults import Refused
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.imported import import_scene, rotation
 from taylor_verify.scenes.imported.document import DEEPEST, MOST_BYTES, MOST_ELEMENTS
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 # Seconds of the processor that a file of ten megabytes may take.
 PATIENCE = 20.0

@@ -17,7 +17,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.numbers.irrational import PI, Constant, Irrational, Pi, Undecided, generator
-from taylor_verify.scenes.precision import exact_value, floor_log2
+from taylor_verify.numbers.precision import exact_value, floor_log2
 
 DIGITS: Final = 60
 

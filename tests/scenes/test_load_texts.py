@@ -12,7 +12,7 @@ from random import Random
 
 import pytest
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 

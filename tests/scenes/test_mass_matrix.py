@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.explain.explanation import explanation
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import float_text
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn
 from taylor_verify.scenes.stand_in import written as irrational
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 VELOCITIES = 'linear_velocity = [1.5, "1/3", -0.2]\nangular_velocity = [0.1, 0, "-2/7"]'
 U, OMEGA = (

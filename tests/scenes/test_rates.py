@@ -12,13 +12,13 @@ from taylor_verify.exact.balls import ball
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.numbers.irrational import PI
+from taylor_verify.numbers.tensors import apply
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Spin
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn, written
-from taylor_verify.scenes.tensors import apply
 
 DEGREE = PI / 180
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes import library
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 
 FILES = sorted((library.cases_directory() / "refused").glob("*.toml"))

@@ -17,16 +17,17 @@ from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import regime
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import pose
-from taylor_verify.scenes import library, tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.faults import Refused
+from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Impulse, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.body import obeys_triangle_inequality
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 ORDERS = tuple(permutations(range(3)))
 INTEGERS = st.integers(-(10**12), 10**12)

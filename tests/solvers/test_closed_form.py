@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named

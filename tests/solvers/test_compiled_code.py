@@ -15,7 +15,7 @@ import pytest
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor import cache
 from taylor_verify.solvers.taylor.driver import compiled

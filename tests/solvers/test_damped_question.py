@@ -8,10 +8,10 @@ from fractions import Fraction
 import pytest
 
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process import protocol

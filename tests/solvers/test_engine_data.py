@@ -12,8 +12,8 @@ import pytest
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.run import run
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines import python

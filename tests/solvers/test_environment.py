@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from builders.scenes import three_instants
 
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.engines import engine, python
 from taylor_verify.solvers.engines.engine import engines, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade

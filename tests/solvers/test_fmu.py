@@ -18,9 +18,9 @@ from pythonfmu.builder import FmuBuilder
 
 import taylor_verify
 from taylor_verify.cli import main
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.fmu import runner as fmu_runner
 from taylor_verify.solvers.fmu.fmu import PREFIX, named
 from taylor_verify.solvers.process.process import LIMIT_VARIABLE

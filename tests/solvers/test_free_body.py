@@ -13,7 +13,7 @@ import pytest
 from builders.oblique import BACKWARDS, oblique
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.solver import Callback

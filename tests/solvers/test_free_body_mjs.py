@@ -12,7 +12,7 @@ from builders.oblique import BACKWARDS, FULL, oblique
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import process

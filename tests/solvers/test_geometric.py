@@ -23,11 +23,11 @@ from taylor_verify.judge.judgement import judgement
 from taylor_verify.judge.series.convergence import sweep
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import registry

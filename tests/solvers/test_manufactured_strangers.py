@@ -23,10 +23,10 @@ import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.inputs import _numbers, _with_factors
 from taylor_verify.models.problem import Problem, adopt, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process import protocol

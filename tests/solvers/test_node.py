@@ -14,7 +14,7 @@ import pytest
 from builders.at_once import both
 from builders.scenes import three_instants
 
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, named, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.node import lock

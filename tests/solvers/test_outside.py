@@ -19,8 +19,8 @@ from builders.scenes import three_instants
 from packaging.specifiers import SpecifierSet
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare

@@ -10,7 +10,7 @@ import pytest
 from builders.programs import is_alive
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import peer as peers
 from taylor_verify.solvers.engines.engine import SCRIPTS, named, prepare

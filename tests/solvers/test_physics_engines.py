@@ -15,11 +15,11 @@ from builders.other_equations import WITHOUT_GYROSCOPIC_TERM, has_other_equation
 from builders.processes import PATIENCE
 
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade

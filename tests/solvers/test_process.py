@@ -23,10 +23,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.process.process import DEFAULT_LIMIT, LIMIT_VARIABLE, Process, named

@@ -19,8 +19,8 @@ from builders.worked import DOCS
 
 from taylor_verify.cli import main
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process import protocol

@@ -9,9 +9,9 @@ from builders.scenes import asked_at
 from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers import registry
 from taylor_verify.solvers import scipy as solver

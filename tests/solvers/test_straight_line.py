@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.straight_line import _Code, straight_line
 

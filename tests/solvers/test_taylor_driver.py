@@ -20,14 +20,14 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.times import rounded_times
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import power_of_two, rung
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.precision import power_of_two, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Callback
@@ -477,7 +477,7 @@ def test_an_interrupt_is_heard_in_the_middle_of_a_long_run() -> None:
         "from fractions import Fraction\n"
         "from taylor_verify.models.problem import pose\n"
         "from taylor_verify.scenes.motion import Clock\n"
-        "from taylor_verify.scenes.precision import rung\n"
+        "from taylor_verify.numbers.precision import rung\n"
         "from taylor_verify.scenes.reading.reader import load\n"
         "from taylor_verify.solvers.taylor.driver import Taylor\n"
         "clock = Clock(Fraction(0), (Fraction(10**9),))\n"

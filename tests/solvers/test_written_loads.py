@@ -12,7 +12,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify.solvers.registry import solver_named, solver_names

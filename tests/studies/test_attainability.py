@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 import taylor_verify
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor

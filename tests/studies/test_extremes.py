@@ -19,12 +19,13 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
-from taylor_verify.scenes import library, tensors
+from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver

@@ -12,7 +12,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import exact_value, rung
+from taylor_verify.numbers.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.growth.errors import PHASE, certain_shifts, lane_errors
 from taylor_verify_reports.studies.growth.experiment import course, experiment

@@ -15,8 +15,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.models.form import Named
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.ensemble import Ensemble, Lane, batch_width
 from taylor_verify.solvers.taylor.way import longest_step

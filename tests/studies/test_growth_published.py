@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from taylor_verify.cli import main
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.json_text import complete, converted
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.growth import experiment as experiments
 from taylor_verify_reports.studies.growth import page as pages

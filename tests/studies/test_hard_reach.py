@@ -13,8 +13,8 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.exact.elements import elements
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify_reports.studies.hard import reach

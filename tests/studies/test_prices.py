@@ -14,7 +14,7 @@ from builders.studies.stored import publish_document
 
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import rung
+from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.words.cells import figure
 from taylor_verify_reports.studies.prices.document import PRICES, PricesStudy

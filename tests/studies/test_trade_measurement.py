@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from taylor_verify.batch.runs import run_all
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.standing import Standing
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer

@@ -14,10 +14,10 @@ from builders.scenes import asked_at, scene_file
 
 import taylor_verify
 from taylor_verify.cli import main
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.standing import Standing
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_names

@@ -20,8 +20,8 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.cli.tradeoff import tradeoff_text
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.standing import Standing
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver

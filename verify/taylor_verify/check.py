@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
-    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
 
 
@@ -91,7 +91,7 @@ def check(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read or a file that cannot be judged, with every fault of it.
     ValueError
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
@@ -107,7 +107,7 @@ def check(
     from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.series.files import judge_files
     from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.files.file import read
     from taylor_verify.solvers.files.objects import pairs, trajectory

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
-    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
     from taylor_verify.solvers.solver import Solver
     from taylor_verify.solvers.trajectory import Trajectory
@@ -51,7 +51,7 @@ def run(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no solver or no rung, and for a tolerance that is no positive number below 1 or
@@ -64,9 +64,9 @@ def run(
     from taylor_verify.judge.files.stored import with_note_of_answer
     from taylor_verify.judge.judgement import judgement, unjudged
     from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.records.reason import Cause
     from taylor_verify.records.status import Status
-    from taylor_verify.scenes.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -110,12 +110,12 @@ def solve(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no solver or no rung.
     """
-    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.trajectory import Trajectory

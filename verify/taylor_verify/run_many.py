@@ -69,7 +69,7 @@ def run_many(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For scenes that cannot be read, with every fault of all of them.
     ValueError
         For what is no solver, no rung, no number of processes or no tolerance, and for any other argument
@@ -130,7 +130,7 @@ def _faults(
     from numbers import Integral
     from os import PathLike
 
-    from taylor_verify.scenes.reading.faults import brief
+    from taylor_verify.records.faults import brief
 
     if not isinstance(solver, str):
         mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""

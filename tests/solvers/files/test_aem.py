@@ -14,7 +14,7 @@ from builders.recordings import OMEGA, QUATERNION, Columns
 from builders.trajectories import columns_at, conjugate
 
 import taylor_verify
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.epochs import seconds

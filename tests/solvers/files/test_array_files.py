@@ -13,7 +13,7 @@ import scipy.io
 from builders.recordings import OMEGA
 from pyarrow import parquet
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.reading import read_table
 

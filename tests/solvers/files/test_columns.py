@@ -19,9 +19,9 @@ from mpmath import mp
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.files.columns.names import GROUPS, SPELLINGS, Spelling
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.columns.units import in_brackets, known_units

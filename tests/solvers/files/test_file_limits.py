@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from pyarrow import parquet
 
 import taylor_verify
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ROWS
 
@@ -30,7 +30,7 @@ MOST_MEGABYTES = 300
 
 READ = """
 import sys
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
 try:
     read(sys.argv[1])

@@ -20,7 +20,7 @@ from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 from scipy.io import savemat
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats import mcap, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ROWS

@@ -19,9 +19,9 @@ from scipy.spatial.transform import Rotation
 
 import taylor_verify
 from taylor_verify.judge.files.judgement import FileJudgement
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.objects import pairs, trajectory

@@ -25,8 +25,8 @@ from rosbags import rosbag1, rosbag2
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.reading import FORMATS, parted, read_table

@@ -32,13 +32,13 @@ from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.judge.velocities import momenta, velocities
 from taylor_verify.models.problem import adopt
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import COMPLETE, INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Clock, Impulse
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded

@@ -114,7 +114,7 @@ def compare_with_baseline(
 def read_baseline(file: str | PathLike[str]) -> Earlier:
     """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
 
-    Raises scenes.reading.faults.Refused for a file that cannot be read, and ValueError for one that holds
+    Raises records.faults.Refused for a file that cannot be read, and ValueError for one that holds
     something else.
     """
     return Earlier(fspath(file), earlier_file.load(fspath(file)))

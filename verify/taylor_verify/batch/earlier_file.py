@@ -10,9 +10,9 @@ from typing import Final
 
 from taylor_verify.batch.differences import ERRORS
 from taylor_verify.records.json_text import parsed
+from taylor_verify.records.limit import Limit
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.scenes.reading.regular_file import read_bytes
 
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
@@ -22,7 +22,7 @@ _MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 def load(file: Path | str) -> tuple[Verdict, ...]:
     """Return the verdicts of a file.
 
-    Raises scenes.reading.faults.Refused for a file that cannot be read. Raises ValueError, which names what
+    Raises records.faults.Refused for a file that cannot be read. Raises ValueError, which names what
     was expected and where, for a file with other content: a half-understood baseline would pass everything.
     """
     content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)

@@ -100,8 +100,8 @@ def judge_all(
 
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
+    from taylor_verify.records.faults import Refused
     from taylor_verify.run import run
-    from taylor_verify.scenes.reading.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
     with failing(job.name, Refused):

@@ -11,7 +11,7 @@ from taylor_verify.batch.job import Job
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
-    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
 
 
@@ -67,15 +67,15 @@ def select(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         With every fault of every scene that cannot be read.
     ValueError
         For a name that is no rung, and for what is neither scenes nor rungs.
     """
+    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
-    from taylor_verify.scenes.precision import rung as rung_named
 
     scenes = None if scenes is None else _several(scenes, "scenes")
     rungs = None if rungs is None else _several(rungs, "rungs")
@@ -89,7 +89,7 @@ def select(
 
 def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     """Read scenes, each once. Raises Refused with the faults of all that cannot be read."""
-    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.records.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
     asked = [*scenes]
@@ -110,8 +110,8 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
 
 def _several(asked: Any, what: str) -> Sequence[Any]:
     """Return what was asked for as a sequence: a text is one name, and no row of letters."""
-    from taylor_verify.scenes.precision import Rung
-    from taylor_verify.scenes.reading.faults import brief
+    from taylor_verify.numbers.precision import Rung
+    from taylor_verify.records.faults import brief
     from taylor_verify.scenes.scene import Scene
 
     if isinstance(asked, str | PathLike | Scene | Rung):

@@ -69,7 +69,7 @@ def _interruption(interrupt: KeyboardInterrupt) -> str:
 
 def _message(error: Exception) -> str:
     """Return a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
-    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.records.faults import Refused
 
     if isinstance(error, WrongCall | Refused):
         return str(error)

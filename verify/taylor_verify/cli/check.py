@@ -39,11 +39,11 @@ from taylor_verify.judge.series.files import (
     repeated,
     steps_of,
 )
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import GATE_FACTOR, STATES
 from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read

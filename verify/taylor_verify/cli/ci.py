@@ -17,9 +17,9 @@ from taylor_verify.cli.folders import not_written, writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.words.annotations import annotation_lines
 from taylor_verify.words.opening import opening
 from taylor_verify.words.step_summary import step_summary

@@ -21,12 +21,12 @@ from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.judgement import judge_file
+from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import ENDINGS as STILLS
 from taylor_verify.plotting.picture import Picture, content
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read

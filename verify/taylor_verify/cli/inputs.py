@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from taylor_verify.batch.selection import read_all
 from taylor_verify.cli.answer import WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.library import named
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.table import exact_number, is_numeral
 from taylor_verify.scenes.scene import Scene
 

@@ -9,7 +9,7 @@ from functools import partial
 from taylor_verify.cli.answer import PASS, Answer, WrongCall
 from taylor_verify.cli.inputs import known_rungs, read_scene
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
-from taylor_verify.scenes.precision import rung, shortest_decimal
+from taylor_verify.numbers.precision import rung, shortest_decimal
 from taylor_verify.solvers.process.protocol import column_names, question
 
 

@@ -22,11 +22,11 @@ from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.quantities import TRACKED
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 Document = dict[str, Any]
 

@@ -47,7 +47,7 @@ def exact(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     exact.solution.NoClosedForm
         Where the route asks for a closed form that is missing.

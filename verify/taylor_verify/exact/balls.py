@@ -20,8 +20,8 @@ from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Solution, Time, Unsettled
 from taylor_verify.numbers.irrational import Irrational, Undecided
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.tensors import Matrix
 
 # Quantity by name; for each time a row of balls, nested as the quantity is shaped.
 Enclosure = Mapping[str, Sequence[Any]]

@@ -14,9 +14,9 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, ctx, fmpq
 
+from taylor_verify.numbers.precision import floor_log2
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.precision import floor_log2
-from taylor_verify.scenes.tensors import Vector
 
 Exact = np.ndarray[Any, Any]
 """An object array of rationals."""

@@ -31,9 +31,9 @@ from taylor_verify.exact.solution import (
     Time,
     Unsettled,
 )
+from taylor_verify.numbers.precision import floor_log2
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import alike
-from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
 
 # If the phase has more digits than this before its point, an instant takes seconds.

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from mpmath import mp
 
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
 
 _DIGITS_TOLD: Final = 12

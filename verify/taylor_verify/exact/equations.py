@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from taylor_verify.exact.clocks import Exact, Floats, standing, swing
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.manufactured import Manufactured
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 class Scaled(NamedTuple):

@@ -13,11 +13,11 @@ import numpy as np
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.invariant import Invariant
 from taylor_verify.exact.units import Units
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 Array = np.ndarray[Any, Any]
 B = TypeVar("B", bound=Body)

@@ -17,8 +17,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
 from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]

@@ -21,8 +21,8 @@ from taylor_verify.exact.equations import Scaled
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.units import Units
+from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 
 # Units of 2^-500 to 2^500 leave as much again to what is counted in them.

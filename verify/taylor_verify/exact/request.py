@@ -9,7 +9,7 @@ from numbers import Rational
 from operator import index
 from typing import Any, Final
 
-from taylor_verify.scenes.reading.faults import brief
+from taylor_verify.records.faults import brief
 from taylor_verify.scenes.reading.table import exact_number
 
 MOST_DIGITS: Final = 10_000

@@ -11,9 +11,9 @@ from typing import TypeVar
 
 from flint import arb
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.tensors import Matrix
 
 Number = TypeVar("Number", Fraction, arb)
 

@@ -15,8 +15,8 @@ from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Uns
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Undecided
+from taylor_verify.records.faults import brief
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.scenes.scene import Scene
 
 # Two doublings of the precision: more are needed only where an integral is hard.

@@ -10,8 +10,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.mpfr import real, sqrt
-from taylor_verify.scenes.tensors import Matrix
 
 Array = np.ndarray[Any, Any]
 

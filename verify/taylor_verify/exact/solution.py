@@ -13,8 +13,8 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import power_of_two
 
 Quantities = Mapping[str, np.ndarray[Any, Any]]
 

@@ -18,7 +18,7 @@ from typing import NamedTuple, Self
 from flint import arb
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.scenes.tensors import Matrix, cross, dot
+from taylor_verify.numbers.tensors import Matrix, cross, dot
 
 
 class Gaps(NamedTuple):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import floor_log2
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2
+from taylor_verify.numbers.tensors import Vector
 
 
 @dataclass(frozen=True)

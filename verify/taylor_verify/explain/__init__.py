@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from os import PathLike
 
-    from taylor_verify.scenes.precision import Rung
+    from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
 
 
@@ -30,12 +30,12 @@ def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dic
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     ValueError
         For a name that is no rung.
     """
     from taylor_verify.explain.explanation import explanation
-    from taylor_verify.scenes.precision import rung as rung_named
+    from taylor_verify.numbers.precision import rung as rung_named
 
     return explanation(scene, rung_named(rung).name)

@@ -22,13 +22,13 @@ from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded

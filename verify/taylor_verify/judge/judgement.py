@@ -14,6 +14,7 @@ from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.rows import Run, run_record, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MAIN
 from taylor_verify.records.reason import Carried, Cause, stated
@@ -21,7 +22,6 @@ from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory

@@ -14,11 +14,11 @@ from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from taylor_verify.records.faults import brief
 from taylor_verify.records.quantities import MAIN, STATES, UNIT_QUATERNION
-from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.scenes.reading.positive import positive
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.solution import Quantities
+from taylor_verify.numbers.tensors import Matrix, inverse, transpose
 from taylor_verify.records.quantities import VELOCITIES
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.tensors import Matrix, inverse, transpose
 
 Array = np.ndarray[Any, Any]
 

@@ -12,10 +12,10 @@ from taylor_verify.models.choice import Choice
 from taylor_verify.models.form import Equations, Named
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import DAMPING, Body
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Part, Value
-from taylor_verify.scenes.precision import Rung
 
 _LETTER: Final = Part("d", DAMPING.shape, DAMPING.dimension)
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.units import Units, largest
-from taylor_verify.scenes.precision import power_of_two
+from taylor_verify.numbers.precision import power_of_two
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR
 
 # The loads are looked at in these parts of the time, at the state of the start.
 _LOOKS: Final = (Fraction(0), Fraction(1, 3), Fraction(2, 3))

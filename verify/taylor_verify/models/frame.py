@@ -11,8 +11,8 @@ from math import isqrt, lcm
 from typing import Any
 
 from taylor_verify.models.algebra import Terms, add, cross, dot, minus, plus, times
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
-from taylor_verify.scenes.precision import Rung
 
 
 def attitude_rate(q: Terms, omega: Terms) -> list[Any]:

@@ -19,12 +19,12 @@ from taylor_verify.models.manufactured import EULER_INVERSE, Inverse, Moved
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.rigid import Rigid, chosen_equations
 from taylor_verify.models.units import Units, binary, size
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.parts import MOMENTUM, Part, Shape, Value
-from taylor_verify.scenes.precision import Rung
 
 _RIGID: Final = Rigid()
 

@@ -21,12 +21,12 @@ from taylor_verify.models.kirchhoff import (
 from taylor_verify.models.manufactured import KIRCHHOFF_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung, power_of_two
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Part, Shape, Value
-from taylor_verify.scenes.precision import Rung, power_of_two
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _LETTERS = {"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"}
 

@@ -30,9 +30,9 @@ from typing import Any, Final
 from taylor_verify.models.algebra import ABSENT, Terms, add, dot, is_absent, minus, plus, times
 from taylor_verify.models.form import Equations, Named, labelled
 from taylor_verify.models.symbol import Symbol
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.tensors import Vector
 
 # The letters of the start, the cosines and the sines of each vector.
 _LETTERS = (("h", "a", "b"), ("k", "f", "g"))

@@ -17,13 +17,13 @@ from taylor_verify.models.choice import Choice
 from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import Inverse
 from taylor_verify.models.units import Units
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Part, Shape, Value
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 B = TypeVar("B", bound=Body)
 S = TypeVar("S", bound=State)

@@ -24,16 +24,16 @@ from taylor_verify.models.registry import mechanics, natural_units
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung, floor_log2
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
-from taylor_verify.scenes.precision import Rung, floor_log2
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 
 class NotRepresentable(Exception):

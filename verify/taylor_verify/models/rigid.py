@@ -15,12 +15,12 @@ from taylor_verify.models.form import Equations
 from taylor_verify.models.manufactured import EULER_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung, floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape, Value
-from taylor_verify.scenes.precision import Rung, floor_log2, power_of_two
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _PRODUCTS: Final = ("K12", "K13", "K23")
 _DEVIATIONS: Final = {"D11": "K11 - K33", "D22": "K22 - K33"}

@@ -14,10 +14,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.numbers.precision import Rung, exact_value, floor_log2, nearest, power_of_two
 from taylor_verify.records.precisions import FORMATS
 from taylor_verify.scenes.instants import EquallySpaced, Instants
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import Rung, exact_value, floor_log2, nearest, power_of_two
 
 _HARDWARE: Final[dict[str, Any]] = {
     number_format.name: np.dtype(number_format.numpy).type

@@ -13,10 +13,10 @@ from functools import cached_property
 from math import frexp, prod
 from typing import Final
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
-from taylor_verify.scenes.precision import floor_log2, power_of_two
-from taylor_verify.scenes.tensors import Vector
 
 # Relative error bound of sums of some products of doubles that were rounded once each.
 _DOUBTFUL: Final = 2.0**-40

@@ -22,9 +22,9 @@ from taylor_verify.models.functions import Functions, functions_of
 from taylor_verify.models.kirchhoff import velocities
 from taylor_verify.models.symbol import Symbol
 from taylor_verify.models.units import Units
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
 from taylor_verify.scenes.loads.steps import Step
-from taylor_verify.scenes.tensors import Vector
 
 # The letters of the loads and of the momenta, by the number of the loads.
 _LETTERS: Final = {3: ("M",), 6: ("X", "L")}

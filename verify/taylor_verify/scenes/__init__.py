@@ -25,7 +25,7 @@ def load(scene: str | os.PathLike[str]) -> Scene:
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         With every fault of the file at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
     from taylor_verify.scenes.reading import reader

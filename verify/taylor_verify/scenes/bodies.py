@@ -8,14 +8,14 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, ClassVar, Final, Self, cast
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.ellipsoid import Inertias, inertias
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
 from taylor_verify.scenes.stand_in import stand_in
-from taylor_verify.scenes.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 
 DAMPING: Final = Part("damping", Shape.NUMBER, RATE)
 

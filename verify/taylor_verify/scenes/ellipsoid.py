@@ -22,7 +22,7 @@ from typing import Any, Final, NamedTuple, final
 from flint import acb, arb, fmpq
 
 from taylor_verify.numbers.irrational import Constant, Pi, generator
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.numbers.tensors import Vector
 
 _MOST_CACHED: Final = 256
 

@@ -26,11 +26,11 @@ from typing import Final, Literal
 
 import msgspec
 
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.faults import refusal
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
-from taylor_verify.scenes.precision import rung
-from taylor_verify.scenes.reading.faults import refusal
 
 FILE: Final = "EXPECTED.toml"
 _ALL: Final = "*"

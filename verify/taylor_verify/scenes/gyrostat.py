@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 
 @dataclass(frozen=True)

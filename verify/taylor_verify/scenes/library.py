@@ -11,7 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from taylor_verify.scenes.reading.faults import Refused, brief
+from taylor_verify.records.faults import Refused, brief
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
 EXTREMES: Final = "extremes"

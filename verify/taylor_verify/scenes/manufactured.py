@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 
 @dataclass(frozen=True)

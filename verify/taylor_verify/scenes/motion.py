@@ -8,10 +8,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 if TYPE_CHECKING:
     import numpy as np

@@ -11,8 +11,8 @@ from fractions import Fraction
 from typing import Any, Final, Self
 
 from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.numbers.precision import rounded
 from taylor_verify.scenes.parts import Value, entrywise
-from taylor_verify.scenes.precision import rounded
 
 STAND_IN_BITS: Final = 400
 """120 digits, beyond every precision of a solver."""

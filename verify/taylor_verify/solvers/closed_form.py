@@ -28,8 +28,8 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.geometric.fixed_step import Body
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.scipy import unavailable

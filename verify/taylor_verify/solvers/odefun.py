@@ -16,7 +16,7 @@ from typing import Any, Final, final
 from mpmath import mp
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.numbers.precision import Rung, held_exactly
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, raised

@@ -94,7 +94,7 @@ def _module(family: Family) -> Any:
 
 def as_solver(solver: Solver | str) -> Solver:
     """Return a Solver as it is, and that of a name; ValueError for anything else."""
-    from taylor_verify.scenes.reading.faults import brief
+    from taylor_verify.records.faults import brief
     from taylor_verify.solvers.solver import Solver
 
     if isinstance(solver, str):

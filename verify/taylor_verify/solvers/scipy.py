@@ -18,7 +18,7 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.pieces import piece_by_piece

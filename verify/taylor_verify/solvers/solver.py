@@ -14,9 +14,9 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import Value, as_mpf, exact

@@ -18,12 +18,12 @@ from mpmath import mp
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value, held_exactly
 from taylor_verify.records.quantities import state_groups
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
-from taylor_verify.scenes.precision import exact_value, held_exactly
 
 
 class Outcome(Enum):

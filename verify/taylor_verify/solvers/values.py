@@ -17,8 +17,8 @@ from typing import Any, Final
 import numpy as np
 from mpmath import libmp, mp
 
-from taylor_verify.scenes.precision import held_exactly
-from taylor_verify.scenes.reading.faults import cut
+from taylor_verify.numbers.precision import held_exactly
+from taylor_verify.records.faults import cut
 from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number, quantity
 
 # A rational, or the NaN or infinity that the file has in its place.

@@ -6,9 +6,9 @@ from collections.abc import Collection, Sequence
 from typing import Final
 
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.faults import brief
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.reading.faults import brief
 from taylor_verify.words.account import account
 
 Only = str | Collection[str] | None

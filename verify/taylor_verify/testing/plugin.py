@@ -156,9 +156,9 @@ def _judgement(
     """Return the judgement, and the exception that a callable raised, whose traceback pytest then shows."""
     __tracebackhide__ = True
     from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.records.faults import Refused
     from taylor_verify.run import run
-    from taylor_verify.scenes.precision import rung as rung_named
-    from taylor_verify.scenes.reading.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
     from taylor_verify.solvers.solver import Callback, Solver
@@ -213,8 +213,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def _cases(mark: pytest.Mark) -> Iterator[Case]:
-    from taylor_verify.scenes.precision import rung as rung_named
-    from taylor_verify.scenes.reading.faults import Refused
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.records.faults import Refused
 
     options: Mapping[str, Any] = mark.kwargs
     if unknown := sorted(options.keys() - {"rung", "tolerance", "only"}):

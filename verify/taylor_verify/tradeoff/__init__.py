@@ -44,7 +44,7 @@ def tradeoff(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     ValueError
         If ``repeats`` is below 1.
@@ -90,7 +90,7 @@ def recommend(
     ------
     studies.tradeoff.recommendation.OutOfReach
         If no setting reaches the error.
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a scene that cannot be read.
     ValueError
         For an error that is no positive number.

@@ -17,9 +17,9 @@ from taylor_verify.judge.errors.drifts import drifts
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import Motion, State
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 

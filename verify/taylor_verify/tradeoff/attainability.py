@@ -19,10 +19,10 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.precisions import FORMATS
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -9,7 +9,7 @@ from os import PathLike
 from typing import Any, Final
 
 from taylor_verify.models.problem import NotRepresentable
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene

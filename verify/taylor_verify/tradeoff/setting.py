@@ -8,10 +8,10 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.models.registry import natural_units
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.precisions import FORMATS
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import Outside, engines
 from taylor_verify.solvers.engines.peer import Peer

@@ -9,9 +9,9 @@ from typing import Any
 
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.tradeoff.accuracy import Truths
 from taylor_verify.tradeoff.attainability import least_error

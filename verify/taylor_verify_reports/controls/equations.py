@@ -23,7 +23,7 @@ from taylor_verify.models.form import Named, in_unit_of_path, labelled
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.kirchhoff import impulse_rates, kirchhoff_equations, velocities
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor

@@ -23,7 +23,7 @@ import numpy as np
 
 from taylor_verify.models.frame import attitude_rate
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import exact_value
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.plain import Plain
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled

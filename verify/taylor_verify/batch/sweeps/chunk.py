@@ -10,11 +10,11 @@ from taylor_verify.batch.failure import fault
 from taylor_verify.batch.store import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
 from taylor_verify.judge.tolerances import Tolerances
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.reason import Cause, Reason, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome
 

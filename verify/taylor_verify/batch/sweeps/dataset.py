@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.batch.sweeps.chunk import COLUMNS, Columns
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.scenes.reading.faults import Refused
 
 MANIFEST: Final = "sweep.json"
 TEMPLATE: Final = "template.toml"

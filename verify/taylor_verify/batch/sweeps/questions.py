@@ -10,12 +10,12 @@ from math import inf
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.scenes.families.cube import Spread, places
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.library import family, is_family
 from taylor_verify.scenes.families.reading import MOST_POINTS, load_family
 from taylor_verify.scenes.library import find, named
-from taylor_verify.scenes.reading.faults import Refused, refusal
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -175,7 +175,7 @@ def questions(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a template, or scenes of a folder, with all their faults, and for a name that is none.
     ValueError
         For a number of points or a seed that is none, and for either beside a folder.

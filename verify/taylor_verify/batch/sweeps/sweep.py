@@ -32,11 +32,11 @@ from taylor_verify.batch.sweeps.report import SUMMARY_NAMES, write_summary
 from taylor_verify.batch.sweeps.summary import WORST, summary, with_causes, with_files
 from taylor_verify.judge.provenance import packages
 from taylor_verify.judge.tolerances import Tolerance, Tolerances, tolerances
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import SweepSummary
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
-from taylor_verify.scenes.reading.faults import Refused, refusal
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
@@ -98,7 +98,7 @@ def sweep(
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For a template or scenes that cannot be read, with all their faults, and for a folder that holds
         another sweep.
     ValueError

@@ -32,8 +32,8 @@ from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.numbers.precision import float_text, floor_log2
 from taylor_verify.scenes.instants import chosen
-from taylor_verify.scenes.precision import float_text, floor_log2
 from taylor_verify.scenes.scene import Scene
 
 # float64 reaches e^700, and squares of the errors are formed.

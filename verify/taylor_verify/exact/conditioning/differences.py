@@ -23,9 +23,9 @@ from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 Array = np.ndarray[Any, Any]
 

@@ -24,9 +24,9 @@ from taylor_verify.exact.clocks import Floats, standing, swing
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.equations import Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 
 class Steps(NamedTuple):

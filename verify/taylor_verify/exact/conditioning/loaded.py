@@ -24,10 +24,10 @@ from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.instants import chosen
-from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 # Derivatives are wanted to their leading digits, along a motion right to about float64.
 _BITS: Final = 96

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 @dataclass(frozen=True)

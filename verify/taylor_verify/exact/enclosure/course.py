@@ -23,8 +23,8 @@ from taylor_verify.exact.enclosure.step import Step, Stepper, size_of
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes.precision import float_text, power_of_two
-from taylor_verify.scenes.reading.faults import shown
+from taylor_verify.numbers.precision import float_text, power_of_two
+from taylor_verify.records.faults import shown
 
 MOST_STEPS: Final = 1_000_000
 # A box this large, as a power of two of its vector, is lost: further steps would shrink without end.

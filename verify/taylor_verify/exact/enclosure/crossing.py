@@ -21,7 +21,7 @@ from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import ZERO
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.numbers.precision import floor_log2, power_of_two
 
 # The first zero of a polynomial is looked for on so many parts of the step.
 _PARTS: Final = 64

@@ -20,10 +20,10 @@ from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads import loads as written
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _STATES = ("x", "y")
 

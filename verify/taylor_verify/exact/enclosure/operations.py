@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.scenes.precision import floor_log2
+from taylor_verify.numbers.precision import floor_log2
 
 if TYPE_CHECKING:
     from taylor_verify.exact.enclosure.bounds import Bounds

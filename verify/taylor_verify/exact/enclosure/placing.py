@@ -39,7 +39,7 @@ from taylor_verify.exact.enclosure.flow import Flow
 from taylor_verify.exact.enclosure.system import Forms, column, magnitudes
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.exact.rotation import product, rotation_rows
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.system import Forms, System
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong, Tube, tube
-from taylor_verify.scenes.precision import floor_log2, power_of_two
+from taylor_verify.numbers.precision import floor_log2, power_of_two
 
 # If the convolutions dominate the cost, the cheapest steps are the radius of convergence over e^2, with
 # bits ln 2/2 orders. Work that is done once per order or once per step makes higher orders cheaper.

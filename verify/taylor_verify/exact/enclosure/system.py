@@ -20,7 +20,7 @@ from taylor_verify.exact.balls import balls
 from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, vanishes
 from taylor_verify.exact.equations import Equations
-from taylor_verify.scenes.tensors import Vector
+from taylor_verify.numbers.tensors import Vector
 
 
 class Piece(NamedTuple):

@@ -14,7 +14,7 @@ from taylor_verify.exact.euler.moments.washboard.board import Washboard
 from taylor_verify.exact.euler.moments.washboard.turnings import regime
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm, Solution
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene

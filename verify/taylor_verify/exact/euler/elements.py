@@ -24,7 +24,7 @@ from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
 

@@ -19,9 +19,9 @@ from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.rotations import OneByOne, Rotation, RotationBalls, Rows, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside, unchanged
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 _GUARD_DIGITS: Final = 8
 

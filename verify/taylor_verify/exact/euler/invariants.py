@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.rows import applied, dot, largest, norms, ones, squares, turned
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import real
-from taylor_verify.scenes.tensors import Vector
 
 
 def energy(body: RigidBody | Gyrostat) -> Invariant:

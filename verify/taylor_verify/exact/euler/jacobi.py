@@ -25,7 +25,7 @@ from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import Rotation, decades
 from taylor_verify.exact.frames import Frame, product, transposed, turn
 from taylor_verify.exact.solution import Time
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.motion import Quaternion
 
 # Some hundred roundings in a row, and the constants in the bounds below.

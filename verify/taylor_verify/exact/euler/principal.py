@@ -15,7 +15,7 @@ from flint import arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, balls
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 
 Axis = list[arb]  # three components in body axes
 

@@ -14,8 +14,8 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.spectrum import Cubic
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 
 class Regime(StrEnum):

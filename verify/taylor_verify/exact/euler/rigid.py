@@ -17,13 +17,13 @@ from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.rows import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 B = TypeVar("B", RigidBody, Gyrostat)
 

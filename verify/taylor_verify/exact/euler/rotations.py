@@ -21,8 +21,8 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix
 from taylor_verify.exact.frames import product, start_frame
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled, Time, longest
+from taylor_verify.numbers.precision import floor_log2
 from taylor_verify.scenes import motion
-from taylor_verify.scenes.precision import floor_log2
 
 _STEP_BITS: Final = 32
 # Less than SETTLING_STEP_DIGITS: two evaluations that are compared never share a course.

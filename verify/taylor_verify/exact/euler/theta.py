@@ -25,7 +25,8 @@ from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.solution import Time
 from taylor_verify.exact.theta_series import MANY, ThetaSeries
-from taylor_verify.scenes import motion, tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.scenes import motion
 
 
 def free_rotation(spin: FreeSpin, attitude: motion.Quaternion | None = None) -> RotationBalls:

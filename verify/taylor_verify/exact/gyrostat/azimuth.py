@@ -18,8 +18,8 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
 from taylor_verify.exact.rotation import cross, rotation_matrix, scalar_product
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Vector, dot
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector, dot
 
 
 class Arithmetic(NamedTuple):

@@ -38,9 +38,9 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.rotation import cross
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.tensors import Vector
 
 _MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
 _GUARD_DIGITS: Final = 15

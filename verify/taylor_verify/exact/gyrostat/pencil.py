@@ -20,8 +20,8 @@ from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.spectrum import Cubic
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector, cross, dot
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector, cross, dot
 
 # The osculating plane meets the orbit four times at most, and a constant takes two orders more.
 _ORDER: Final = 6

@@ -21,8 +21,8 @@ from typing import Any, Self, final
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.rotation import scalar_product
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Vector, cross, dot
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector, cross, dot
 
 Convert = Callable[[Fraction], Any]
 

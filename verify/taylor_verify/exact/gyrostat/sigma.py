@@ -40,8 +40,8 @@ from taylor_verify.exact.rotation import (
     turn,
 )
 from taylor_verify.exact.solution import Time
+from taylor_verify.numbers.tensors import Vector, dot
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.tensors import Vector, dot
 
 _BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 

@@ -18,8 +18,8 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 _GUARD_BITS: Final = 40
 _ATTEMPTS: Final = 8

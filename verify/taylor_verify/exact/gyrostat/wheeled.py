@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import final
 
 from taylor_verify.exact.euler.rigid import Rotating
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.gyrostat import Gyrostat
-from taylor_verify.scenes.tensors import Vector
 
 
 @final

@@ -29,10 +29,10 @@ from mpmath import mp
 from taylor_verify.exact.carried import Back
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
 

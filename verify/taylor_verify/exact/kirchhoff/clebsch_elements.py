@@ -28,7 +28,7 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.kirchhoff.regime import nutation_of, regime, turning_points
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 

@@ -28,12 +28,12 @@ from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import float_text
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 def centred(reduced: Reduced) -> Reduced:

@@ -28,12 +28,12 @@ from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.quotients import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.exact.written import as_rationals
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import float_text
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import float_text
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 _PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"

@@ -20,11 +20,11 @@ from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, along, axial, energy
 from taylor_verify.exact.rows import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 # x and y as linear forms of (x, y).
 _UNIT: Final = tensors.diagonal((Fraction(1),) * 6)

@@ -24,8 +24,8 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.rows import Array, norms
+from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import IMPULSES
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.mpfr import real

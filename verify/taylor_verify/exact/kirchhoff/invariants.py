@@ -26,10 +26,10 @@ from taylor_verify.exact.rows import (
     squares,
     turned,
 )
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import real
-from taylor_verify.scenes.tensors import Vector
 
 _BLOCKS: Final = ("linear_impulse", "angular_impulse")
 

@@ -18,7 +18,7 @@ from taylor_verify.exact.kirchhoff.solid import short_digits, velocities
 from taylor_verify.exact.kirchhoff.space import Axial
 from taylor_verify.exact.kirchhoff.turning import Turning
 from taylor_verify.exact.solution import Quantities, Settled, Time, beside, longest
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.motion import Impulse
 
 _GUARD_DIGITS: Final = 12

@@ -26,7 +26,7 @@ from taylor_verify.exact.kirchhoff.isotropic import less_coupling
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.solution import Number, Time
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.scene import Scene
 

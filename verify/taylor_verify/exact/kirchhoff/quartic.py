@@ -15,11 +15,11 @@ from functools import cached_property
 from typing import Any
 
 from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import Irrational
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers.tensors import dot
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import dot
 
 Polynomial = tuple[Fraction, ...]
 

@@ -16,8 +16,8 @@ from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
 _DOUBLINGS: Final = 12

@@ -31,7 +31,7 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import ball, ball_matrix
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.spectrum import Cubic
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene

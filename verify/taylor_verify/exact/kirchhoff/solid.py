@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from taylor_verify.exact.solution import Time, longest
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import floor_log2
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 
 def solid(scene: Scene) -> tuple[ImmersedBody, Impulse]:

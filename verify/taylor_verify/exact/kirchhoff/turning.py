@@ -21,10 +21,10 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, ba
 from taylor_verify.exact.kirchhoff.solid import velocities
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time, beside
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.tensors import Vector
 
 _UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
 

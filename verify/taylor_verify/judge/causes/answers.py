@@ -20,11 +20,11 @@ from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import Problem, adopt
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MOMENTA, STATES, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
 

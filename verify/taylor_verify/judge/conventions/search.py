@@ -41,9 +41,9 @@ from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
 

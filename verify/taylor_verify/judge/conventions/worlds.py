@@ -14,9 +14,9 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.judge.conventions.axes import Frames
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Matrix
 
 _SCALES: Final = (
     (Fraction(1, 1000), "thousandths of the scene's unit (milliseconds for seconds)"),

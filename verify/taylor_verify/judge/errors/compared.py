@@ -21,10 +21,10 @@ from mpmath import mp
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

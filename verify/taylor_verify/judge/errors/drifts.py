@@ -31,10 +31,10 @@ from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.errors.state import Errors, Series, joined
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]

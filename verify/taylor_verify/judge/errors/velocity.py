@@ -28,11 +28,11 @@ from taylor_verify.judge.errors.state import (
     or_one,
 )
 from taylor_verify.judge.velocities import velocity
+from taylor_verify.numbers.precision import exact_value, power_of_two
 from taylor_verify.records.quantities import GROUPS, QUANTITIES
 from taylor_verify.records.reason import Kind
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import Motion
-from taylor_verify.scenes.precision import exact_value, power_of_two
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]

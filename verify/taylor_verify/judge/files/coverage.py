@@ -16,6 +16,8 @@ from itertools import pairwise
 from typing import Final
 
 from taylor_verify.judge.rows import verdict_on
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import (
     COLUMNS,
     COMPLETE,
@@ -29,8 +31,6 @@ from taylor_verify.records.quantities import (
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 from taylor_verify.solvers.trajectory import Outcome

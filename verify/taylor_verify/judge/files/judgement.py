@@ -41,6 +41,7 @@ from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
@@ -48,7 +49,6 @@ from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict, summary
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 

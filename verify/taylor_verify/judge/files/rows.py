@@ -18,8 +18,8 @@ from taylor_verify.judge.conventions.readings import Reading
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, MAIN, MOMENTA, VELOCITIES
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.trajectory import ByRows

@@ -17,6 +17,7 @@ import numpy as np
 from taylor_verify.judge.conventions.fits import Finding
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.precisions import bits_of
 from taylor_verify.records.quantities import (
@@ -29,7 +30,6 @@ from taylor_verify.records.quantities import (
 )
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.single_precision import are_single_precision
 from taylor_verify.solvers.trajectory import Trajectory

@@ -36,11 +36,11 @@ from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import larger_neighbour, looked_at, orbit_of
 from taylor_verify.judge.floor.moves import Moves
 from taylor_verify.judge.velocities import has_velocities, velocity
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.parts import Part, Shape, Value
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -31,12 +31,12 @@ from taylor_verify.judge.floor.loads import Along
 from taylor_verify.judge.velocities import has_velocities
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.precisions import FORMATS
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes import tensors
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

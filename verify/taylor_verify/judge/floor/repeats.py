@@ -25,7 +25,7 @@ from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.conditioning.flow import applied
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes.precision import floor_log2
+from taylor_verify.numbers.precision import floor_log2
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 

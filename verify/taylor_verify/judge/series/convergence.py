@@ -10,12 +10,12 @@ from typing import Any, final
 
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.observed_order import SAME, Convergence, convergence
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene

@@ -14,12 +14,12 @@ from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order
+from taylor_verify.records.faults import Refused, brief
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.showing import counts, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import summary
-from taylor_verify.scenes.reading.faults import Refused, brief
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows

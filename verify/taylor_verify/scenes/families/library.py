@@ -6,10 +6,10 @@ import difflib
 from pathlib import Path
 from typing import Final
 
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.reading import load_family
 from taylor_verify.scenes.library import cases_directory
-from taylor_verify.scenes.reading.faults import Refused
 
 FAMILIES: Final = "families"
 

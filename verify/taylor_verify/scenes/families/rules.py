@@ -8,6 +8,7 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any, Final
 
+from taylor_verify.records.faults import Faults, cut, near, shown
 from taylor_verify.scenes.families.draw import (
     DISTRIBUTIONS,
     Draw,
@@ -17,7 +18,6 @@ from taylor_verify.scenes.families.draw import (
     rounded,
 )
 from taylor_verify.scenes.families.formula import Formula, formula
-from taylor_verify.scenes.reading.faults import Faults, cut, near, shown
 from taylor_verify.scenes.reading.table import exact_number
 
 UNIT: Final = "unit"

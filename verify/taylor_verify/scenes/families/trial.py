@@ -7,10 +7,10 @@ from itertools import count
 from math import gcd
 from typing import Final, NamedTuple
 
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.cube import Spread, places
 from taylor_verify.scenes.families.draw import Draw
 from taylor_verify.scenes.families.family import Family, Place
-from taylor_verify.scenes.reading.faults import Refused
 
 # If 2 % of the points are bodies, none is among so many trials with a probability of 3e-5.
 _TRIALS: Final = 512

@@ -14,12 +14,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.scenes.imported import mjcf, sdf, urdf
 from taylor_verify.scenes.imported.document import Node, read_document
 from taylor_verify.scenes.imported.link import Candidate, Format
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.imported.written import scene_text
-from taylor_verify.scenes.reading.faults import Faults, Refused, cut
 
 _FORMATS: Final[Mapping[str, Format]] = {
     form.root: form for form in (urdf.FORMAT, sdf.FORMAT, mjcf.FORMAT)

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Final
 from xml.parsers import expat
 
-from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.limit import Limit
 from taylor_verify.scenes.reading.regular_file import read_bytes
 
 MOST_BYTES: Final = Limit(2**24, "bytes", "a description of a robot has its meshes in other files")

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.reading import Reading
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 
 class Candidate(NamedTuple):

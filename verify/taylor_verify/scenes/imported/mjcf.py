@@ -13,13 +13,13 @@ from collections import ChainMap
 from collections.abc import Iterator
 from typing import Final
 
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.imported import rotation
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
-from taylor_verify.scenes.reading.faults import shown
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 # Elements that hold bodies without being one.
 _AROUND: Final = ("worldbody", "frame", "replicate")

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.faults import Faults, shown
 from taylor_verify.scenes.imported.document import Node
-from taylor_verify.scenes.reading.faults import Faults, shown
 from taylor_verify.scenes.reading.table import complete
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
 # These formats hold doubles. A product of a few numbers beyond these sizes could be too large for a scene.

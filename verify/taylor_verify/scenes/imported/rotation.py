@@ -14,10 +14,10 @@ from functools import reduce
 from math import pi, remainder
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import exact_value, float_text
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.motion import Quaternion
-from taylor_verify.scenes.precision import exact_value, float_text
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 DECIMALS: Final = 20
 _BITS: Final = 400

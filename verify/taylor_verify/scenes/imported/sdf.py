@@ -12,15 +12,15 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Final
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
+from taylor_verify.records.faults import cut, near, shown
 from taylor_verify.scenes.imported import rotation
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.imported.urdf import COMPONENTS
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
-from taylor_verify.scenes.reading.faults import cut, near, shown
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 _ROWS: Final = "xyzpqr"
 _ADDED: Final = {

@@ -9,11 +9,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Final
 
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.imported import rotation
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
-from taylor_verify.scenes.tensors import ZERO_VECTOR
 
 COMPONENTS: Final = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

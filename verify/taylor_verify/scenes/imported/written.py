@@ -9,11 +9,11 @@ from fractions import Fraction
 from itertools import chain
 from typing import Final
 
+from taylor_verify.numbers.precision import decimal_text, float_text
+from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes.imported.link import Link
 from taylor_verify.scenes.names import escaped
-from taylor_verify.scenes.precision import decimal_text, float_text
-from taylor_verify.scenes.tensors import Matrix, Vector
 
 _WIDTH: Final = 100
 _LONGEST_NAME: Final = 200

@@ -11,12 +11,12 @@ from functools import cached_property, partial
 from itertools import chain, pairwise
 from typing import Final, NamedTuple
 
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS, Fault, Grammar, Unread
 from taylor_verify.scenes.loads.rounding import finished
 from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
 from taylor_verify.scenes.loads.tables import Table
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix, Vector
 
 MOST_SWITCHES: Final = 10_000
 

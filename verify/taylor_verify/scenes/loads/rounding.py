@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from flint import arb, ctx, fmpq
 
+from taylor_verify.numbers.precision import Rung, power_of_two
 from taylor_verify.scenes.loads.steps import Step
-from taylor_verify.scenes.precision import Rung, power_of_two
 
 # A constant such as sqrt(2) is rounded to a rung from so many bits more than the rung has.
 _SPARE_BITS: Final = 64

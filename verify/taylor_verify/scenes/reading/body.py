@@ -13,14 +13,14 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import float_text
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
-from taylor_verify.scenes.precision import float_text
-from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.loads import entry, hanging, texts
 from taylor_verify.scenes.reading.table import Table, complete
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Matrix
 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Final
 
+from taylor_verify.numbers.tensors import Vector
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.table import Table
-from taylor_verify.scenes.tensors import Vector
 
 MOST_SAMPLES: Final = 1_000_000
 

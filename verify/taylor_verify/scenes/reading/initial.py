@@ -14,15 +14,15 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Final
 
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import PI
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.motion import IDENTITY, State
 from taylor_verify.scenes.parts import Shape, Value
-from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.table import Table, exact_number, quantity
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in, written
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 IMPULSES: Final = ("linear_impulse", "angular_impulse")
 VELOCITIES: Final = ("linear_velocity", "angular_velocity")

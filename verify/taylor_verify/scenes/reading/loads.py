@@ -14,15 +14,15 @@ from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, Final
 
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
+from taylor_verify.records.faults import Faults, shown
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import TAKEN, Entries, Entry, Hung, Loads
 from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
-from taylor_verify.scenes.reading.faults import Faults, shown
 from taylor_verify.scenes.reading.measured import columns
 from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral, quantity
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 HANGING: Final = ("weight", "buoyancy")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")

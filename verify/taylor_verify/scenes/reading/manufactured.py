@@ -11,10 +11,10 @@ from fractions import Fraction
 from itertools import chain
 from typing import Final
 
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
+from taylor_verify.records.faults import shown
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.reading.faults import shown
 from taylor_verify.scenes.reading.table import Table, complete
-from taylor_verify.scenes.tensors import ZERO_VECTOR, Vector
 
 # A frequency has one digit in the names of the equations' parameters.
 MOST_FREQUENCIES: Final = 9

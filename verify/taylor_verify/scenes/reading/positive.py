@@ -7,7 +7,7 @@ from math import isfinite
 from numbers import Real
 from typing import Any
 
-from taylor_verify.scenes.reading.faults import brief
+from taylor_verify.records.faults import brief
 
 
 def positive(value: Any, place: str, what: str = "a positive number") -> float:

@@ -15,6 +15,9 @@ from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple, TypeVar
 
+from taylor_verify.numbers.tensors import Vector
+from taylor_verify.records.faults import Faults, Refused, cut, near, shown
+from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
@@ -22,16 +25,13 @@ from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
-from taylor_verify.scenes.reading.faults import Faults, Refused, cut, near, shown
 from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
-from taylor_verify.scenes.reading.limit import Limit
 from taylor_verify.scenes.reading.loads import loaded
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 T = TypeVar("T")
 

@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import Refused
-from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.limit import Limit
 
 _KINDS: Final = {
     stat.S_IFDIR: "a folder",

@@ -13,9 +13,9 @@ from itertools import combinations
 from types import MappingProxyType
 from typing import TypeVar
 
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.reading.faults import Faults, cut, near, shown
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.faults import Faults, cut, near, shown
 
 LARGEST_EXPONENT = 5000
 _MOST_DIGITS = 4000  # below the 4300 digits at which Python refuses to read an integer

@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem, pose, pose_as_stored
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.launcher import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts

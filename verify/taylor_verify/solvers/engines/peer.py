@@ -16,7 +16,7 @@ from fractions import Fraction
 from typing import Any, Final, final
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, hexadecimal
+from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import Outside, command_of
 from taylor_verify.solvers.engines.session import Broken, Session, end_sessions, session

@@ -17,7 +17,7 @@ from typing import Any, Final, Literal
 
 import msgspec
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.engines.launcher import Launcher
 from taylor_verify.solvers.engines.node import Node
 from taylor_verify.solvers.engines.python import Python

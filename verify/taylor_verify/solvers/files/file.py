@@ -20,8 +20,8 @@ from typing import Any, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.reading.faults import Faults, Refused, cut
 from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column, alike

@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
-from taylor_verify.scenes.reading.faults import Faults, Refused, brief, cut
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
@@ -44,7 +44,7 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
 
     Raises
     ------
-    scenes.reading.faults.Refused
+    records.faults.Refused
         For columns that cannot be judged, with every fault.
     ValueError
         For an object of another kind.

@@ -14,8 +14,8 @@ import gmpy2
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.records.faults import Faults
 from taylor_verify.scenes.mpfr import to_mpf
-from taylor_verify.scenes.reading.faults import Faults
 from taylor_verify.solvers.files.formats.column import CHUNK, Column, alike, shown
 from taylor_verify.solvers.values import Value, as_mpf, exact
 

@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.options import options
 from taylor_verify.solvers.process import process
 from taylor_verify.solvers.solver import Lack, Solver, float64_alone, not_started, refused

@@ -23,7 +23,7 @@ from typing import Any, ClassVar, Final, NamedTuple, Self
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
 from taylor_verify.solvers.solver import Solver, float64_alone, made_without
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows

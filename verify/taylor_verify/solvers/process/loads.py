@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.scenes.loads.loads import VECTORS, Entry, Loads, Piece
 from taylor_verify.scenes.loads.steps import Step
-from taylor_verify.scenes.precision import Rung, hexadecimal
 from taylor_verify.solvers.process.numbers import exact_text
 
 

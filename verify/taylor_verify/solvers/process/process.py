@@ -20,7 +20,7 @@ from time import perf_counter
 from typing import Final, final
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.process.conversation import LIMIT_VARIABLE, converse
 from taylor_verify.solvers.solver import Callback, Solver

@@ -25,10 +25,10 @@ from typing import Any, Final
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
+from taylor_verify.numbers.precision import Rung, double_text, hexadecimal
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
-from taylor_verify.scenes.precision import Rung, double_text, hexadecimal
 from taylor_verify.solvers.process.loads import written_loads
 from taylor_verify.solvers.process.numbers import exact_text
 from taylor_verify.solvers.solver import columns

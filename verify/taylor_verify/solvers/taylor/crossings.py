@@ -13,7 +13,7 @@ from mpmath import mp
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink, lengths, smooth, values
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, held_exactly
+from taylor_verify.numbers.precision import Rung, held_exactly
 from taylor_verify.solvers.taylor.numbers import arithmetic
 
 # Vectors whose second singular value is a smaller part of their first lie on one line.

@@ -23,8 +23,8 @@ import numpy as np
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink, lengths
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored

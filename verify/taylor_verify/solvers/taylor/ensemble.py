@@ -25,7 +25,7 @@ import numpy as np
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.driver import compiled, pays
 from taylor_verify.solvers.taylor.equations import equations

@@ -17,7 +17,7 @@ import numpy as np
 from mpmath import libmp
 
 from taylor_verify.models.times import BinaryTimes, TypedTimes
-from taylor_verify.scenes.precision import Rung, exact_value, power_of_two
+from taylor_verify.numbers.precision import Rung, exact_value, power_of_two
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.taylor.package import lack
 from taylor_verify.solvers.trajectory import Outcome

@@ -13,7 +13,7 @@ from typing import final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.scenes.precision import Rung, exact_value, held_exactly
+from taylor_verify.numbers.precision import Rung, exact_value, held_exactly
 from taylor_verify.solvers.solver import Solver, float64_alone, refused
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.numbers import unavailable

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from flint import fmpq, fmpq_mat
 
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify_reports.claims.check import All, Residual
 from taylor_verify_reports.claims.claim import Claim

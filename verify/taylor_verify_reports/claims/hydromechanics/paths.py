@@ -14,10 +14,10 @@ from typing import Any, Final
 from mpmath import mp
 
 from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Quaternion
-from taylor_verify.scenes.tensors import Vector
 from taylor_verify_reports.claims.hydromechanics.clebsch import COEFFICIENTS, QUARTIC
 from taylor_verify_reports.claims.setting import Equations, Numeric
 from taylor_verify_reports.claims.trajectory import DIGITS, trajectory

@@ -13,10 +13,10 @@ from mpmath import mp
 from taylor_verify.judge.causes.answers import with_causes
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import INITIAL, state_groups
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named

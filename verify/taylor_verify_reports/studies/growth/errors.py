@@ -22,8 +22,8 @@ from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.precision import power_of_two
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
 from taylor_verify_reports.studies.growth.fit import Floats, Law

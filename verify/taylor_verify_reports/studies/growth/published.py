@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from taylor_verify.judge.provenance import command, processor, versions
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.provenance import Provenance
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.numbers import unavailable

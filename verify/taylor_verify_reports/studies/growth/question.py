@@ -12,8 +12,8 @@ from typing import Final
 from taylor_verify.exact.elements import elements
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.rates import Linearised
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.names import tolerance

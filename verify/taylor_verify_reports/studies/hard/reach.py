@@ -24,8 +24,8 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
-from taylor_verify.scenes.precision import Rung
-from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory

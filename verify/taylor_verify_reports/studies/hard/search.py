@@ -16,6 +16,7 @@ from zlib import crc32
 
 import numpy as np
 
+from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -24,7 +25,6 @@ from taylor_verify.scenes.families.cube import Spread, places
 from taylor_verify.scenes.families.family import Family, Place
 from taylor_verify.scenes.families.library import family
 from taylor_verify.scenes.library import WORST
-from taylor_verify.scenes.reading.faults import Refused
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify_reports.studies.hard.document import WorstOfFamily
 from taylor_verify_reports.studies.study import NotMeasured

@@ -14,8 +14,8 @@ from typing import Final
 
 from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.models.form import Form
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.provenance import SceneProvenance
-from taylor_verify.scenes.precision import rung
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.pace import Pace
 from taylor_verify.tradeoff.timing import calls_to_time, estimate, in_rounds, seconds_of

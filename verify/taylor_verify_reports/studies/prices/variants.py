@@ -10,8 +10,8 @@ from typing import Final
 from taylor_verify.models.euler import euler_equations
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import Rung
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.reading.reader import load
 
 _PRINCIPAL: Final = "euler/generic"

@@ -21,9 +21,9 @@ from typing import Final
 
 from taylor_verify.batch.runs import run_all
 from taylor_verify.judge.provenance import machine, packages
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.precision import rung as rung_named
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare

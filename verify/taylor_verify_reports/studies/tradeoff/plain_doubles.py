@@ -13,8 +13,8 @@ from typing import Final
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.motion import Clock, Spin
-from taylor_verify.scenes.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.tradeoff.setting import ELLIPJ, setting

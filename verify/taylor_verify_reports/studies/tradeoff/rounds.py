@@ -16,7 +16,7 @@ from time import thread_time
 from typing import Final, NamedTuple
 
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.scenes.precision import rung as rung_named
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver

@@ -24,7 +24,8 @@ from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
-from taylor_verify.scenes import motion, tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.scenes import motion
 
 
 def loaded_rotation(spin: LoadedSpin, attitude: motion.Quaternion | None = None) -> RotationBalls:

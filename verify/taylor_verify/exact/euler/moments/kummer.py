@@ -23,7 +23,7 @@ from flint import acb, arb
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.regime import Line
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 
 
 class KummerTurn:

@@ -22,8 +22,8 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.regime import Line
 from taylor_verify.exact.rotation import conjugate, product
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.precision import floor_log2
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2
 
 # Bounds of |a| t/2 and |b| t^2/4 in one sum. Terms of that sum reach the exponential of both.
 _HALF_ANGLE: Final = 32

@@ -28,8 +28,8 @@ from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 # Kummer's series cancels about as many digits as this, and has a few times as many terms. Beyond it
 # the moment is so weak that the body turns many times before the direction of omega has changed.

@@ -21,7 +21,7 @@ from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.euler.moments.regime import Line
 from taylor_verify.exact.euler.orbit import converted
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
 
 # f and h are of size 1, but the terms of their series reach e^|z|. mpmath raises its own precision
 # against that, as far as this many bits: enough for |z| of some thousands, beyond which it has others.

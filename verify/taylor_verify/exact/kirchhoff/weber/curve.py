@@ -33,12 +33,12 @@ from taylor_verify.exact.kirchhoff.plane import plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
 from taylor_verify.exact.solution import NoClosedForm
-from taylor_verify.scenes import tensors
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.precision import floor_log2, power_of_two
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.tensors import Vector
 
 REGIME: Final = "weber"
 _ORTHOGONAL: Final = (

@@ -10,7 +10,7 @@ from enum import IntEnum
 from functools import cached_property
 from typing import Final
 
-from taylor_verify.scenes.reading.faults import cut
+from taylor_verify.records.faults import cut
 from taylor_verify.solvers.files.columns.names import GROUPS, Spelling
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.units import OWN, Unit

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
-from taylor_verify.scenes.reading.faults import Faults, cut, near
+from taylor_verify.records.faults import Faults, cut, near
 from taylor_verify.solvers.files.columns.names import COMPONENTS, GROUPS, KNOWN
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats.column import Column

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Final, NamedTuple
 
-from taylor_verify.scenes.reading.faults import Faults, cut
+from taylor_verify.records.faults import Faults, cut
 from taylor_verify.solvers.files.columns.choice import (
     MOST_NAMED,
     Candidates,

@@ -16,8 +16,8 @@ from typing import Final
 
 from mpmath import mp
 
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
-from taylor_verify.scenes.precision import exact_value
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
 
 

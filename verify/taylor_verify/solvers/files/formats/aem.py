@@ -17,7 +17,7 @@ from typing import BinaryIO, Final
 
 from taylor_verify.models.algebra import apply, dot, transpose
 from taylor_verify.models.frame import attitude_rate, rotation
-from taylor_verify.scenes.reading.faults import Faults, Refused, cut, refusal
+from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.files.formats.aem_segment import (
     ANGULAR_VELOCITY,

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import BinaryIO, Final
 from xml.etree import ElementTree
 
-from taylor_verify.scenes.reading.faults import cut, refusal
-from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import ROWS
 
 QUATERNION: Final = ("Q1", "Q2", "Q3", "QC")

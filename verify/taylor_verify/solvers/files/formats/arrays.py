@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import refusal
+from taylor_verify.records.faults import refusal
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")

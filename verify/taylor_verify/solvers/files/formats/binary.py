@@ -19,7 +19,7 @@ from typing import Any, BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,

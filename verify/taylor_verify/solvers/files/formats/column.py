@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
+from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.scenes.reading.clock import MOST_SAMPLES
-from taylor_verify.scenes.reading.faults import Faults, Refused, cut, refusal
-from taylor_verify.scenes.reading.limit import Limit
 
 ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
 VALUES: Final = Limit(

@@ -11,8 +11,8 @@ from typing import Any, BinaryIO, Final
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
-from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import (
     ROWS,
     Column,

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.formats.column import (
     ROWS,

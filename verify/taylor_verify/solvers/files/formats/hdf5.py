@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import COLUMNS, Table
 from taylor_verify.solvers.files.formats.package import unbroken

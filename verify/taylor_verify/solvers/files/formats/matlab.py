@@ -16,7 +16,7 @@ from typing import Any, BinaryIO, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.scenes.reading.faults import cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats import hdf5
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table

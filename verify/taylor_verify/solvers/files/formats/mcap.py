@@ -14,8 +14,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, BinaryIO, Final, NamedTuple
 
-from taylor_verify.scenes.reading.faults import cut, refusal
-from taylor_verify.scenes.reading.limit import Limit
+from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats import messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.messages import Topic

@@ -19,8 +19,8 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.reading.faults import cut, refusal
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table
 
 # A second count that no simulation reaches, and every clock has since 2001.

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
-from taylor_verify.scenes.reading.faults import Refused, cut, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 
 # The optional dependency that installs a package.
 _EXTRAS: Final = {

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from taylor_verify.scenes.reading.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,

@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, BinaryIO, Final, NamedTuple
 
-from taylor_verify.scenes.reading.faults import refusal
+from taylor_verify.records.faults import refusal
 from taylor_verify.scenes.reading.regular_file import regular_file
 from taylor_verify.solvers.files.formats import aem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table

@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from taylor_verify.scenes.reading.faults import cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.scenes.reading.regular_file import read_bytes, regular_file
 from taylor_verify.solvers.files.formats import mcap, messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table

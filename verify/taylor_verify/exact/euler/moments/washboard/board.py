@@ -31,8 +31,8 @@ from functools import cached_property
 
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm
-from taylor_verify.scenes import tensors
-from taylor_verify.scenes.tensors import Matrix, Vector
+from taylor_verify.numbers import tensors
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 
 class WashboardRegime(StrEnum):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from taylor_verify.scenes.reading.faults import Refused
+from taylor_verify.records.faults import Refused
 
 
 class Limit(NamedTuple):

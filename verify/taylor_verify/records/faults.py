@@ -7,14 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 
-from taylor_verify.scenes.precision import float_text
-
 _LONGEST_SHOWN = 60
 # Nobody reads a million faults, and to write them takes minutes.
 _MOST_FAULTS = 100
 
 
-class Refused(Exception):
+class Refused(Exception):  # noqa: N818 (an answer, not a fault of the code)
     """A scene that cannot be asked of any solver.
 
     ``faults`` holds one line each, ``expected ..., got ... @ body.inertia[1]``, with the mend in
@@ -105,7 +103,8 @@ def _rational(value: Fraction) -> str:
     try:
         return str(value)
     except ValueError:  # Python prints no integer of more than 4300 digits
-        return float_text(value)
+        power = value.numerator.bit_length() - value.denominator.bit_length()
+        return f"{'-' if value < 0 else ''}about 2^{power}"
 
 
 def near(word: str, known: Iterable[str]) -> str:
