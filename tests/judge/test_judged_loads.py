@@ -19,7 +19,7 @@ from mpmath import mp
 
 from taylor_verify import check, explain, tradeoff
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
-from taylor_verify.judge.files.judgement import NO_BALANCES
+from taylor_verify.judge.files.judgement import NO_BALANCES, NO_CONVENTIONS
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
@@ -158,6 +158,7 @@ def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path
     assert not strict.passed
     assert not strict.causes
     assert NOT_LOOKED_FOR in strict.remarks
+    assert NO_CONVENTIONS in strict.remarks
 
 
 @pytest.mark.parametrize("twin", TWINS)

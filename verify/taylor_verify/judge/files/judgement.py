@@ -52,6 +52,10 @@ from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
+NO_CONVENTIONS: Final = (
+    "conventions and shifts of time are not looked for: under the loads of this scene a motion at another "
+    "time, or in other axes, is another motion"
+)
 NO_BALANCES: Final = (
     "energy and momenta are not judged: the loads depend on more of the attitude or the centre than a "
     "row of the file determines"
@@ -148,6 +152,7 @@ def judge_file(
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         causes = causes_of_file(compared, rung, known, judged)
         notes += () if Equations.are_known(scene.body) else (NOT_LOOKED_FOR,)
+        notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
     if scene.body.loads is not None and judged.record is not None:
