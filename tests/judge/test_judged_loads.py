@@ -141,7 +141,7 @@ def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
     scene = with_rows(scene)
     with mp.workdps(40):
         rows = [Evaluated(scene).start()]
-        rows += [end_of(scene, time, 20, 4) for time in scene.clock.elapsed[1:]]
+        rows += [end_of(scene, time, 20, 4).state for time in scene.clock.elapsed[1:]]
     judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
     assert judged.passed, judged.verdicts
     names = {verdict.quantity for verdict in judged.verdicts}
@@ -186,7 +186,7 @@ def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Pat
     scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
     with mp.workdps(40):
         rows = [Evaluated(scene).start()]
-        rows += [end_of(scene, time, 20, 3) for time in scene.clock.elapsed[1:]]
+        rows += [end_of(scene, time, 20, 3).state for time in scene.clock.elapsed[1:]]
     judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
     assert judged.passed
     assert NO_BALANCES in judged.remarks
