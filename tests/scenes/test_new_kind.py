@@ -51,12 +51,10 @@ def test_a_body_answers_for_itself(body: Body, is_plain: bool, is_known: bool) -
 def test_an_engine_for_plain_bodies_does_not_take_a_new_kind() -> None:
     """It says so, instead of answering another question."""
     engine: Any = solver_named("outside:mujoco")
-    about = SimpleNamespace(models=("euler",), loads=False)
-    asked = SimpleNamespace(name="it", engine=SimpleNamespace(script=SimpleNamespace(about=about)))
     problem = SimpleNamespace(given=SimpleNamespace(model="euler", body=SprungBody(INERTIA)))
-    assert "free bodies without wheels" in type(engine).unsuited(asked, problem)
+    assert "free bodies without wheels" in engine.unsuited(problem)
     problem.given.body = RigidBody(INERTIA)
-    assert type(engine).unsuited(asked, problem) == ""
+    assert engine.unsuited(problem) == ""
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from taylor_verify.scenes.parts import Part, Value
 
 
 class Rounding(Protocol):
-    """What rounds every number of a value times 2^shift, whatever its shape."""
+    """The protocol of what rounds every number of a value times 2^shift, whatever its shape."""
 
     def each(self, value: Value, shift: int = 0) -> Value: ...
 

@@ -82,7 +82,7 @@ class Written:
 
 
 class _Inputs:
-    """What steps read, in the units of the problem, each formed where it is asked for."""
+    """Inputs that steps read, in the units of the problem, each formed where it is asked for."""
 
     def __init__(self, n: Named) -> None:
         self._n, self._formed = n, dict[str, Any]()

@@ -13,7 +13,7 @@ from mpmath import mp
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink, lengths, smooth, values
 from taylor_verify.models.problem import Problem
-from taylor_verify.numbers.precision import Rung, held_exactly
+from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
 from taylor_verify.solvers.taylor.numbers import arithmetic
 
 # Vectors whose second singular value is a smaller part of their first lie on one line.
@@ -29,7 +29,7 @@ _CLEAR = 1e-3
 @final
 @dataclass(frozen=True)
 class _Choice:
-    """What heyoka calls at a crossing: the kink's parameters become those of the branch behind it."""
+    """Callback of heyoka at a crossing: the kink's parameters become those of the branch behind it."""
 
     kink: Kink
     first: int
@@ -54,11 +54,16 @@ def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], ru
     if not kinks:
         return []
     steps = values(form, hy.make_vars(*form.states), coefficients, hy.time)
+    numbers = arithmetic(rung)
+    # heyoka's own choice is endless where a motion begins on a kink at rest against it. Two crossings
+    # within this time leave an error of its square.
+    rest = numbers.number(power_of_two(-(rung.bits // 2)))
     first, events = len(form.parameters) - sum(len(kink.names) for kink in kinks), []
     for kink in kinks:
         choice = _Choice(kink, first, rung)
-        fp_type = arithmetic(rung).fp_type
-        events.append(hy.t_event(steps[kink.place], callback=choice, fp_type=fp_type))
+        events.append(
+            hy.t_event(steps[kink.place], callback=choice, fp_type=numbers.fp_type, cooldown=rest)
+        )
         first += len(kink.names)
     return events
 

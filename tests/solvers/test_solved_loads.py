@@ -98,6 +98,12 @@ def test_kinks_are_crossed_at_full_precision(scene: str, name: str) -> None:
     assert error(KINKED[scene], "taylor", name) < 50 * mpf(2) ** -rung(name).bits
 
 
+def test_a_start_along_a_kink_leaves_later_crossings_seen() -> None:
+    """It begins on the kink without a slope, after which heyoka's own cooldown would be endless."""
+    scene = euler(("abs((t - 1/4)^2*(t - 5/4))", "0", "-w1/9"), "9/4")
+    assert error(scene, "taylor", "f64") <= mpf(10) ** -13
+
+
 def test_weight_and_current_act() -> None:
     """A weight hangs on the body, and the centre drifts with the fluid."""
     assert error(TOP, "taylor", "f64") < 1e-14
