@@ -217,7 +217,7 @@ def test_a_short_run_may_take_two_steps_more() -> None:
 
 
 def test_another_question_and_a_growth_leave_out_their_consequences() -> None:
-    """Nothing else is said of a row with another question, nor of one that is worse but what is worse."""
+    """A row with another question is told as that alone, and a worse one by what is worse alone."""
     before = row(until=40.0)
     assert differing(before, row(1e5, verdict=Status.FAIL, until=9.0)) == [
         (OTHER_QUESTION, "last time")

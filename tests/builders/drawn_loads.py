@@ -160,7 +160,7 @@ def drawn(random: Random) -> Drawn:
 
 
 def _names(random: Random, is_euler: bool) -> Sequence[str]:
-    """Those of the momenta, or these with the attitude, or all."""
+    """Return the names of the momenta, or these with the attitude, or all."""
     names = ["w1", "w2", "w3", "t", "p", "v", "pi"]
     names += ["I11", "I23"] if is_euler else [f"{a}{i}" for a in "uxy" for i in (1, 2, 3)]
     more = random.randrange(3)

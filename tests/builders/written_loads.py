@@ -63,6 +63,23 @@ start = "1/4"
 end = "{end}"
 samples = 2
 """
+ABOUT_AXES = """
+title = "About axes"
+model = "euler"
+[body]
+inertia = [1, 1, 1]
+moment = {moment}
+[initial]
+omega = {omega}
+[time]
+end = {end}
+samples = 2
+"""
+
+
+def about_axes(moment: str, omega: str = "[0, 0, 0]", end: str = "1") -> Scene:
+    """A ball with omega for H, under a moment and from an omega as a scene has them."""
+    return read(ABOUT_AXES.format(moment=moment, omega=omega, end=end), "about-axes")
 
 
 def euler(moment: Sequence[str], end: str = "3/4", tables: str = "") -> Scene:
@@ -308,7 +325,7 @@ def end_of(
 def _extrapolated(
     rates: Callable[[Any, Vector], Vector], t: Any, y: Vector, h: Any, columns: int
 ) -> tuple[Vector, Any]:
-    """One large step: the modified midpoint rule at 2, 4, .. small steps, extrapolated to none."""
+    """Take one large step: the modified midpoint rule at 2, 4, .. small ones, extrapolated to none."""
     table: list[list[Vector]] = []
     for j in range(1, columns + 1):
         row = [_midpoint(rates, t, y, h, 2 * j)]

@@ -18,9 +18,10 @@ from taylor_verify.cli import main
 from taylor_verify.draw import mesh, momentum_sphere
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import motion
-from taylor_verify.draw.moving import moving, quaternions
+from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import KINDS, pictures
+from taylor_verify.exact.rows import quaternions
 from taylor_verify.plotting.picture import plotting
 from taylor_verify.scenes.reading.reader import load
 

@@ -40,7 +40,7 @@ def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
 
 
 def answers(seed: int, count: int) -> Counter[str]:
-    """What became of so many drawn scenes; a motion outside its radius fails with its scene."""
+    """Count what became of drawn scenes; a motion outside its radius fails with its scene."""
     random, reasons = Random(seed), Counter[str]()
     while reasons.total() < count:
         case = drawn(random)
@@ -64,6 +64,6 @@ def answers(seed: int, count: int) -> Counter[str]:
     ("seed", "count"), [(1, 100), pytest.param(2, 2000, marks=pytest.mark.slow)]
 )
 def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
-    """Of all of them at most a fiftieth is given up, each with its reason."""
+    """At most a fiftieth of all of them is given up, each with its reason."""
     reasons = answers(seed, count)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons

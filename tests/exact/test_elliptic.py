@@ -35,7 +35,7 @@ def jacobi(u: mpf, small: mpf, near_one: bool) -> Triple:
 
 
 def theta_route(u: mpf, small: mpf, near_one: bool) -> list[mpf]:
-    """The same three numbers by theta functions."""
+    """Return the same three numbers by theta functions."""
     with mp.workdps(LAVISH):
         m = 1 - small if near_one else small
         return [mp.ellipfun(name, u, m=m) for name in ("sn", "cn", "dn")]
@@ -64,7 +64,7 @@ def test_the_landen_chain_agrees_with_theta_functions(m: mpf, u: mpf) -> None:
 def test_no_digit_is_lost_at_either_end_or_over_many_periods(
     small: str, near_one: bool, u: str
 ) -> None:
-    """For m or m' to 1e-100 and |u| to 1e11; dn relatively, which is k' at its least."""
+    """The digits last for m or m' to 1e-100 and |u| to 1e11; dn relatively, which is k' at its least."""
     given_one = mpf(u), mpf(small), near_one
     (sn, cn, dn), (s, c, d) = jacobi(*given_one), theta_route(*given_one)
     assert max(abs(sn - s), abs(cn - c)) <= FEW_ULP * mp.eps

@@ -196,7 +196,7 @@ def is_left(replaced: Any, patch: pytest.MonkeyPatch) -> bool:
 
 
 def test_the_radius_of_the_frame_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With half of it a motion leaves the box."""
+    """A motion leaves the box if the radius is halved."""
     honest = box.fewer
 
     def halved(axes: arb_mat, radius: arb_mat, units: list[arb]) -> box.Axes:

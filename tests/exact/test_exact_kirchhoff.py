@@ -81,7 +81,7 @@ def scene(name: str) -> Scene:
 
 
 def overlap(a: Motion, b: Motion) -> bool:
-    """Whether every vector and matrix of both differs by no more than the two radii together."""
+    """Return whether all vectors and matrices differ by no more than the two radii together."""
     with mp.workdps(400):
         return set(a.quantities) == set(b.quantities) and all(
             _norm(a[name][k] - b[name][k]) <= _room(a, k, name) + _room(b, k, name)
@@ -112,7 +112,7 @@ def truth(asked: Scene, times: tuple[Fraction, ...]) -> Motion:
 
 
 def is_taylors(asked: Scene, route: str, times: Sequence[Fraction]) -> bool:
-    """Whether a route finds impulses, attitude and centre as Taylor does."""
+    """Return whether a route finds impulses, attitude and centre as Taylor does."""
     try:
         return overlap(motion_by(asked, route, times), truth(asked, tuple(times)))
     except Unsettled:
@@ -179,7 +179,7 @@ def test_a_ball_at_any_precision_holds_the_truth(name: str, bits: int) -> None:
 
 
 def test_a_short_way_has_its_digits() -> None:
-    """From the origin, after 1e-30 units of time, the centre has all the digits asked for."""
+    """The centre has all the digits asked for 1e-30 units of time after it leaves the origin."""
     for name in (
         "four real roots",
         "cubic, third root above",
@@ -241,7 +241,7 @@ ADVERSARIAL: dict[str, tuple[Clebsch, State]] = {
 
 @pytest.mark.parametrize("name", by_turns(ADVERSARIAL))
 def test_difficult_bodies_are_solved(name: str) -> None:
-    """By both routes as by Taylor, and by both alike after 1e6 units of time."""
+    """Both routes find what Taylor finds, and find the same after 1e6 units of time."""
     asked = whole(*ADVERSARIAL[name])
     assert all(is_taylors(asked, route, vector("3/2", -3)) for route in ROUTES)
     times = vector("17/3", -100 if "falling" in name else -(10**6))

@@ -13,7 +13,7 @@ from unittest import mock
 
 import pytest
 from builders.turns import by_turns
-from builders.written_loads import FUNCTIONS
+from builders.written_loads import FUNCTIONS, about_axes
 from flint import arb, ctx
 from mpmath import mp, mpf
 
@@ -26,21 +26,7 @@ from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes.reading.reader import read
-from taylor_verify.scenes.scene import Scene
 
-SCENE = """
-title = "One function"
-model = "euler"
-[body]
-inertia = [1, 1, 1]
-moment = {moment}
-[initial]
-omega = {omega}
-[time]
-end = {end}
-samples = 2
-"""
 # Numbers in them are dyadic, so that Python reads them exactly.
 TEXTS = {
     "product": "w1*w2", "square": "w1**2 - w2", "quotient": "w2/(2 + w1)", "inverse": "1/(2 + w1)",
@@ -50,17 +36,14 @@ TEXTS = {
     "atan2": "atan2(w1, 2 + w2)", "abs": "abs(w1 - 2)*w1", "norm": "norm(w1, w2, 0.5 + w1)",
     "min": "min(w1**2, 4 + w2)", "max": "max(w1**2, w2 - 4)",
 }  # fmt: skip
+OMEGA = '["3/10", "2/5", "1/7"]'
 START = Fraction(3, 10), Fraction(2, 5), Fraction(1, 7)
 APART = Fraction(1, 100)
 BITS, ORDER = 60, 8
 
 
-def scene(moment: str, omega: str = '["3/10", "2/5", "1/7"]', end: str = "1") -> Scene:
-    return read(SCENE.format(moment=moment, omega=omega, end=end), "one-function")
-
-
 def circling(text: str) -> System:
-    return posed(scene(f'["w2", "-w1", "{text}"]'))
+    return posed(about_axes(f'["w2", "-w1", "{text}"]', OMEGA))
 
 
 def value(text: str, w1: Any, w2: Any) -> Any:
@@ -136,7 +119,7 @@ OF_TIME = {
 
 def is_near(text: str) -> bool:
     """Return True if w3 after a step is within the bound of what its polynomial leaves out."""
-    system = posed(scene(f'[0, 0, "{text}"]'))
+    system = posed(about_axes(f'[0, 0, "{text}"]', OMEGA))
     with ctx.workprec(100), mock.patch.object(Stepper, "root_test", return_value=0.0):
         _, step = step_of(system, Fraction(0), Fraction(1, 16))
     with mp.workdps(40), ctx.workprec(150):
@@ -189,7 +172,9 @@ def test_the_width_of_a_node_counts(name: str, monkeypatch: pytest.MonkeyPatch) 
 def test_a_fall_from_rest_begins_on_the_kink_of_a_norm(end: Fraction) -> None:
     """w' = 1 - |w| w from rest is tanh t; the sign of w is that of the time, which |w| must know."""
     for text in ("1 - norm(w1, w2)*w1", "1 - abs(w1)*w1"):
-        motion = solution(scene(f'["{text}", 0, 0]', "[0, 0, 0]", str(end))).motion([end / 2], 30)
+        motion = solution(about_axes(f'["{text}", 0, 0]', "[0, 0, 0]", str(end))).motion(
+            [end / 2], 30
+        )
         with mp.workdps(45):
             # Backwards w is negative: w' = 1 + w^2.
             true = mp.tanh(1) if end > 0 else -mp.tan(1)
@@ -200,7 +185,7 @@ def test_a_fall_from_rest_begins_on_the_kink_of_a_norm(end: Fraction) -> None:
 def test_a_clipped_controller_passes_its_limits() -> None:
     """w3' = clip(x, -1/2, 1/2) with x = cos 2t: the corners of the clip cost no digit."""
     moment = '["2*w2", "-2*w1", "clip(w1, -1/2, 1/2)"]'
-    motion = solution(scene(moment, "[1, 0, 0]")).motion([Fraction(3), Fraction(-3)], 30)
+    motion = solution(about_axes(moment, "[1, 0, 0]")).motion([Fraction(3), Fraction(-3)], 30)
     with mp.workdps(45):
         kinks_at = [k * mp.pi / 2 + s * mp.pi / 6 for k in range(-2, 3) for s in (-1, 1)]
         for row, end, radius in zip(motion["omega"], (3, -3), motion.radius, strict=True):
@@ -215,7 +200,7 @@ def test_a_kink_where_a_piece_of_time_ends_is_passed() -> None:
     """|t - 1| with a switch at 1: the step that ends there is no shorter than others near a kink."""
     for end in (Fraction(3), Fraction(-1)):
         moment = '["abs(t - 1) + abs(t + 1/2)", "1 if t < 1 else 2", "1 if t < -1/2 else 2"]'
-        motion = solution(scene(moment, "[0, 0, 0]", str(end))).motion([end], 30)
+        motion = solution(about_axes(moment, "[0, 0, 0]", str(end))).motion([end], 30)
         true = Fraction(17, 2) if end > 0 else -Fraction(7, 4)
         with mp.workdps(40):
             assert abs(motion["omega"][0][0] - exactly(true)) <= mpf(10) ** -29
@@ -224,5 +209,5 @@ def test_a_kink_where_a_piece_of_time_ends_is_passed() -> None:
 def test_of_two_kinks_the_near_one_alone_is_flat() -> None:
     """Before the lower corner of a clip nothing is known to be flat but that corner."""
     moment = '[0, 0, "clip(cos(t) - w3, -1/9, 1/9)"]'
-    motion = solution(scene(moment, "[1, 1, 1]", "-3")).motion([Fraction(-3)], 30)
+    motion = solution(about_axes(moment, "[1, 1, 1]", "-3")).motion([Fraction(-3)], 30)
     assert motion.radius[0] <= mpf(10) ** -30

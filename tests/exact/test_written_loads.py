@@ -6,12 +6,11 @@ from fractions import Fraction
 
 import pytest
 from builders.turns import by_turns
-from builders.written_loads import end_of, euler, kirchhoff
+from builders.written_loads import about_axes, end_of, euler, kirchhoff
 from mpmath import mp, mpf
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
-from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 18
@@ -88,24 +87,6 @@ def test_force_and_couple_of_texts_drive_the_solid_as_python_reads_them(name: st
     scene = kirchhoff(*KIRCHHOFF[name], tables=SPEED, more=HUNG)
     for apart, radius in distances(scene, scene.clock.elapsed[-1]):
         assert apart <= radius + mpf(10) ** -(DIGITS + 4)
-
-
-ONE_AXIS = """
-title = "One axis"
-model = "euler"
-[body]
-inertia = [1, 1, 1]
-moment = {moment}
-[initial]
-omega = {omega}
-[time]
-end = {end}
-samples = 2
-"""
-
-
-def about_axes(moment: str, omega: str = "[0, 0, 0]", end: str = "1") -> Scene:
-    return read(ONE_AXIS.format(moment=moment, omega=omega, end=end), "one-axis")
 
 
 def test_a_kink_is_crossed_without_loss_of_digits() -> None:

@@ -207,6 +207,19 @@ def test_loads_take_many_times_and_states_at_once(name: str) -> None:
     np.testing.assert_allclose(together, single, rtol=1e-14, atol=1e-15)
 
 
+@pytest.mark.parametrize("part", [3, 5, 7, 11])
+def test_times_around_a_switch_that_is_no_double_are_each_on_their_side(part: int) -> None:
+    """A double just before the switch takes no later time with it into the piece before."""
+    problem = pose(euler((f"step({part}*(t - 1/4) - 1)", "0", "0"), "9/4"), rung("f64"))
+    assert problem.switches == [Fraction(1, part)]
+    near = 1 / part + np.arange(-8, 9) * 2.0**-53
+    states = np.full((len(near), 7), 0.5)
+    moments = problem.loads(near + 0.25, states)
+    later = [Fraction(t) - Fraction(1, 4) >= Fraction(1, part) for t in near + 0.25]
+    assert 0 < sum(later) < len(later)
+    np.testing.assert_array_equal(moments[:, 0], later)
+
+
 def test_loads_ask_for_what_they_read() -> None:
     """A state without the attitude is too short for a load that reads it."""
     with pytest.raises(ValueError, match="expected a state of 7 numbers, got 3"):

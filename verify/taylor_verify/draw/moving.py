@@ -16,6 +16,7 @@ from taylor_verify.draw.axis_path import fixed_direction, momentum_of
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.mesh import Face, Mesh
 from taylor_verify.draw.view import Numbers
+from taylor_verify.exact.rows import quaternions
 
 Document = Mapping[str, Any]
 
@@ -97,22 +98,6 @@ def _body(document: Document, centres: Numbers) -> Mesh:
 def _face(face: Face) -> dict[str, Any]:
     line = {"p": _rounded(face.corners), "c": face.colour}
     return line if face.is_line else {**line, "n": _rounded(face.normal)}
-
-
-def quaternions(attitudes: Numbers) -> Numbers:
-    """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour."""
-    xx, xy, xz, yx, yy, yz, zx, zy, zz = attitudes.reshape(-1, 9).T
-    # A unit quaternion q of R is the eigenvector to the greatest eigenvalue of this symmetric matrix.
-    upper = [
-        [xx + yy + zz, zy - yz, xz - zx, yx - xy],
-        [zy - yz, xx - yy - zz, xy + yx, xz + zx],
-        [xz - zx, xy + yx, yy - xx - zz, yz + zy],
-        [yx - xy, xz + zx, yz + zy, zz - xx - yy],
-    ]
-    rows = np.linalg.eigh(np.moveaxis(np.array(upper), -1, 0)).eigenvectors[:, :, -1]
-    signs = np.where((rows[1:] * rows[:-1]).sum(axis=1) < 0, -1.0, 1.0)
-    rows[1:] *= np.cumprod(signs)[:, None]
-    return np.asarray(rows)
 
 
 def _inset(document: Document) -> dict[str, Any] | None:

@@ -6,6 +6,7 @@ A new kind is a folder with one class like exact.euler.rigid.Rigid, and one line
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.invariant import Invariant
 from taylor_verify.exact.units import Units
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.manufactured import Manufactured
@@ -86,6 +88,14 @@ class Kind(ABC, Generic[B, S]):
         """The state of a momentum."""
         return momentum
 
+    def momentum_matrix(self, body: B) -> Array:
+        """The matrix of the momentum by z (d, d), exactly."""
+        return _columns(self.momentum, body, self.energy(body))
+
+    def state_matrix(self, body: B) -> Array:
+        """The matrix of z by the momentum (d, d), exactly."""
+        return _columns(self.of_momentum, body, self.energy(body))
+
     def momentum_energy(self, body: B) -> Matrix:
         """The matrix of 2T by the momentum."""
         return self.energy(body)
@@ -107,3 +117,8 @@ class Kind(ABC, Generic[B, S]):
     @abstractmethod
     def sizes(self, scene: Scene, motion: Any) -> list[Array]:
         """The sizes (n,) at every row of a motion that the scales of the invariants are made of."""
+
+
+def _columns(linear: Callable[[B, Vector], Vector], body: B, sized: Matrix) -> Array:
+    """The matrix of a linear map of vectors as long as the rows of another matrix."""
+    return np.array([linear(body, unit) for unit in tensors.identity(len(sized))], dtype=object).T

@@ -84,3 +84,19 @@ def largest(values: Array) -> Any:
 def nonzero(scale: Any) -> Any:
     """The scale, or 1 where it vanishes: what is measured is then absolute."""
     return scale if scale != 0 else 0 * scale + 1
+
+
+def quaternions(attitudes: Array) -> Array:
+    """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour."""
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = attitudes.reshape(-1, 9).T
+    # A unit quaternion q of R is the eigenvector to the greatest eigenvalue of this symmetric matrix.
+    upper = [
+        [xx + yy + zz, zy - yz, xz - zx, yx - xy],
+        [zy - yz, xx - yy - zz, xy + yx, xz + zx],
+        [xz - zx, xy + yx, yy - xx - zz, yz + zy],
+        [yx - xy, xz + zx, yz + zy, zz - xx - yy],
+    ]
+    rows = np.linalg.eigh(np.moveaxis(np.array(upper), -1, 0)).eigenvectors[:, :, -1]
+    signs = np.where((rows[1:] * rows[:-1]).sum(axis=1) < 0, -1.0, 1.0)
+    rows[1:] *= np.cumprod(signs)[:, None]
+    return np.asarray(rows)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from functools import lru_cache
+from math import inf, nextafter
 from typing import Any
 
 import numpy as np
 
+from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.functions import FLOATS, Functions, functions_of
 from taylor_verify.numbers.precision import exact_value
@@ -43,7 +46,7 @@ class Acting:
         else:
             elapsed = np.broadcast_to(elapsed, state.shape[:-1])
             values = np.empty((*elapsed.shape, 3 if self._is_euler else 6))
-            switches = [float(switch) for switch in self._loads.switches]
+            switches = [_not_before(switch) for switch in self._loads.switches]
             pieces = np.searchsorted(switches, elapsed, side="right")
             for piece in np.unique(pieces):
                 rows = pieces == piece
@@ -65,13 +68,13 @@ class Acting:
         if len(columns) < needed:
             raise ValueError(f"expected a state of {needed} numbers, got {len(columns)}")
         moving, q, c = columns[:n], columns[n : n + 4], columns[n + 4 : n + 7]
-        inputs = {"t": elapsed, **_named("c", c)}
+        inputs = {"t": elapsed, **labelled("c", c)}
         if self._is_euler:
-            inputs |= _named("w", moving)
+            inputs |= labelled("w", moving)
         else:
             velocity = [sum(a * z for a, z in zip(r, moving, strict=True)) for r in self._matrix]
-            inputs |= _named("x", moving[:3]) | _named("y", moving[3:])
-            inputs |= _named("u", velocity[:3]) | _named("w", velocity[3:])
+            inputs |= labelled("x", moving[:3]) | labelled("y", moving[3:])
+            inputs |= labelled("u", velocity[:3]) | labelled("w", velocity[3:])
         if q:
             size = sum(e * e for e in q)
             R = rotation(q)
@@ -80,8 +83,10 @@ class Acting:
         return inputs
 
 
-def _named(letter: str, vector: Sequence[Any]) -> dict[str, Any]:
-    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+def _not_before(switch: Fraction) -> float:
+    """Return the first double that is not before a switch."""
+    near = float(switch)
+    return near if Fraction(near) >= switch else nextafter(near, inf)
 
 
 def _arrays() -> Functions:

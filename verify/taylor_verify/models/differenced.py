@@ -11,8 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.models.rates import SLOWEST
 
-_SLOWEST: Final = 2.0**-10
 _STEP: Final = 2.0**-20
 # The loads may change with time: they are looked at in these parts of a piece of it.
 _LOOKS: Final = (0.0, 0.37, 0.81)
@@ -39,7 +39,7 @@ class Differenced:
             J = np.concatenate([self._jacobians(rows, t) for t in self._times])
         if not np.isfinite(J).all():
             return inf
-        return max(float(np.abs(np.linalg.eigvals(J)).max()), _SLOWEST)
+        return max(float(np.abs(np.linalg.eigvals(J)).max()), SLOWEST)
 
     def is_within(self, states: Any, rate: float) -> bool:
         """Return True if no row of an array of states has a faster rate."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from math import frexp
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.units import Units, largest
-from taylor_verify.numbers.precision import power_of_two
+from taylor_verify.models.units import Units, binary, largest
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.scene import Scene
 
@@ -50,22 +48,18 @@ def _pushed(units: Units, scene: Scene, span: float, sizes: Any) -> Units:
     angular = 1 / min(float(block[i][i]) for i in range(3)) if is_rigid else float(largest(block))
     rate = (angular * float(sizes[-3:].max())) ** 0.5
     time = min(span, 1 / rate) if rate else span
-    momentum, force = _power(float(sizes[-3:].max()) * time), _power(float(sizes[:3].max()) * time)
+    momentum = binary(Fraction(float(sizes[-3:].max()) * time))
+    force = binary(Fraction(float(sizes[:3].max()) * time))
     if moves:
         momentum, force = max(momentum, units.momentum), max(force, units.impulse)
     momentum, impulse = momentum or force, force or momentum
     fastest = Fraction(angular) * momentum
     if is_rigid:
-        unit = min(units.time if moves else 1 / _power(float(fastest)), 1 / _power(float(fastest)))
-        return replace(units, time=unit, momentum=momentum)
+        unit = 1 / binary(fastest)
+        return replace(units, time=min(units.time, unit) if moves else unit, momentum=momentum)
     linear = largest([row[:3] for row in matrix[:3]])
     coupling = largest([row[3:] for row in matrix[:3]])
     fastest = max(fastest, linear * impulse**2 / momentum, coupling * impulse)
     speed = linear * impulse + coupling * momentum
-    path = max(_power(float(speed * Fraction(span) * impulse / momentum)), Fraction(1))
-    return Units(time=1 / _power(float(fastest)), momentum=momentum, impulse=impulse, path=path)
-
-
-def _power(value: float) -> Fraction:
-    """Return the power of two just below a number; 0 for 0."""
-    return power_of_two(frexp(value)[1] - 1) if value else Fraction(0)
+    path = max(binary(speed * Fraction(span) * impulse / momentum), Fraction(1))
+    return Units(time=1 / binary(fastest), momentum=momentum, impulse=impulse, path=path)

@@ -20,7 +20,7 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.symbol import Symbol
 
-_SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
+SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
 _SQUARINGS: Final = 4
 _NEARLY: Final = 1.2
 # Numbers whose squares add up to this have fourth powers far below the largest double.
@@ -84,7 +84,7 @@ class Linearised:
             # Scaled, so that no square overflows.
             turns = np.linalg.norm(entries[..., -4:] / omega, axis=-1)
             bound = max(bound, omega * float(turns.max()))
-        return max(bound, _SLOWEST)
+        return max(bound, SLOWEST)
 
     def is_within(self, states: Any, rate: float) -> bool:
         """Return True if no row of an array of states has a faster rate.

@@ -29,6 +29,11 @@ def diagonal(entries: Vector) -> Matrix:
     )
 
 
+def identity(size: int) -> Matrix:
+    """Return the unit matrix."""
+    return diagonal((Fraction(1),) * size)
+
+
 def transpose(matrix: Matrix) -> Matrix:
     return tuple(zip(*matrix, strict=True))
 

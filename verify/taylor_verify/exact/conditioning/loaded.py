@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from flint import arb, ctx
@@ -22,10 +22,9 @@ from taylor_verify.exact.enclosure.course import Coarse, Course, Row
 from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import floor_log2, power_of_two
-from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.scene import Scene
 
@@ -121,9 +120,8 @@ class _Frame:
         self._length = float(flow.length)
         d = self._d = len(self._units)
         self.size = d + 6
-        unit = [_unit(d, i) for i in range(d)]
-        self._momentum = np.array([kind.momentum(body, e) for e in unit], dtype=float).T
-        self._state = np.array([kind.of_momentum(body, e) for e in unit], dtype=float).T
+        self._momentum = kind.momentum_matrix(body).astype(float)
+        self._state = kind.state_matrix(body).astype(float)
         self._start = np.array(rotation_matrix(scene.initial.attitude), dtype=float)
 
     def counted(self, begin: Floats, end: Floats, derivative: Floats) -> Floats:
@@ -166,26 +164,12 @@ class _Frame:
         centre = (states[:, d + 4 :] - states[:1, d + 4 :]) / self._length
         if not self._turns:
             return momentum, np.empty((0, 3)), None
-        attitude = self._start @ np.array([_rotation(e) for e in states[:, d : d + 4]])
+        turns = [rotation_rows(e / np.linalg.norm(e)) for e in states[:, d : d + 4]]
+        attitude = self._start @ np.array(turns)
         return momentum, centre if self._travels else np.empty((0, 3)), attitude
-
-
-def _unit(d: int, i: int) -> Vector:
-    return tuple(Fraction(int(i == j)) for j in range(d))
 
 
 def _right(e: Floats) -> Floats:
     """Return the matrix of the product with e on the right: p e = right(e) p."""
     a, b, c, d = e
     return np.array([[a, -b, -c, -d], [b, a, d, -c], [c, -d, a, b], [d, c, -b, a]])
-
-
-def _rotation(e: Any) -> Floats:
-    a, b, c, d = e / np.linalg.norm(e)
-    return np.array(
-        [
-            [1 - 2 * (c * c + d * d), 2 * (b * c - a * d), 2 * (b * d + a * c)],
-            [2 * (b * c + a * d), 1 - 2 * (b * b + d * d), 2 * (c * d - a * b)],
-            [2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)],
-        ]
-    )

@@ -1,10 +1,15 @@
 """Motions without a closed form, enclosed: a Taylor method whose every error is bounded in balls.
 
-system     the equations, quadratic, in exact rationals, and in balls
-lamb       the coefficients of an ellipsoid in balls
-series     their Taylor coefficients in balls
-tube       a bound of how far the motion is from its polynomial within one step
-box        the set that contains the state, and how a step carries it on
-placing    attitude and centre along the step
-course     the steps, the outputs and the precision
+tape          a right-hand side as operations on nodes before it
+operations    what each operation is asked, and sums of products; powers, functions and kinks are the others
+posing        the tape of a scene; loaded and lowering make it of loads that a scene writes down
+series        the Taylor coefficients of all nodes in one step; coefficients, those of the frame
+bounds        what the series leave out, and how far a node is from its polynomial
+tube          a bound of how far the motion is from its polynomial within one step
+derivative    the derivative of the rates along a step, and flow, that of the motion
+box           the set that contains the state, and how a step carries it on
+placing       attitude and centre along the step
+crossing      steps that meet a kink
+step          the length of a step, and all that is known of it
+course        the steps, the outputs and when to stop
 """

@@ -1,4 +1,4 @@
-"""Taylor coefficients in balls: of the state, and of the turn and the way that it makes of the frame.
+"""Taylor coefficients in balls: of the turn and the way that the state makes of the frame.
 
 Row k of a series holds the coefficients of order k times h^k, so that the step is s from 0 to 1.
 """

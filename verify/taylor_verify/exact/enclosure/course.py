@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import MAX_EMAX, MIN_EMIN, Decimal, localcontext
 from fractions import Fraction
 from math import ceil
@@ -33,6 +33,7 @@ _SHRUNK: Final = -20
 _SEVERAL: Final = 16
 # Flat steps in a row: a kink that is crossed takes one or two.
 _MOST_FLAT: Final = 8
+_TOUCHED: Final = "a kink may be touched and not crossed"
 # Progress messages for callers that wait.
 _progress: Final = logging.getLogger("taylor_verify.progress")
 _DIGITS_PER_BIT: Final = Fraction(301, 1000)
@@ -149,29 +150,15 @@ class Course:
         largest = self._largest(box, place)
         since = _Since(self.system.size) if self.differentiates else None
         while pending:
-            try:
-                step = self.stepper.step(box, self.origin + now, length, last - now)
-            except StepTooLong:
-                raise self._stuck("the bounds of no step close", now, pending) from None
-            except Touched:
-                raise self._stuck("a kink may be touched and not crossed", now, pending) from None
-            except Domain as end:
-                because = f"{end} near t = {float_text(self.begin + now)}"
-                raise Unreached(because, pending[-1]) from end
+            step = self._step(box, now, length, pending)
             largest = tuple(map(max, zip(largest, self._terms(step), strict=True)))
             while pending and abs(pending[-1] - now) <= abs(step.length):
                 time = pending.pop()
                 share = ball((time - now) / step.length)
-                state = within(box, step.state, step.tube, step.flow, share)
-                frame = None if place is None or step.leg is None else step.leg.place(place, share)
-                turn, centre = ([], None) if frame is None else frame.balls()
-                if centre is not None and self.system.current:
-                    drift = self.system.current
-                    centre = [c + ball(v * time) for c, v in zip(centre, drift, strict=True)]
-                by_last = None
+                row = self._row(box, place, step, share, time, largest)
                 if since is not None and step.flow is not None:
-                    by_last = since.at_row(step.flow, share)
-                yield time, Row(state, turn, centre, largest, by_last)
+                    row = replace(row, since=since.at_row(step.flow, share))
+                yield time, row
             if since is not None and step.flow is not None:
                 since.to(step.flow, arb(1))
             box = carried(box, step.state, step.tube, step.flow, self.system.spans)
@@ -184,11 +171,41 @@ class Course:
                 _progress.info("%.0f %% of the time, with %d bits", percent, self.bits)
             flat = flat + 1 if step.is_flat else 0
             if flat > _MOST_FLAT and pending:
-                raise self._stuck("a kink may be touched and not crossed", now, pending)
+                raise self._stuck(_TOUCHED, now, pending)
             if not step.is_flat:
                 lengths.append(abs(step.length))
             if pending and lengths:
                 self._watch(box, largest, lengths, now, pending)
+
+    def _step(self, box: Box, now: Fraction, guess: Fraction, pending: Sequence[Fraction]) -> Step:
+        """The next step, towards the last of the pending times, which stands first."""
+        try:
+            return self.stepper.step(box, self.origin + now, guess, pending[0] - now)
+        except StepTooLong:
+            raise self._stuck("the bounds of no step close", now, pending) from None
+        except Touched:
+            raise self._stuck(_TOUCHED, now, pending) from None
+        except Domain as end:
+            because = f"{end} near t = {float_text(self.begin + now)}"
+            raise Unreached(because, pending[-1]) from end
+
+    def _row(
+        self,
+        box: Box,
+        place: Place | None,
+        step: Step,
+        share: arb,
+        time: Fraction,
+        largest: tuple[float, ...],
+    ) -> Row:
+        """The row at a time, which is at this share of a step."""
+        state = within(box, step.state, step.tube, step.flow, share)
+        frame = None if place is None or step.leg is None else step.leg.place(place, share)
+        turn, centre = ([], None) if frame is None else frame.balls()
+        if centre is not None and self.system.current:
+            drift = self.system.current
+            centre = [c + ball(v * time) for c, v in zip(centre, drift, strict=True)]
+        return Row(state, turn, centre, largest)
 
     def _terms(self, step: Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""

@@ -14,14 +14,14 @@ from typing import Final, NamedTuple
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
+from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.enclosure.bounds import Bounds, minimum, value_at
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import ZERO
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
-from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.precision import exact_value, floor_log2, power_of_two
 
 # The first zero of a polynomial is looked for on so many parts of the step.
 _PARTS: Final = 64
@@ -134,7 +134,7 @@ class _Kinks:
             if not rate > 0:
                 raise Touched
             share = (4 * (coefficients[0].abs_upper() + apart) / rate).abs_upper()
-        return max(exact_ball(share) * self._length, self._least)
+        return max(exact_value(midpoint(share)) * self._length, self._least)
 
     def _ahead(self, node: int, coefficients: Sequence[arb], apart: arb) -> list[_Ahead]:
         sign = self._series.sign[node]
@@ -150,14 +150,8 @@ class _Kinks:
             slope = value_at(slopes, ball(share)).abs_lower()
             if not slope > 0:
                 raise Touched
-            width = exact_ball((8 * apart / slope).abs_upper())
+            width = exact_value(midpoint((8 * apart / slope).abs_upper()))
         return [_Ahead(share * self._length, max(width * self._length, self._least), node)]
-
-
-def exact_ball(value: arb) -> Fraction:
-    """An exact ball as a rational number."""
-    mantissa, exponent = value.mid().man_exp()
-    return int(mantissa) * power_of_two(int(exponent))
 
 
 def _first_zero(coefficients: Sequence[arb]) -> Fraction | None:

@@ -78,7 +78,7 @@ class Root(OfOne):
         return s.positive(self.a, "a square root").sqrt()
 
     def following(self, i: int, s: Series, k: int) -> arb:
-        return (s.forward[self.a][k] - s.inner_square(i, k)) / (2 * s.forward[i][0])
+        return (s.forward[self.a][k] - s.square(i, 0, k)) / (2 * s.forward[i][0])
 
     def left_out(self, i: int, b: Bounds) -> arb:
         return b.tail(i, i) + b.last(self.a)

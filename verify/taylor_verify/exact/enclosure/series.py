@@ -155,10 +155,6 @@ class Series:
             total += middle * middle
         return total
 
-    def inner_square(self, i: int, k: int) -> arb:
-        """The sum of v_j v_(k - j) over 0 < j < k, for a node whose order k is asked."""
-        return self.square(i, 0, k)
-
     def rest(self, a: int, i: int, k: int) -> arb:
         """The sum of a_j v_(k - j) over j >= 1, for the node v = i whose order k is asked."""
         return convolved(self.forward[a][1 : k + 1], self._from(i, k - 1))

@@ -92,12 +92,7 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
             for name, squares in _squares(scene, here, _motion(late, digits)).items():
                 total[name] = total.get(name, 0.0) + squares
             words += ", and every time"
-    places = np.arange(len(given.clock.instants), dtype=float)
-    at_samples = {
-        name: larger_neighbour(np.sqrt(squares), np.array(nodes, dtype=float), places)
-        for name, squares in total.items()
-    }
-    return InputRounding(words, at_samples)
+    return InputRounding(words, _at_samples(total, nodes, len(given.clock.instants)))
 
 
 def _by_derivative(given: Scene, rung: Rung, asked: Scene) -> InputRounding:
@@ -118,12 +113,17 @@ def _by_derivative(given: Scene, rung: Rung, asked: Scene) -> InputRounding:
             for name, squares in _squares(scene, here, moves.late(rows, roundoff)).items():
                 total[name] = total[name] + squares
             words += ", and every time"
-    samples = np.arange(len(given.clock.instants), dtype=float)
-    at_samples = {
-        name: larger_neighbour(np.sqrt(squares), np.array(nodes, dtype=float), samples)
-        for name, squares in total.items()
+    return InputRounding(words, _at_samples(total, nodes, len(given.clock.instants)))
+
+
+def _at_samples(
+    squares: Mapping[str, Floats], nodes: Sequence[int], count: int
+) -> dict[str, Floats]:
+    """Return the roots of what is known at some samples, at all of them."""
+    places, samples = np.array(nodes, dtype=float), np.arange(count, dtype=float)
+    return {
+        name: larger_neighbour(np.sqrt(values), places, samples) for name, values in squares.items()
     }
-    return InputRounding(words, at_samples)
 
 
 def _with_one(scene: Scene, place: Place, change: Fraction) -> Scene:

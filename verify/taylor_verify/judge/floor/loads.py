@@ -6,6 +6,7 @@ steps gives dM/dv for all of them.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,6 +17,8 @@ import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.rows import quaternions
+from taylor_verify.models.functions import functions_of
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.loads import Piece as Steps
@@ -76,10 +79,7 @@ class Along:
         """The state z, omega or both impulses, at every time."""
         path, kind = self.path, kind_of(self.path.scene.body)
         momentum = path.momentum * np.array([float(unit) for unit in path.flow.components])
-        d = momentum.shape[1]
-        unit = [tuple(Fraction(int(i == j)) for j in range(d)) for i in range(d)]
-        inverse = [kind.of_momentum(path.scene.body, e) for e in unit]
-        state: Floats = momentum @ np.array(inverse, dtype=float)
+        state: Floats = momentum @ kind.state_matrix(path.scene.body).astype(float).T
         return state
 
     @cached_property
@@ -166,13 +166,8 @@ class Along:
     @cached_property
     def _quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
-        before = np.array(self.path.scene.initial.attitude, dtype=float)
-        rows = []
-        for R in self.attitude:
-            q = _quaternion(R)
-            before = q if q @ before >= 0 else -q
-            rows.append(before)
-        return np.array(rows)
+        rows, start = quaternions(self.attitude), self.path.scene.initial.attitude
+        return rows if rows[0] @ np.array(start, dtype=float) >= 0 else -rows
 
 
 @dataclass(frozen=True)
@@ -199,21 +194,6 @@ def _placed(along: Along, of: Callable[[Piece], Floats]) -> Floats:
     return rows
 
 
-def _quaternion(R: Floats) -> Floats:
-    """Return a unit quaternion of a rotation: the eigenvector of its symmetric 4 x 4 matrix."""
-    a, b, c = R
-    K = np.array(
-        [
-            [a[0] + b[1] + c[2], c[1] - b[2], a[2] - c[0], b[0] - a[1]],
-            [c[1] - b[2], a[0] - b[1] - c[2], a[1] + b[0], a[2] + c[0]],
-            [a[2] - c[0], a[1] + b[0], b[1] - a[0] - c[2], b[2] + c[1]],
-            [b[0] - a[1], a[2] + c[0], b[2] + c[1], c[2] - a[0] - b[1]],
-        ]
-    )
-    q: Floats = np.linalg.eigh(K)[1][:, -1]
-    return q
-
-
 # Values and derivatives of the steps.
 
 
@@ -228,8 +208,17 @@ def _values(steps: Sequence[Step], inputs: Mapping[str, Floats], count: int) -> 
                 values.append(np.full(count, number))
             else:
                 operands = [values[place] for place in step.operands]
-                values.append(_VALUES[step.operation](step, *operands))
+                values.append(_value(step, operands))
     return values
+
+
+def _value(step: Step, operands: Sequence[Floats]) -> Floats:
+    if step.operation in _ARITHMETIC:
+        value: Floats = _ARITHMETIC[step.operation](*operands)
+        return value
+    exponent = () if step.number is None else (step.number,)
+    value = functions_of(operands[0])[step.operation](*operands, *exponent)
+    return value
 
 
 def _gradient(steps: Sequence[Step], values: Values, output: int) -> list[Floats]:
@@ -254,32 +243,27 @@ def _exponent(step: Step) -> float:
     return float(step.number)
 
 
-_FUNCTIONS: Final[Mapping[str, tuple[Callable[[Any], Any], Callable[[Any, Any], Any]]]] = {
-    "abs": (np.abs, lambda v, a: np.sign(a)),
-    "sqrt": (np.sqrt, lambda v, a: 0.5 / v),
-    "exp": (np.exp, lambda v, a: v),
-    "log": (np.log, lambda v, a: 1 / a),
-    "sin": (np.sin, lambda v, a: np.cos(a)),
-    "cos": (np.cos, lambda v, a: -np.sin(a)),
-    "tan": (np.tan, lambda v, a: 1 + v * v),
-    "asin": (np.arcsin, lambda v, a: 1 / np.sqrt(1 - a * a)),
-    "acos": (np.arccos, lambda v, a: -1 / np.sqrt(1 - a * a)),
-    "atan": (np.arctan, lambda v, a: 1 / (1 + a * a)),
-    "sinh": (np.sinh, lambda v, a: np.cosh(a)),
-    "cosh": (np.cosh, lambda v, a: np.sinh(a)),
-    "tanh": (np.tanh, lambda v, a: 1 - v * v),
+_ARITHMETIC: Final = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
 }
-_VALUES: Final[Mapping[str, Callable[..., Floats]]] = {
-    "+": lambda s, a, b: a + b,
-    "-": lambda s, a, b: a - b,
-    "*": lambda s, a, b: a * b,
-    "/": lambda s, a, b: a / b,
-    "min": lambda s, a, b: np.minimum(a, b),
-    "max": lambda s, a, b: np.maximum(a, b),
-    "atan2": lambda s, a, b: np.arctan2(a, b),
-    "norm": lambda s, *parts: np.sqrt(sum(p * p for p in parts)),
-    "power": lambda s, a: a ** _exponent(s),
-    **{name: lambda s, a, f=f: f(a) for name, (f, _) in _FUNCTIONS.items()},
+# The derivative of a function of one step, by its value and its operand.
+_DERIVATIVES: Final[Mapping[str, Callable[[Any, Any], Any]]] = {
+    "abs": lambda v, a: np.sign(a),
+    "sqrt": lambda v, a: 0.5 / v,
+    "exp": lambda v, a: v,
+    "log": lambda v, a: 1 / a,
+    "sin": lambda v, a: np.cos(a),
+    "cos": lambda v, a: -np.sin(a),
+    "tan": lambda v, a: 1 + v * v,
+    "asin": lambda v, a: 1 / np.sqrt(1 - a * a),
+    "acos": lambda v, a: -1 / np.sqrt(1 - a * a),
+    "atan": lambda v, a: 1 / (1 + a * a),
+    "sinh": lambda v, a: np.cosh(a),
+    "cosh": lambda v, a: np.sinh(a),
+    "tanh": lambda v, a: 1 - v * v,
 }
 _SLOPES: Final[Mapping[str, Callable[..., tuple[Floats, ...]]]] = {
     "+": lambda s, v, a, b: (np.ones_like(a), np.ones_like(b)),
@@ -291,5 +275,5 @@ _SLOPES: Final[Mapping[str, Callable[..., tuple[Floats, ...]]]] = {
     "atan2": lambda s, v, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
     "norm": lambda s, v, *parts: tuple(p / v for p in parts),
     "power": lambda s, v, a: (_exponent(s) * a ** (_exponent(s) - 1),),
-    **{name: lambda s, v, a, d=d: (d(v, a),) for name, (_, d) in _FUNCTIONS.items()},
+    **{name: lambda s, v, a, d=d: (d(v, a),) for name, d in _DERIVATIVES.items()},
 }

@@ -38,9 +38,7 @@ class Moves:
     def __init__(self, path: Path, changed: Sequence[Callable[[Fraction], Scene]]) -> None:
         self._path, self._along = path, Along(path)
         kind = kind_of(path.scene.body)
-        d = path.momentum.shape[1]
-        unit = [tuple(Fraction(int(i == j)) for j in range(d)) for i in range(d)]
-        self._momentum = np.array([kind.momentum(path.scene.body, e) for e in unit], dtype=float).T
+        self._momentum = kind.momentum_matrix(path.scene.body).astype(float)
         responses = [self._of_scene(change(_CHANGE)) for change in changed]
         self._responses = [*responses, *self._of_numbers()]
 
