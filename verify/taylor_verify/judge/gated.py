@@ -181,15 +181,18 @@ class _Gates:
         count, times = max(self.steps.counted, len(self.floor.times)), self.floor.times
         for invariant, errors in self.measured.drifts:
             (scale,) = errors.parts.values()
-            attainable, clock = (
-                self.floor.of_gradients(invariant, at_nodes, scale),
-                work.get(invariant.name),
-            )
+            if invariant.name in self.measured.worked:
+                attainable = self.floor.of_values(invariant, at_nodes, scale)
+                terms = self._terms(errors, attainable, Carried.WORK)
+                yield Gate(self.run, errors, attainable, terms)
+                continue
+            attainable = self.floor.of_gradients(invariant, at_nodes, scale)
+            clock = work.get(invariant.name)
             if clock is not None:
                 drift = clock.drift(roundoff, count, times, scale)
                 attainable = np.hypot(attainable, drift)
             terms = self._terms(errors, attainable, Carried.GRADIENT, clock is not None)
-            yield Gate(self.run, errors, attainable, terms)
+            yield Gate(self.run, errors, attainable, replace(terms, conserved=invariant.because))
 
     def unit_quaternion(self) -> Iterator[Gate]:
         """Yield the gate of quaternions that are not of unit length; none if they are, to roundoff.

@@ -16,7 +16,7 @@ such a run counts as 2k - 1 steps, so that k steps count as k^2 (judge.floor.rep
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -103,10 +103,34 @@ class Floor:
 
         The motion ``at_nodes`` is in numbers of MPFR.
         """
-        nodes, scene = self.nodes, self.orbit.scene
-        elapsed = [scene.clock.elapsed[k] for k in nodes]
+        nodes = self.nodes
         ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            squares = self._squares(block, not invariant.is_conserved)
+            rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
+            injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
+        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
+        return larger_neighbour(drift, self.times[nodes], self.times)
+
+    def of_values(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
+        """Return the attainable error of the value of an invariant, over the ``scale`` of it.
+
+        The errors of the state reach it; the motion ``at_nodes`` is in numbers of MPFR.
+        """
+        times, squares = self.times[self.nodes], np.zeros(len(self.nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            carried = larger_neighbour(self.carried[block], self._path_times, times)
+            squares += (np.linalg.norm(relative, axis=1) * carried) ** 2
+        error: Floats = self.unit_roundoff * np.sqrt(squares)
+        return larger_neighbour(error, times, self.times)
+
+    def _relative(
+        self, invariant: Invariant, at_nodes: Motion, scale: Any
+    ) -> Iterator[tuple[str, Floats]]:
+        """Yield the gradient of an invariant at the nodes by each block in its unit, over the scale."""
+        scene = self.orbit.scene
+        elapsed = [scene.clock.elapsed[k] for k in self.nodes]
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
             gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
@@ -114,11 +138,7 @@ class Floor:
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before conversion to float: the square of a small motion would underflow.
                 relative = (gradient * unit / whole).astype(float)
-                rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
-                shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
-                injected += np.sum(shares * rounded, axis=1)
-        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
-        return larger_neighbour(drift, self.times[nodes], self.times)
+                yield block, relative.reshape(len(self.nodes), -1)
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
@@ -170,8 +190,11 @@ class Floor:
         )
         return max(1, round(float(np.max(both[single > 0] / single[single > 0], initial=1.0))))
 
-    def _squares(self, block: str) -> Floats:
-        """Return the sums of squared roundings of a block over the steps so far, by component."""
+    def _squares(self, block: str, has_arcs: bool) -> Floats:
+        """Return the sums of squared roundings of a block over the steps so far, by component.
+
+        With arcs a balance adds what the rounded samples at their beginnings make.
+        """
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
         factors = growths(self.orbit.scene, self.orbit.elapsed)
@@ -179,7 +202,8 @@ class Floor:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
         squares = self.steps_at[:, None] * rows**2
-        if block in self.orbit.flow.momenta and self.orbit.scene.body.loads is not None:
+        has_loads = self.orbit.scene.body.loads is not None
+        if has_arcs and has_loads and block in self.orbit.flow.momenta:
             squares = squares + self._by_arcs[:, first : first + 3]
         return np.cumsum(squares, axis=0)
 

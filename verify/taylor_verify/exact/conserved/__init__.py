@@ -1,0 +1,1 @@
+"""What written loads conserve, found as exact polynomials that are zero."""
