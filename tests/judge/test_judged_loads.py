@@ -136,7 +136,7 @@ def of_text(scene: Scene) -> Rates:
     return clocked(scene)
 
 
-def held(scene: Scene) -> Rates:
+def once_a_step(scene: Scene) -> Rates:
     """The rates with a clock that stands still over each step, as a load that is set once a step has it."""
     rates = of_text(scene)
     return lambda begin, _, y: rates(begin, begin, y)
@@ -153,7 +153,7 @@ Twin = tuple[Scene, Callable[[Scene], Rates], set[str]]
 TWINS: Mapping[str, Twin] = {
     "sign": (BY_CLOCK, lambda scene: of_text(wrong_sign(scene)), {"omega", "T"}),
     "space axes": (BY_CLOCK, lambda scene: of_text(in_space(scene)), {"omega", "T"}),
-    "load of the step before": (BY_CLOCK, held, {"omega", "T"}),
+    "load of the step before": (BY_CLOCK, once_a_step, {"omega", "T"}),
     "switch missed": (SWITCHED, lambda scene: clocked(scene, stops=True), {"omega", "T"}),
     "switch late by a step": (SWITCHED, lambda scene: clocked(scene, later=-1), {"omega", "T"}),
     "potential twice": (TOP, lambda scene: of_text(twice(scene)), {"omega", "T+V"}),

@@ -1,1 +1,1 @@
-"""What written loads conserve, found as exact polynomials that are zero."""
+"""Conserved quantities of motions under written loads, from exact polynomials that are zero."""

@@ -31,7 +31,7 @@ _MOST_PIECES: Final = 1000
 
 @dataclass(frozen=True)
 class Conservation:
-    """What is proven of the loads of a scene.
+    """The quantities that the loads of a scene are proven to conserve.
 
     ``steady`` names quantities of the body alone that are conserved as they are. ``potential`` is V where
     T + V is. ``directions`` are orthogonal vectors by the name of a momentum: those along which it is
@@ -55,12 +55,12 @@ def conservation(scene: Scene) -> Conservation:
         return Conservation()
     derivations = [Derivation(scene, piece) for piece in pieces]
     try:
-        return _found(derivations)
+        return _proven(derivations)
     except TooLong:
         return Conservation()
 
 
-def _found(derivations: Sequence[Derivation]) -> Conservation:
+def _proven(derivations: Sequence[Derivation]) -> Conservation:
     energy = kinetic(derivations[0])
     products = potentials(derivations[0], derivations[0].rate(energy))
     families = {
