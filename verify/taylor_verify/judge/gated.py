@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.conditioning.loaded import truth
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.balances import clock_work
@@ -145,7 +145,7 @@ def gates_of(
     roundoff, velocities = rung.unit_roundoff, solver.carries_velocities
     with mp.workprec(bits), costs.of(CONDITION):
         base = floor(problem.given, problem.scene, roundoff, steps.counted, velocities)
-    answer, exact = run.trajectory.quantities, solution(problem.given)
+    answer, exact = run.trajectory.quantities, truth(problem.given, digits)
     compared = Comparison(problem.given, exact, answer, digits, bits)
     measured = compared.measured(base.nodes, costs)
     with mp.workprec(bits):

@@ -29,11 +29,13 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
-from taylor_verify.judge.errors.state import Errors, Series, joined
+from taylor_verify.judge.errors.state import Errors, Floats, Series, joined
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
@@ -178,7 +180,12 @@ class Drifts:
                 for before, rows in ((end.truth, truth), (end.answer, answer))
             )
             arc_ends = neighbours(
-                scene, [*begins, *elapsed], (earlier, truth), beside, self._digits
+                scene,
+                [*begins, *elapsed],
+                (earlier, truth),
+                beside,
+                self._digits,
+                self._derivatives(begins, elapsed),
             )
         if arc_ends is None:
             states = _states(scene, own)
@@ -188,6 +195,13 @@ class Drifts:
         (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
         self._end = _End(elapsed[-1], state, truth.at(last), answer.at(last))
         return arc_ends
+
+    def _derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats | None:
+        """Return the derivatives of the motion over arcs under written loads; None where none are known."""
+        exact = truth(self._scene, self._digits)
+        if not isinstance(exact, Linearised):
+            return None
+        return exact.derivatives(Flow.of(self._scene), begins, ends)
 
 
 # The arcs.

@@ -26,10 +26,11 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.conditioning.condition import DIGITS, Path, path, transition
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.judge.velocities import velocity_forms
@@ -252,19 +253,19 @@ def floor(
     With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
 
     The condition of the orbit is computed once for all rungs, from the scene ``asked``. Only if the
-    rounding of the data moves the orbit too much is it computed from the rounded scene.
+    rounding of the data moves the orbit too much, or where it comes with the exact motion, is it computed
+    from the rounded scene.
     """
     # Every row has at least one rounding.
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
-    for conditioned in (asked, given):
-        orbit = orbit_of(conditioned)
+    for orbit in _orbits(given, asked, bits):
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
-            times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+            times=np.array([abs(float(t)) for t in orbit.scene.clock.elapsed]),
             orbit=orbit,
             steps_at=steps_at,
             rounded=rounded,
@@ -277,18 +278,32 @@ def floor(
     return result
 
 
+def _orbits(given: Scene, asked: Scene, bits: int) -> Iterator[Path]:
+    yield orbit_of_run(given, asked, bits)
+    if given.body.loads is None:
+        yield orbit_of(given)
+
+
+def orbit_of_run(given: Scene, asked: Scene, bits: int) -> Path:
+    """Return the orbit of a run on a rung of ``bits`` bits, of the rounded scene ``given``.
+
+    Under written loads it comes with the exact motion of this scene. Elsewhere it is that of the scene
+    ``asked``, which all rungs share.
+    """
+    return orbit_of(asked) if given.body.loads is None else orbit_of(given, truth_digits(bits))
+
+
 @lru_cache(maxsize=32)
-def orbit_of(scene: Scene) -> Path:
+def orbit_of(scene: Scene, digits: int = DIGITS) -> Path:
     """Return the orbit of a scene and its condition, computed once for all that ask."""
-    return path(scene)
+    return path(scene, digits)
 
 
-def radians(scene: Scene) -> float:
+def radians(orbit: Path) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
-    orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
-    if scene.body.loads is not None and len(times) > 1:
+    if orbit.scene.body.loads is not None and len(times) > 1:
         # What the loads do to the momenta, over their largest size.
         size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
         pushed = np.linalg.norm(np.gradient(orbit.momentum, times, axis=0), axis=1) / size
@@ -296,10 +311,10 @@ def radians(scene: Scene) -> float:
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 
-def looked_at(scene: Scene) -> list[int]:
+def looked_at(orbit: Path) -> list[int]:
     """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
-    points = set(orbit_of(scene).elapsed)
-    return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
+    points = set(orbit.elapsed)
+    return [k for k, t in enumerate(orbit.scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)
