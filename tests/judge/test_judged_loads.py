@@ -18,14 +18,16 @@ import pytest
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
 
-from taylor_verify import check, tradeoff
+from taylor_verify import check
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_CONVENTIONS
 from taylor_verify.judge.load_notes import NO_BALANCES, NOTHING_CONSERVED
-from taylor_verify.records.faults import Refused
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.tradeoff.setting import setting
+from taylor_verify.tradeoff.trade_off import trade_off
 
 GROUPS = {"euler": ("w",), "kirchhoff": ("x", "y")}
 ROWS = 6
@@ -214,10 +216,13 @@ def test_a_weight_counted_twice_leaves_the_vertical_momentum(tmp_path: Path) -> 
     assert "polynomial zero" in str(by_name["T+V"].reason)
 
 
-def test_tradeoff_refuses_written_loads() -> None:
-    """One sentence says what it does not know, and what does."""
-    with pytest.raises(Refused, match="loads that its scene writes down"):
-        tradeoff(BY_CLOCK)
+def test_work_and_precision_are_measured_under_loads() -> None:
+    """A finer tolerance has a smaller error, and what the loads conserve has a drift as small."""
+    settings = [setting(f"scipy:DOP853?rtol={t}&atol={t}", rung("f64")) for t in ("1e-5", "1e-9")]
+    coarse, fine = trade_off(TOP, settings, repeats=1).points
+    assert 0 < fine.error < coarse.error / 100
+    assert fine.accuracy.drift is not None
+    assert fine.accuracy.drift < 100 * fine.error
 
 
 def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Path) -> None:

@@ -52,15 +52,18 @@ def drifts(
     answer: Motion,
     own: Mapping[str, Column],
     digits: int,
+    of: Sequence[Invariant] | None = None,
 ) -> list[tuple[Invariant, Errors]]:
     """Return the drift of every conserved quantity, as mpmath numbers at the ambient precision.
+
+    ``of`` are the quantities, where not all are wanted.
 
     ``start`` is the exact initial state as a Motion of one row. The scales come from the exact motion
     ``truth``, so that an answer that diverges does not hide its own drift. ``own`` are the answer's exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
-    total = Drifts(scene, start, digits)
+    total = Drifts(scene, start, digits, of)
     total.add(scene.clock.elapsed, truth, answer, own)
     return total.errors()
 
