@@ -8,9 +8,11 @@ until there are too many axes: then the shortest ones are replaced by a frame th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 from flint import arb, arb_mat, ctx
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 # are more.
 _MOST_AXES: Final = 20
 _LONGEST: Final = 10
+_ONE: Final = arb(1)
 
 # Axes as columns, and a column of their radii.
 Axes = tuple[arb_mat, arb_mat]
@@ -44,6 +47,10 @@ class Box:
         """The box of a vector of balls, along the coordinate axes."""
         return cls([b.mid() for b in balls], *_along(arb(b.rad()) for b in balls))
 
+    def balls(self) -> list[arb]:
+        """Balls about the point that contain every state of the box."""
+        return [z + arb(0, r) for z, r in zip(self.point, self.apart.entries(), strict=True)]
+
     @property
     def is_point(self) -> bool:
         return self.axes.ncols() == 0
@@ -55,22 +62,39 @@ class Box:
             return magnitudes(magnitudes(self.axes) * self.radius)
 
 
-def carried(box: Box, state: Rows, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
-    """The box at the end of the step."""
-    end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
+def carried(
+    box: Box,
+    state: Rows,
+    tube: Tube,
+    flow: Flow | None,
+    spans: list[range],
+    sizes: Mapping[int, float] = MappingProxyType({}),
+    share: arb | None = None,
+) -> Box:
+    """The box at the end of the step, or at a share of it.
+
+    ``sizes`` are log2 of those of single components, by which their errors are counted.
+    """
+    if share is None:
+        end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
+    else:
+        end = value(state, share)
     point = [z.mid() for z in end]
     with ctx.workprec(BOUND_BITS):
         rounding = column([abs(z - middle).upper() for z, middle in zip(end, point, strict=True)])
         fresh = rounding + tube.truncation
         axes, radius = arb_mat(len(point), 0), arb_mat(0, 1)
         if flow is not None:
-            moved = flow.at(arb(1)) * box.axes
+            moved = flow.at(_ONE if share is None else share) * box.axes
             axes, radius = mapped(arb.mid, moved), box.radius
             fresh = fresh + mapped(lambda entry: arb(entry.rad()), moved) * radius
         fresh = magnitudes(fresh)
         axes, radius = _beside((axes, radius), _along(fresh.entries()))
         if axes.ncols() > _MOST_AXES * len(point):
-            axes, radius = fewer(axes, radius, _units(point, fresh, spans))
+            units = _units(point, fresh, spans)
+            for i, size in sizes.items():
+                units[i] = arb(2) ** ceil(size) if size > float("-inf") else units[i]
+            axes, radius = fewer(axes, radius, units)
         return Box(point, axes, radius)
 
 
@@ -83,6 +107,41 @@ def within(box: Box, state: Rows, tube: Tube, flow: Flow | None, s: arb) -> list
             spread = magnitudes(flow.at(s) * box.axes) * box.radius + spread
         radii = magnitudes(spread).entries()
     return [z + arb(0, r) for z, r in zip(at_point, radii, strict=True)]
+
+
+def renewed(box: Box, places: Sequence[int], values: Sequence[arb], slopes: arb_mat) -> Box:
+    """The box after some components have become functions of all: values at the point, and slopes.
+
+    Everything else of the box stays as it is, bit by bit.
+    """
+    point = list(box.point)
+    for place, ball in zip(places, values, strict=True):
+        point[place] = ball.mid()
+    with ctx.workprec(BOUND_BITS):
+        moved = slopes * box.axes
+        fresh = mapped(lambda entry: arb(entry.rad()), moved) * box.radius
+        errors = [arb(0)] * len(point)
+        rows = box.axes.tolist()
+        for k, place in enumerate(places):
+            rows[place] = [entry.mid() for entry in moved.tolist()[k]]
+            errors[place] = (arb(values[k].rad()) + fresh[k, 0]).abs_upper()
+        axes = (arb_mat(rows), box.radius) if box.radius.nrows() else (box.axes, box.radius)
+        return Box(point, *_beside(_reaching(*axes), _along(errors)))
+
+
+def _reaching(axes: arb_mat, radius: arb_mat) -> Axes:
+    """The axes that are not zero."""
+    columns = axes.transpose().tolist() if axes.ncols() else []
+    left = [j for j, axis in enumerate(columns) if not all(entry.is_zero() for entry in axis)]
+    rows = [[columns[j][i] for j in left] for i in range(axes.nrows())]
+    return arb_mat(rows) if left else arb_mat(axes.nrows(), 0), column([radius[j, 0] for j in left])
+
+
+def over_box(box: Box, values: Sequence[arb], slopes: arb_mat) -> list[arb]:
+    """Balls of functions over the box, by their values at the point and their slopes."""
+    with ctx.workprec(BOUND_BITS):
+        spread = magnitudes(magnitudes(slopes * box.axes) * box.radius).entries()
+    return [v + arb(0, r) for v, r in zip(values, spread, strict=True)]
 
 
 def identity(n: int) -> arb_mat:

@@ -143,17 +143,20 @@ class Graph:
 
 @dataclass(frozen=True)
 class Tape:
-    """Operations in order, the places of the components of the state, and those of their rates."""
+    """Operations in order, the places of the components of the state, and those of the outputs.
+
+    The outputs are the rates of all components, or functions that are wanted at single times.
+    """
 
     operations: tuple[Operation, ...]
     states: tuple[int, ...]
-    rates: tuple[int, ...]
+    outputs: tuple[int, ...]
 
     @classmethod
-    def of(cls, graph: Graph, size: int, rates: Sequence[Sum]) -> Tape:
-        """The tape of the rates of a state of this size, by expressions of the graph."""
+    def of(cls, graph: Graph, size: int, expressions: Sequence[Sum]) -> Tape:
+        """The tape of some expressions of the graph, for a state of this size."""
         states = [graph.place(State(k)) for k in range(size)]
-        outputs = [graph.whole(rate) for rate in rates]
+        outputs = [graph.whole(expression) for expression in expressions]
         joined = _joined(graph.operations, outputs)
         order = sorted(_reached(joined, [*states, *outputs]))
         places = [0] * len(joined)
@@ -165,6 +168,11 @@ class Tape:
     @property
     def size(self) -> int:
         return len(self.states)
+
+    @property
+    def rates(self) -> tuple[int, ...]:
+        """The places of the rates, one for each component."""
+        return self.outputs
 
     @cached_property
     def degrees(self) -> list[int | None]:
