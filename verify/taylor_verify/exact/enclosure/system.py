@@ -133,6 +133,16 @@ def magnitudes(matrix: arb_mat) -> arb_mat:
     return mapped(arb.abs_upper, matrix)
 
 
+def intervals(bounds: arb_mat) -> arb_mat:
+    """The interval from -b to b in place of every bound b."""
+    return mapped(lambda bound: arb(0, bound), bounds)
+
+
+def reached(matrix: arb_mat, bounds: arb_mat) -> arb_mat:
+    """Bounds of the components of matrix u for all |u_j| <= bounds_j, or of a matrix of such columns u."""
+    return magnitudes(matrix * intervals(bounds))
+
+
 def mapped(change: Callable[[arb], arb], matrix: arb_mat) -> arb_mat:
     """The matrix with every entry changed."""
     return arb_mat(matrix.nrows(), matrix.ncols(), [change(entry) for entry in matrix.entries()])

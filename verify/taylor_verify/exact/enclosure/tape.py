@@ -29,6 +29,7 @@ from taylor_verify.exact.enclosure.operations import (
 )
 from taylor_verify.numbers.irrational import Undecided
 
+_ZERO: Final = Bilinear(Fraction(0))
 # A polynomial of the time of a higher degree is a series like any other.
 _MOST_DEGREE: Final = 6
 
@@ -173,6 +174,12 @@ class Tape:
     def rates(self) -> tuple[int, ...]:
         """The places of the rates, one for each component."""
         return self.outputs
+
+    @cached_property
+    def moving(self) -> int:
+        """The number of components up to the last one whose rate is not zero throughout."""
+        still = [self.operations[rate] == _ZERO for rate in self.rates]
+        return next((k + 1 for k in reversed(range(len(still))) if not still[k]), 0)
 
     @cached_property
     def degrees(self) -> list[int | None]:

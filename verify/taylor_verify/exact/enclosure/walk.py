@@ -74,12 +74,12 @@ class _Since:
         """The derivative at a row, from which the next one counts."""
         self.to(flow, share)
         reached, self._steps = self._steps, identity(self._steps.nrows())
-        self._from = self._steps if flow is None else flow.at(share)
+        self._from = self._steps if flow is None else flow.whole(share)
         return reached
 
     def to(self, flow: Flow | None, share: arb) -> None:
         if flow is not None:
-            self._steps = flow.at(share) * inverted(self._from) * self._steps
+            self._steps = flow.whole(share) * inverted(self._from) * self._steps
             self._from = identity(self._steps.nrows())
 
     def through(self, places: Sequence[int], slopes: arb_mat) -> None:
