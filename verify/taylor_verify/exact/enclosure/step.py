@@ -243,25 +243,35 @@ class Stepper:
         return left if abs(fitted) >= abs(left) * _NEARLY else fitted
 
     def _root_test_of(self, rows: Rows) -> float:
-        """The root test of all blocks of the state."""
-        own = list(self.system.own.values())
-        tests = [self.root_test(rows, self.system.others), self.root_test(rows, own, is_own=True)]
-        return min(tests)
+        """The root test of all blocks of the state.
 
-    def root_test(self, rows: Rows, spans: Sequence[range], *, is_own: bool = False) -> float:
+        An own state is as large as it moves by, too: a number passes through zero alone.
+        """
+        own = [
+            _growing(rows, span, max(size_of(row, span) for row in rows[:3]))
+            for span in self.system.own.values()
+        ]
+        return min([self.root_test(rows, self.system.others), *own])
+
+    def root_test(self, rows: Rows, spans: Sequence[range]) -> float:
         """log2 of the factor by which the length may grow; infinite where the series has ended."""
-        factor, order = float("inf"), len(rows) - 1
+        factors = [float("inf")]
         for span in spans:
-            # The size of the block, or of its first change. An own state is as large as it moves by, too:
-            # a number passes through zero alone.
-            sizes = [size_of(row, span) for row in rows[:3]]
+            # The size of the block, or of its first change.
+            sizes = (size_of(row, span) for row in rows[:3])
             size = next((size for size in sizes if size > float("-inf")), float("-inf"))
-            size = max(sizes) if is_own else size
-            for k in range(max(1, order - 2), order + 1):
-                last = size_of(rows[k], span)
-                if last > float("-inf"):
-                    factor = min(factor, (size - ctx.prec - last) / k)
-        return factor
+            factors.append(_growing(rows, span, size))
+        return min(factors)
+
+
+def _growing(rows: Rows, span: range, size: float) -> float:
+    """log2 of the factor by which a step may grow until the last orders of a block of this size count."""
+    factor, order = float("inf"), len(rows) - 1
+    for k in range(max(1, order - 2), order + 1):
+        last = size_of(rows[k], span)
+        if last > float("-inf"):
+            factor = min(factor, (size - ctx.prec - last) / k)
+    return factor
 
 
 def _bounded(series: Series, factor: float) -> float:
