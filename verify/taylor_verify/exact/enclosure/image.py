@@ -132,7 +132,7 @@ class Image:
     def _over_box(self, i: int) -> arb:
         """The hull of a node, its value in full precision."""
         self._require(i)
-        value = self._point.forward[i][0]
+        value: arb = self._point.forward[i][0]
         with ctx.workprec(BOUND_BITS):
             spread = self._spread(self._gradients[i])
         return value if spread.is_zero() else value + arb(0, spread)
@@ -180,7 +180,8 @@ class Image:
         if node is None:
             return ONE
         if node < len(self._hull.forward):
-            return self._hull.forward[node][0]
+            value: arb = self._hull.forward[node][0]
+            return value
         # The partner of a pair, which comes next.
         return self._tape.operations[node].first(node, self._hull)
 
@@ -197,7 +198,7 @@ class Image:
 
     def least(self, i: int) -> arb:
         """A positive lower bound of a node over the box. Raises Domain where there is none."""
-        bound = self._hull.forward[i][0].abs_lower()
+        bound: arb = self._hull.forward[i][0].abs_lower()
         if not bound > 0:
             raise Domain("a divisor may be zero")
         return bound
