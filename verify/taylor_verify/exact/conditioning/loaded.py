@@ -16,18 +16,18 @@ from typing import Final, final
 import numpy as np
 from flint import arb, arb_mat
 
-from taylor_verify.exact.balls import ball, balls, midpoint
+from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
-from taylor_verify.exact.enclosure.course import Course, Row
+from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import LoadedBody
+from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
 from taylor_verify.exact.taylor import Enclosing, Times
-from taylor_verify.numbers.precision import floor_log2, power_of_two
-from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
@@ -132,7 +132,7 @@ class _Run(Enclosing):
         frame, states = _Frame(self.scene, flow), np.array(self.states)
         matrices = [
             frame.counted(states[k - 1], states[k], derivative)
-            for k, derivative in enumerate(self.derivatives, start=1)
+            for k, derivative in enumerate(self.derivatives[1:], start=1)
         ]
         steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
         return Steps(steps, products(steps), *frame.path(states))
@@ -143,21 +143,25 @@ class _Run(Enclosing):
         self.derivatives.clear()
         for place, row in enumerate(self._course(bits, most_bits)):
             self.states.append(np.array([float(midpoint(entry)) for entry in row.state]))
-            if row.since is not None:
-                self.derivatives.append(_floats(row.since))
+            assert row.since is not None
+            self.derivatives.append(_floats(row.since))
             if place in times:
                 yield place, self._in_space(row)
             if not any(times.values()):
                 # The start belongs to both directions of time.
                 return
 
-    def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
+    @cached_property
+    def _system(self) -> System:
         scene = self.scene
         assert scene.body.loads is not None
-        system = LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
-        course = Course.of(system, _widened(system.start, bits), None, bits, most_bits)
-        course = replace(course, differentiates=True, begin=scene.clock.start)
-        yield replace(course, start=balls(system.start)).first_row()
+        return LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
+
+    def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
+        start = self._system.start_balls()
+        course = Course.of(self._system, _widened(start, bits), None, bits, most_bits)
+        course = replace(course, differentiates=True, begin=self.scene.clock.start)
+        yield replace(course, start=start).first_row()
         if later := self.elapsed[1:]:
             yield from (row for _, row in course.rows(later))
 
@@ -166,25 +170,27 @@ class _Run(Enclosing):
         initial, track = self.scene.initial, self.scene.track
         d, has_centre = len(initial.moving), "centre" in track
         if not track:
-            return replace(row, state=row.state[:d])
+            return row
         start, turned = rotation_matrix(initial.attitude), rotation_rows(row.state[d : d + 4])
         turn = [
             sum((ball(start[i][k]) * turned[k][j] for k in range(3)), arb(0))
             for i in range(3)
             for j in range(3)
         ]
-        largest = (*row.largest[: d // 3], row.largest[-2])
-        return Row(row.state[:d], turn, row.state[d + 4 :] if has_centre else None, largest)
+        centre = row.state[d + 4 : d + 7] if has_centre else None
+        # The centre is the block behind the turn.
+        largest = (*row.largest[:-1], row.largest[d // 3 + 1])
+        return replace(row, turn=turn, centre=centre, largest=largest)
 
 
-def _widened(start: Vector, bits: int) -> list[arb]:
+def _widened(start: Sequence[arb], bits: int) -> list[arb]:
     """Return the start with a small width: no derivative is made of an exact state.
 
     The largest component has it, so that a vector which is zero stays zero.
     """
-    widened, k = balls(start), max(range(len(start)), key=lambda i: abs(start[i]))
-    unit = power_of_two((floor_log2(start[k]) if start[k] else 0) - bits)
-    widened[k] += arb(0, ball(unit).upper())
+    widened, k = list(start), max(range(len(start)), key=lambda i: abs(float(midpoint(start[i]))))
+    size = widened[k].abs_upper() or arb(1)
+    widened[k] += arb(0, (size * arb(2) ** -bits).upper())
     return widened
 
 
