@@ -6,7 +6,6 @@ import json
 import math
 import sys
 from dataclasses import replace
-from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -22,8 +21,6 @@ from taylor_verify.batch.expectations import compare_with_expectations
 from taylor_verify.cli import main
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.gates import GATE_FACTOR, judge
-from taylor_verify.judge.tolerances import tolerances
-from taylor_verify.records import store
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
@@ -235,15 +232,6 @@ def test_a_name_that_is_no_quantity_is_refused_with_those_there_are(
     assert words in capsys.readouterr().err
 
 
-def test_of_several_scenes_a_name_is_that_of_any() -> None:
-    """`omega` of a rigid body and `impulse` of a solid in a fluid may be named together."""
-    scenes = [taylor_verify.load(name) for name in SCENES]
-    asked = tolerances({"omega": 1e-8, "impulse": Fraction(1, 1000), "y3": 1e-9}, scenes)
-    assert [asked.of(name) for name in ("omega", "impulse", "y3", "T")] == [1e-8, 1e-3, 1e-9, None]
-    with pytest.raises(ValueError, match=r"expected some of omega, .*, got impulse @ tolerance"):
-        tolerances({"impulse": 1e-8}, scenes[:1])
-
-
 # All ways agree.
 
 PROGRAM = """
@@ -322,13 +310,6 @@ def test_a_page_says_that_a_tolerance_has_judged() -> None:
     assert "tolerance" not in counts([row, *others])
     tolerated = replace(row, tolerance=1e-8)
     assert "**1** of them were judged by a tolerance" in counts([tolerated, *others])
-
-
-def test_what_is_stored_of_an_ordinary_row_names_no_tolerance() -> None:
-    """Published rows stay what they were; a row with a tolerance has it."""
-    (row, *_) = taylor_verify.run("euler/rest").verdicts
-    assert "tolerance" not in store.row(row)
-    assert store.row(replace(row, tolerance=1e-8))["tolerance"] == 1e-8
 
 
 @pytest.mark.parametrize(
