@@ -96,16 +96,6 @@ def test_a_status_that_is_hidden_is_caught(
     assert [row(status)] in hidden([[row(status)]])
 
 
-def test_a_status_nobody_thought_of_is_not_green(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A status without an entry raises an error instead of a green file."""
-    rest = {
-        status: name for status, name in junit._ELEMENTS.items() if status is not Status.VACUOUS
-    }
-    monkeypatch.setattr(junit, "_ELEMENTS", rest)
-    with pytest.raises(KeyError):
-        junit.junit([row(Status.VACUOUS)])
-
-
 def test_junit_counts_what_it_holds() -> None:
     """The counts of suites and of the whole are those of the elements, and no case is lost."""
     rows = [
@@ -204,15 +194,6 @@ def test_a_failure_says_what_a_person_needs() -> None:
     assert (failure.text or "").startswith("euler/generic on f64: omega fail\nomega: 11 digits")
 
 
-def test_an_error_that_is_no_number_is_told() -> None:
-    """NaN is neither left out nor printed as a size."""
-    lost = row(Status.FAIL, max=None, ratio=None)
-    text = sentence(lost)
-    assert text.startswith("omega: not a finite number; ")
-    assert "largest error not finite (max|omega|) at t = 7, where 2.00e-13 is allowed" in text
-    assert sentence(unscored(Status.FAIL, "it crashed")) == "omega: it crashed"
-
-
 def test_a_regression_fails_the_case_that_passed() -> None:
     """A regression is in the case of its row; a vanished row gets a case in the suite of its run."""
     rows = [row(), row(quantity="T"), row(rung="f32")]
@@ -303,14 +284,6 @@ def test_the_runner_reads_back_what_was_said(quantity: str, because: str) -> Non
         _, properties, text = read_by_runner(line)
         assert text == sentence(verdict)
         assert properties["file"] == "a,b: 100%.toml"
-
-
-def test_a_scene_file_is_named_and_a_shipped_scene_is_not() -> None:
-    """GitHub puts the line beside the file of the scene."""
-    (line,) = annotation_lines([row(Status.FAIL, scene="scenes/my.toml")])
-    assert line.startswith("::error file=scenes/my.toml,line=1,title=scenes/my.toml on f64%3A ")
-    (line,) = annotation_lines([row(Status.FAIL)])
-    assert line.startswith("::error title=euler/generic on f64%3A omega fail::omega: 11 digits ")
 
 
 @pytest.mark.parametrize(("count", "last"), [(10, "omega fail"), (11, "2 more"), (30, "21 more")])

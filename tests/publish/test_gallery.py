@@ -46,12 +46,6 @@ def shown() -> tuple[gallery.Shown, ...]:
 # Errors
 
 
-def test_the_line_is_the_largest_error_so_far() -> None:
-    """The line never falls, has values of errors, and ends at the largest."""
-    points = [(1.0, 2.0), (2.0, 0.5), (3.0, 4.0), (4.0, 1.0)]
-    assert errors_over_time.so_far(points) == [(1.0, 2.0), (2.0, 2.0), (3.0, 4.0), (4.0, 4.0)]
-
-
 def test_what_a_logarithm_cannot_show_is_left_out() -> None:
     """The start, an error of zero and what is no number have no place; the others are in units of u."""
     gate = {"quantity": "omega", "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7]}
@@ -75,14 +69,6 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
         slopes.append(log(e1 / e0) / log(t1 / t0))
         assert [one.get_gid() for one in axes.get_lines() if one is not line] == list(RUNGS)
     assert slopes == pytest.approx([0.5, 1.5])
-
-
-def test_a_record_of_the_state_alone_has_one_panel() -> None:
-    """A record without gates on conserved quantities has a single panel."""
-    record = stored().records("manufactured/euler-resonance")["f64"]
-    alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
-    panels = errors_over_time.panels_of(errors_over_time.series([alone]))
-    assert [panel.quantity for panel in panels] == ["omega"]
 
 
 def test_shifts_are_those_of_rows_that_have_one() -> None:
@@ -131,12 +117,6 @@ def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
             assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
         assert (np.diff(z) > 0).all()
         assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
-
-
-def test_a_body_without_a_quartic_is_refused() -> None:
-    """Only Clebsch's free body has one."""
-    with pytest.raises(ValueError, match=r"expected a quartic .* @ kirchhoff/general-body"):
-        potential.picture([reports.portrait_without_run("kirchhoff/general-body")], "general-body")
 
 
 # The whole gallery

@@ -69,13 +69,6 @@ def measured() -> PricesStudy:
     return study()
 
 
-def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
-    """The ratio of the barest form to itself is 1 in every round, so that its interval is exactly 1."""
-    for row in measured.rows:
-        if row.variant == row.against:
-            assert row.step_ratio == (1.0, 1.0, 1.0)
-
-
 def test_rows_count_what_is_built(measured: PricesStudy) -> None:
     """States and operations are those of the form, and the interval holds the median."""
     for row in measured.rows:

@@ -9,7 +9,6 @@ import json
 import re
 import shutil
 from collections.abc import Iterator
-from dataclasses import replace
 from fnmatch import fnmatch
 from fractions import Fraction
 from functools import cache
@@ -34,7 +33,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.page import MADE_BY
-from taylor_verify_reports.claims.ledger import claims, examined
+from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
 from taylor_verify_reports.studies import registry, report
 from taylor_verify_reports.studies.bulk import patterns
@@ -181,14 +180,6 @@ def test_the_ledger_is_made_of_the_published_rows() -> None:
     assert text_of("claims.md").startswith(MADE_BY)
     statements = {row.id: row.statement for row in stored.claims}
     assert statements == {claim.id: claim.statement for claim in claims()}
-
-
-@pytest.mark.slow
-def test_the_published_ledger_can_be_remade() -> None:
-    """The whole ledger, run anew, makes the page that is published."""
-    rows = tuple(finding.row() for finding in examined(claims()))
-    stored = replace(claims_page.CLAIMS.load(REPORTS), claims=rows)
-    assert claims_page.page(stored) == text_of("claims.md")
 
 
 def test_data_are_laid_out_as_the_code_writes_them() -> None:

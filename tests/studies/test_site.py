@@ -18,11 +18,9 @@ from builders.reports import SCENES
 from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
-from taylor_verify.records.schema import schema
 from taylor_verify.solvers.files.file import read
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
-from taylor_verify_reports.studies.site.links import relinked
 from taylor_verify_reports.studies.site.scene_page import scene_page
 from taylor_verify_reports.studies.site.stage import Stage
 from taylor_verify_reports.studies.source import Report
@@ -201,23 +199,6 @@ def test_a_page_of_docs_reaches_the_rest(
 
 
 @building
-def test_names_become_links(pages: dict[str, Page]) -> None:
-    """The name of a scene leads to its page, and a link that is a path shows the page's title."""
-    text = pages["docs/method.html"].text
-    assert '"../reports/scenes/euler-with-attitude.html"' in text
-    assert re.search(r'tables/README.html">(?:<[^>]*>)*Tables<', text)
-    assert "reports/tables/README.md" not in text
-
-
-@building
-def test_formulas_need_no_script(pages: dict[str, Page]) -> None:
-    """A formula in a line and one of a scene are MathML in the page itself."""
-    assert re.search(r"<math[^>]*>.*<msup>", pages["docs/method.html"].text)
-    assert pages[place_of("kirchhoff/whole-motion")].text.count("<math") >= 3
-    assert not [load for page in pages.values() for load in page.loads if "mathjax" in load.lower()]
-
-
-@building
 def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
     """No page has an id twice: links and labels would go to the first."""
     for name, page in pages.items():
@@ -286,12 +267,6 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     assert stage.files["reports/data/hard.json"] == b"# A title\n"
 
 
-def test_a_heading_keeps_its_words_and_its_link() -> None:
-    """Sphinx takes no link to a file in a heading: it stands below it."""
-    text = relinked("## [a.py](a.py) (T1)\n\nb\n", "", "", lambda place: place)
-    assert text == "## a.py (T1)\n\n[a.py](a.py)\n\nb\n"
-
-
 def test_somebody_elses_html_is_text(report: Path, tmp_path: Path) -> None:
     """Markup in the words of a scene is shown and never taken for a part of the page."""
     place = tmp_path / "report"
@@ -342,12 +317,6 @@ def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.Monkey
     with pytest.raises(ImportError) as raised:
         contents(report)
     assert raised.value.name == "no-such-package"
-
-
-@building
-def test_the_schema_of_verdicts_lies_at_the_top(site: dict[str, str | bytes]) -> None:
-    """A program finds what `list --schema` prints under a name that stays."""
-    assert json.loads(site["verdicts.schema.json"]) == schema()
 
 
 @building
