@@ -69,14 +69,6 @@ def pool() -> Iterator[LocalPool]:
         yield pool
 
 
-def test_it_is_an_executor(pool: LocalPool) -> None:
-    """Functions with arguments run in other processes, and `map` keeps the order."""
-    assert [*pool.map(divmod, [7, 8, 9], [2, 3, 4])] == [(3, 1), (2, 2), (2, 1)]
-    processes = {pool.submit(os.getpid).result() for _ in range(4)}
-    assert os.getpid() not in processes
-    assert pool.submit(int, "ff", base=16).result() == 255
-
-
 def test_an_error_of_the_work_is_raised_as_it_was(pool: LocalPool) -> None:
     """Its type, its text, and the place in the worker; the worker goes on."""
     error = pool.submit(refuse, "a number").exception()
@@ -97,13 +89,6 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
     error = pool.submit(work, *argument).exception(timeout=PATIENCE)
     assert error is not None
     assert text in str(error)
-    assert pool.submit(len, "abc").result() == 3
-
-
-def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
-    """A lambda cannot be pickled, and its future says so."""
-    with pytest.raises(Exception, match="lambda"):
-        pool.submit(lambda: 1).result(timeout=PATIENCE)
     assert pool.submit(len, "abc").result() == 3
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
@@ -82,20 +81,6 @@ def test_any_executor_gives_the_verdicts_of_run(executor: Any, alone: list[Judge
     assert progress[0] == (0, 3, "None")
     assert [k for k, *_ in progress] == [0, 1, 2, 3]
     assert {name for *_, name in progress[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
-
-
-def test_a_single_scene_goes_to_an_executor_that_is_given() -> None:
-    """Without one it runs in this process."""
-    submitted: list[Any] = []
-
-    class Counting(ThreadPoolExecutor):
-        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-            submitted.append(args)
-            return super().submit(fn, *args, **kwargs)
-
-    with Counting(1) as executor:
-        assert taylor_verify.run_many(["euler/rest"], executor=executor).passed
-    assert len(submitted) == 1
 
 
 def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
@@ -213,27 +198,7 @@ def test_every_fault_of_every_scene_is_told(tmp_path: Path) -> None:
     assert "euler/rest is refused" not in text
 
 
-def test_a_doubtful_scene_is_known_before_it_runs(tmp_path: Path) -> None:
-    """A body that no solid can be is a warning of the selection, with the name of its scene."""
-    file = tmp_path / "doubtful.toml"
-    file.write_text(THREE_INSTANTS.replace("[1, 2, 3]", "[1, 2, 4]"))
-    (warning,) = select([file]).warnings
-    assert warning.endswith(f"@ {file}")
-
-
 # The result.
-
-
-def test_it_behaves_as_a_list(results: Judgements, alone: list[Judgement]) -> None:
-    """Length, indices, slices, iteration and equality."""
-    assert len(results) == 6
-    assert [*results] == alone
-    assert results[0] is alone[0]
-    assert results[-2:] == tuple(alone[-2:])
-    assert results == alone
-    assert results != alone[1:]
-    assert alone[3] in results
-    assert taylor_verify.run_many([]) == []
 
 
 def marred(results: Judgements, status: Status) -> Judgements:
@@ -331,21 +296,6 @@ def test_its_repr_is_short_and_its_table_is_escaped(results: Judgements) -> None
     assert "&lt;script&gt;" in many._repr_html_()
     assert many._repr_html_().count("<tr>") == 41
     assert "and 11 more runs" in many._repr_html_()
-
-
-def test_a_data_frame_has_a_row_for_each_verdict(
-    results: Judgements, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """pandas gets the fields of each verdict, and what was expected of it."""
-    monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=lambda rows: rows))
-    rows: Any = results.to_dataframe()
-    assert len(rows) == len(results.verdicts)
-    fields = {"scene", "rung", "quantity", "verdict", "max", "bound", "expected"}
-    assert all(fields <= set(row) for row in rows)
-    assert {row["expected"] for row in rows} == {None}
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ModuleNotFoundError, match=r"expected pandas .*pip install pandas"):
-        results.to_dataframe()
 
 
 # The folder of reports.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -12,13 +11,12 @@ import pytest
 from builders.turns import by_turns
 from mpmath import mp
 
-from taylor_verify.exact.damping import decayed, without_damping
+from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
-from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -231,19 +229,3 @@ def test_elements_tell_the_horizon() -> None:
     assert mp.almosteq(damped["periods_to_rest"].value, 20 / free["period"].value, 1e-12)
     assert "e^{ct}" in damped["T"].meaning
     assert "horizon" not in elements(load("euler/damped-negative"))
-
-
-def test_exponentials_keep_their_digits() -> None:
-    """e^{-x} of a long rational has all digits of the ambient precision."""
-    for x in (Fraction(10) ** 9 + Fraction(1, 3), Fraction(-1, 3) - 10**9, Fraction(1, 10**40)):
-        with mp.workdps(30):
-            rough = decayed(x, mp.convert)
-        with mp.workdps(80):
-            assert abs(rough / decayed(x, mp.convert) - 1) <= mp.mpf(10) ** -29
-
-
-def test_every_shipped_damped_scene_is_listed() -> None:
-    """There are damped scenes of both models, and one of them has a negative damping."""
-    scenes: Sequence[Scene] = [scene for scene in map(load, names()) if scene.body.damping]
-    assert {scene.model for scene in scenes} == {"euler", "kirchhoff"}
-    assert min(scene.body.damping for scene in scenes) < 0

@@ -278,20 +278,6 @@ def test_the_elements_are_those_of_the_body_about_axis_3() -> None:
     assert not any(word in text for word in ("x3", "y3", "axis 3"))
 
 
-@pytest.mark.parametrize("axis", [1, 2])
-def test_the_orbit_is_told_of_its_own_body_axis(axis: int) -> None:
-    """Period and range are those of the body about axis 3; x3, y3 and the axis have other names."""
-    orbit = elements(about(AXES[axis - 1], SIX["four-roots"], *GENERIC))
-    # A cyclic change of names mirrors nothing.
-    named_anew = about(AXES[2], SIX["four-roots"], *(v[axis:] + v[:axis] for v in GENERIC))
-    other = elements(named_anew)
-    assert orbit["period"].value == other["period"].value
-    assert orbit[f"x{axis}_low"].value == other["x3_low"].value
-    text = " ".join([*orbit.sentences, *orbit, *(element.meaning for element in orbit.values())])
-    assert f"x{axis} swings" in text
-    assert not any(word in text for word in ("x3", "y3"))
-
-
 @pytest.mark.parametrize(
     ("n", "name"), [(DIRECTIONS[2], "y_axis"), (AXES[0], "y1"), (AXES[1], "y2"), (AXES[2], "y3")]
 )

@@ -311,12 +311,6 @@ def test_the_tail_of_a_power_series_is_in_its_balls(a: Vector, b: Vector, expone
     assert all(coarse.contains(fine) for coarse, fine in zip(*quaternions, strict=True))
 
 
-def test_no_moment_is_refused() -> None:
-    """A free body is not for these formulas."""
-    with pytest.raises(ValueError, match=r"expected a moment that is not zero.*@ body.moment"):
-        LoadedSpin(TOP, vector(0, 0, 0), vector(1, 1, 1))
-
-
 def test_across_the_axis_omega_recurs_after_the_period() -> None:
     """The one loaded motion with a period; without spin, and with any part along the axis, none."""
     scene = load("euler/moment-across-axis")

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import load, read
@@ -20,7 +19,6 @@ from taylor_verify.solvers.engines import python
 from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve_together
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.tradeoff.accuracy import Truths
 
 # RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
 TWIN = """\
@@ -69,7 +67,6 @@ def solve(body, settings):
 answer(solve)
 """
 FLOAT32 = 2.0**-24
-F32 = rung("f32")
 
 
 # An engine that remembers what it was asked before, in its process, and dies of a negative omega.
@@ -170,20 +167,6 @@ def test_the_same_engine_on_the_other_data_has_their_rounding_for_an_error(
 ) -> None:
     """Posed on I^-1 and I omega, omega0 is rounded on its way, and the error shows it."""
     assert errors(judged(tmp_path, "", monkeypatch))["omega"] >= FLOAT32 / 4
-
-
-def test_truths_tell_the_data_of_two_solvers_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A table of solvers that take other data of one scene compares each with the motion of its own."""
-    solver, truths = twin(tmp_path, 'data = "tensor"', monkeypatch), Truths()
-    on_tensor, on_inverse = solver.problem(scene(), F32), pose(scene(), F32)
-    trajectory = solver.solve(on_tensor)
-    other, own = (truths.accuracy(problem, trajectory) for problem in (on_inverse, on_tensor))
-    assert other is not None
-    assert own is not None
-    assert other.max["omega"] >= FLOAT32 / 4
-    assert own.max["omega"] <= FLOAT32 / 10
 
 
 @pytest.mark.parametrize("name", ["euler/constant-moment", "euler/gyrostat", "euler/damped"])

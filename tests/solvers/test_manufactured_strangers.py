@@ -190,19 +190,6 @@ def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> 
     assert failed == {"omega", "T", "H2"}
 
 
-def test_a_late_file_is_said_to_be_late(tmp_path: Path) -> None:
-    """Loads have a time of their own: a file whose clock is late by 1e-6 is told so, and does not pass."""
-    scene = load(EULER)
-    columns = columns_at(scene, [*scene.clock.instants[:-1:4], scene.clock.instants[-1]])
-    late = taylor_verify.check(
-        scene,
-        write_csv(tmp_path / "file.csv", {**columns, "t": [t + 1e-6 for t in columns["t"]]}),
-    )
-    omega = next(v for v in late.verdicts if v.quantity == "omega")
-    assert omega.verdict is Status.FAIL
-    assert omega.time_shift == pytest.approx(1e-6, rel=1e-3)
-
-
 @pytest.mark.parametrize("on", ["f32", "f64"])
 @pytest.mark.parametrize("name", NAMES)
 def test_what_a_stranger_stores_is_a_manufactured_motion(name: str, on: str) -> None:

@@ -64,13 +64,6 @@ def test_the_degree_is_taken() -> None:
     assert high.evaluations == 24 * high.steps
 
 
-def test_the_precision_is_left_as_it_was() -> None:
-    """A run on 300 bits changes nothing for whoever calls next."""
-    before = mp.prec
-    solver_named(NAME).solve(pose(short("euler/generic", Fraction(1, 10)), rung("mp300")))
-    assert mp.prec == before
-
-
 @pytest.mark.parametrize("on", ["f32", "f80", "f128"])
 def test_other_formats_are_unavailable(on: str) -> None:
     """mpmath has bits and no formats: what it has no exponents for it does not claim to be."""

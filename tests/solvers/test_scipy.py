@@ -74,16 +74,6 @@ def test_steps_and_evaluations_are_counted() -> None:
 
 
 @pytest.mark.usefixtures("scipy")
-def test_unset_tolerances_are_scipys_own() -> None:
-    """Who names none gets what solve_ivp takes by itself."""
-    problem = pose(short("euler/generic"), F64)
-    plain = solver_named("scipy:RK45").solve(problem)
-    named = solver_named("scipy:RK45?rtol=1e-3&atol=1e-6").solve(problem)
-    assert (plain.quantities["omega"] == named.quantities["omega"]).all()
-    assert plain.steps == named.steps
-
-
-@pytest.mark.usefixtures("scipy")
 def test_a_fault_in_the_equations_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """No gate of the state passes if time runs the wrong way in the rates."""
     forward = solver.Counted.__call__
