@@ -130,7 +130,7 @@ def test_an_offset_of_the_clock_does_the_work_that_is_allowed_for_it(name: str) 
 
 
 def moved(scene: Scene, solver: Solver) -> dict[str, Any]:
-    judgement = run(scene, solver, "f64")
+    judgement = run(scene, solver, "f64", causes=False)
     assert judgement.record is not None
     return {gate.quantity: np.array(gate.errors) for gate in judgement.record.gates}
 
@@ -225,9 +225,9 @@ def without_second(problem: Problem, t: float, since: float) -> list[float]:
 def test_the_balances_see_a_load_that_is_not_that_of_the_time(name: str, broken: Any) -> None:
     """Loads held over a step, or without their second wave, fail by every balance; the twin passes."""
     scene = over(name, Fraction(2), 21)
-    sound = status(run(scene, Forced(clock_at), "f32"))
+    sound = status(run(scene, Forced(clock_at), "f32", causes=False))
     assert all(sound[gate] is Status.PASS for gate in BALANCES[name])
-    spoiled = status(run(scene, Forced(broken), "f32"))
+    spoiled = status(run(scene, Forced(broken), "f32", causes=False))
     assert all(spoiled[gate] is Status.FAIL for gate in BALANCES[name])
 
 
@@ -237,7 +237,7 @@ def test_the_exact_answer_is_balanced_to_its_last_bits() -> None:
     def answer(problem: Problem) -> Any:
         return solution(problem.given).evaluate(problem.given.clock.elapsed, 25)["omega"]
 
-    judgement = run(over(EULER, Fraction(5), 11), Callback(answer), "f64")
+    judgement = run(over(EULER, Fraction(5), 11), Callback(answer), "f64", causes=False)
     assert all(
         verdict.verdict is Status.PASS and verdict.ratio <= 1e-6
         for verdict in judgement.verdicts

@@ -141,7 +141,7 @@ def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = T
 
 
 def judged(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Judgement:
-    return run(scene(), twin(folder, data, monkeypatch), "f32")
+    return run(scene(), twin(folder, data, monkeypatch), "f32", causes=False)
 
 
 def scene() -> Scene:
@@ -174,7 +174,7 @@ def test_an_engine_for_free_bodies_is_not_asked_for_others(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a moment, wheels or damping an engine of `loads = false` is unavailable: it has not failed."""
-    judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
+    judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32", causes=False)
     assert {str(v.verdict) for v in judgement.verdicts} == {"unavailable"}
     assert "free bodies without wheels" in str(judgement.verdicts[0].reason)
 

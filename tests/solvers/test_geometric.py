@@ -89,7 +89,7 @@ def method(name: str) -> Callable[[Fraction], FixedStep]:
 
 
 def verdicts(scene: Scene | str, name: str, step: str) -> dict[str, Verdict]:
-    judgement = run(scene, f"geometric:{name}?step={step}")
+    judgement = run(scene, f"geometric:{name}?step={step}", causes=False)
     return by_quantity(judgement)
 
 

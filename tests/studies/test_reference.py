@@ -251,7 +251,7 @@ def test_the_page_names_every_file() -> None:
     assert "{{" not in text
     links = set(re.findall(r"\]\(([^)]+)\)", text))
     committed = {path.name for path in folder().iterdir() if path.suffix != ".json"}
-    assert links == committed - {"README.md"} | {"../tables/accuracy.csv"}
+    assert links == committed - {"README.md"} | {"../tables/accuracy.md"}
     for name in reference_files.EXAMPLES:
         assert (folder() / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
 

@@ -175,7 +175,7 @@ def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
     assert (folder / SMALLEST.path).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
     assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
     index = (folder / "tables" / "README.md").read_text(encoding="utf-8")
-    assert "| [smallest.md](smallest.md) | [csv](smallest.csv) |" in index
+    assert "| [smallest.md](smallest.md) | `smallest.csv` |" in index
     (folder / SUM.name).unlink()
     assert call(folder) == 0
     assert not (folder / SMALLEST.path).exists()

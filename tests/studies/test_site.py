@@ -353,7 +353,7 @@ def test_a_site_of_committed_files_alone_is_whole(
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*BULK))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
     errors = capsys.readouterr().err
-    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in errors
+    assert "without 2 tables for searching, 10 records of runs, 5 portraits of scenes" in errors
     assert "`taylor-verify publish --missing` makes" in errors
     target = tmp_path / "site"
     files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}
