@@ -109,13 +109,22 @@ def test_the_law_of_the_flip_is_given_where_it_is_right_to_a_hundredth(
         assert abs(orbit["flip_law"].value / orbit["flip_time"].value - 1) < 0.01
 
 
-@pytest.mark.parametrize("name", ["generic", "full-tensor", "axisymmetric", "backward"])
-def test_omega_recurs_after_the_period_and_not_after_half(name: str) -> None:
-    """The period of omega in body axes is its least one."""
-    scene = load(f"euler/{name}")
+STEADY = ("euler-top", "zero-impulse", "steady-precession")
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [
+        *((f"euler/{n}", "omega") for n in ("generic", "full-tensor", "axisymmetric", "backward")),
+        *((f"kirchhoff/{n}", "angular_impulse") for n in STEADY),
+    ],
+)
+def test_a_motion_recurs_after_its_period_and_not_after_half(name: str, quantity: str) -> None:
+    """The period is the least one: of omega, and where x3 is constant of x and y about axis 3."""
+    scene = load(name)
     with mp.workdps(DIGITS):
         period = number(scene, "period")
-        start, half, whole = moved(scene, "omega", mpf(0), period / 2, period)
+        start, half, whole = moved(scene, quantity, mpf(0), period / 2, period)
         assert distance(start, whole) <= CLOSE
         assert distance(start, half) >= mpf("0.01")
 
@@ -144,17 +153,6 @@ def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) ->
         ]
         assert distance(shapes[0], shapes[2]) <= CLOSE
         assert distance(shapes[0], shapes[1]) >= mpf("0.01")
-
-
-@pytest.mark.parametrize("name", ["euler-top", "zero-impulse", "steady-precession"])
-def test_a_steady_motion_recurs_after_its_turn(name: str) -> None:
-    """Where x3 is constant the period is that of x and y about axis 3."""
-    scene = load(f"kirchhoff/{name}")
-    with mp.workdps(DIGITS):
-        period = number(scene, "period")
-        start, half, whole = moved(scene, "angular_impulse", mpf(0), period / 2, period)
-        assert distance(start, whole) <= CLOSE
-        assert distance(start, half) >= mpf("0.01")
 
 
 # Euler.

@@ -25,7 +25,6 @@ from taylor_verify.plotting.style import (
     PAGE_WIDTH,
     kind_of,
     look_of,
-    look_of_line,
     look_of_rung,
 )
 from taylor_verify.tradeoff.pictures import trade
@@ -128,19 +127,6 @@ def test_every_family_has_its_own_colour_and_marker() -> None:
     styles = [look_of_rung(rung) for rung in RUNGS] + [look_of(name, "f64") for name in OTHERS]
     pairs = {(look.colour, look.marker) for look in styles}
     assert len(pairs) == len(styles) >= 24
-
-
-def test_neighbours_differ_in_grey() -> None:
-    """Families next to each other in one panel, and rungs on the ladder, differ by 10 in lightness.
-
-    Ten of CIE lightness is one step of value in Munsell's scale, on which neighbours are told apart.
-    """
-    ladder = [look_of_rung(rung).colour for rung in RUNGS[:4]]
-    kinds = [[entry[1] for entry in kind.entries] for kind in KINDS]
-    lines = [look_of_line(i).colour for i in range(12)]
-    for colours in (ladder, *kinds, lines):
-        for one, other in pairwise(colours):
-            assert abs(lightness(one) - lightness(other)) >= 10
 
 
 def test_lines_and_text_stand_out_from_paper() -> None:
@@ -478,12 +464,3 @@ def test_the_alt_text_has_the_numbers() -> None:
     assert front[0].label in time
     assert front[-1].label in time
     assert time.endswith("Marked at the border: 1 false success, 2 failed.")
-
-
-def test_a_document_without_an_answer_is_refused() -> None:
-    """A document without sound answers raises an error that names the document."""
-    rows = [fallen("scipy RK45", "f64", 3, "failed")]
-    with pytest.raises(
-        ValueError, match=r"expected a sound point, got none @ euler/generic\.points"
-    ):
-        trade.pictures(document(rows))

@@ -20,7 +20,6 @@ from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
-from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
@@ -100,14 +99,6 @@ def test_the_distance_from_the_unstable_axis_is_as_named(name: str) -> None:
     onto = {"omega": axis} if isinstance(scene.initial, Spin) else {"linear": axis}
     steady = elements(replace(scene, initial=replace(scene.initial, **onto)), 10)
     assert any("unstable" in sentence for sentence in steady.sentences)
-
-
-@pytest.mark.parametrize("name", [n for n in NAMES if "separatrix" in n])
-@pytest.mark.parametrize("on", LADDER)
-def test_a_separatrix_is_exact_on_every_rung(name: str, on: str) -> None:
-    """The rounded data, too, lie exactly between the two families: the regime says so in rationals."""
-    regime = solution(pose(load(name), rung(on)).given).regime
-    assert regime == ("separatrix" if "euler" in name else "hyperbolic")
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if "modulus" in n])

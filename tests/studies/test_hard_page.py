@@ -26,17 +26,13 @@ from builders.studies.stored import publish_document
 from builders.verdicts import passed
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from taylor_verify.cli import main
-from taylor_verify.plotting.picture import plotting
-from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.hard import measure, reach, search
 from taylor_verify_reports.studies.hard import page as pages
-from taylor_verify_reports.studies.hard import picture as diagram
 from taylor_verify_reports.studies.hard.document import HARD, last_value
 from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
 
@@ -208,20 +204,3 @@ def test_each_rung_has_its_reach(page: str) -> None:
     assert "figures/hard-reach.svg" in page
     assert "axis 1e-2, f32: the run stopped: too many steps. It counts as lost." in page
     assert "6 runs. In 1 of them the rung could not represent the motion" in page
-
-
-def test_each_rung_is_a_line_beside_its_floor() -> None:
-    """Digits achieved and attainable stand over the distance; a value without a run has no point."""
-    (picture,) = diagram.pictures(study())
-    with plotting():
-        figure = picture.figure()
-        everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
-    drawn = {line.get_gid(): line for line in figure.axes[0].get_lines()}
-    assert list(drawn["f32"].get_xdata()) == [1e-1, 1e-2]
-    assert list(drawn["f32"].get_ydata()) == pytest.approx([6, 3])
-    assert list(drawn["f32 floors"].get_ydata()) == pytest.approx([7, 4])
-    assert list(drawn["f64"].get_ydata()) == pytest.approx([14, 13, 12])
-    assert everything.x0 >= 0
-    assert everything.y0 >= 0
-    assert everything.x1 <= PAGE_WIDTH
-    assert "a body beside something, f32: six digits up to 1e-1" in picture.alt

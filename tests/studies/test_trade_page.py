@@ -10,9 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE
+from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
-from taylor_verify.tradeoff.pictures.trade import floors_of
 from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.tradeoff.page import page
 from taylor_verify_reports.studies.tradeoff.stored import (
@@ -95,15 +94,6 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
     assert lines[2.0][2] == "taylor, 2.5 times"
     # The yardstick takes two milliseconds, one of them in heyoka.
     assert twelve[2:] == ["taylor, alone", "**1.00**", "0.500", "not reached"]
-
-
-def test_what_rounding_alone_leaves_stands_beside_it(tmp_path: Path) -> None:
-    """A line of digits on each rung for which the measurement has them."""
-    scene = replace(SCENE, attainable={"f64": 2e-16, "f128": None})
-    made = Trades(replace(NUMBERS_MADE, scenes=(scene,)), TIMES_MADE)
-    table = section(page(made, tmp_path), "What a wider number costs")
-    assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
-    assert floors_of(made.trades[0].document()) == {"f64": 2e-16}
 
 
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
