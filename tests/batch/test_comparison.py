@@ -23,7 +23,6 @@ from taylor_verify.batch.selection import select
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.status import Status
 from taylor_verify.report.folder import write_report
-from taylor_verify_reports.studies.hard import measure as hard
 
 SCENES = ["euler/rest", "euler/generic"]
 LONG = "extremes/euler-separatrix-long"
@@ -119,12 +118,3 @@ def test_a_junit_file_is_as_red_as_the_result(
     assert len(shown_verdicts(expected)) == len(expected.verdicts) - 1
     write_junit(file, expected[0])
     assert colour(file) == "red"
-
-
-def test_the_page_of_hard_scenes_has_what_was_run() -> None:
-    """Its document has the verdicts, the titles of the scenes and what was expected of each row."""
-    study = hard.study(taylor_verify.run_many([LONG]))
-    assert [scene.scene for scene in study.scenes] == [LONG]
-    assert study.mismatches == ()
-    assert [(row.quantity, row.verdict) for row in study.expected] == [("omega", Status.VACUOUS)]
-    assert all(map(study.is_met, study.verdicts))

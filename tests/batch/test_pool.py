@@ -46,10 +46,6 @@ def threads() -> int:
     return len(os.listdir("/proc/self/task"))
 
 
-def ignores_interrupts() -> bool:
-    return signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-
-
 def end(number: int) -> None:
     os.kill(os.getpid(), number)
 
@@ -90,11 +86,6 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
     assert error is not None
     assert text in str(error)
     assert pool.submit(len, "abc").result() == 3
-
-
-def test_a_worker_is_deaf_to_interrupts(pool: LocalPool) -> None:
-    """Ctrl-C goes to every process of a terminal, and is their parent's affair."""
-    assert pool.submit(ignores_interrupts).result()
 
 
 # A process of its own: in this one multiprocessing may have started its helper long ago.

@@ -18,12 +18,10 @@ import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
-from taylor_verify.batch.lock import LOCK
 from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.records.faults import Refused
-from taylor_verify.records.json_text import complete
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -235,14 +233,6 @@ def test_its_truth_value_is_whether_it_passed(
     assert judgements.summary[status.value] >= 1
 
 
-def test_nothing_judged_is_no_pass() -> None:
-    """No runs, and a machine without the number format, have an exit status and do not pass."""
-    nothing = taylor_verify.run_many([])
-    assert (nothing.exit_status, nothing.passed) == (3, False)
-    with pytest.raises(NotPassed, match="nothing was judged"):
-        nothing.raise_for_failure()
-
-
 def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A vacuous extreme passes as expected; where nobody expects it, it fails by name."""
     judgements = taylor_verify.run_many([LONG])
@@ -256,16 +246,6 @@ def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> Non
     assert again.exit_status == 1
     with pytest.raises(NotPassed, match=f"expected pass, got vacuous @ {LONG} f64 omega"):
         again.raise_for_failure()
-
-
-def test_what_a_folder_leaves_out_is_part_of_it() -> None:
-    """The scene, the rung and the reason, as in the document."""
-    selection = select(["extremes"], ["mp237"])
-    judgements = Judgements((), selection, "taylor")
-    assert judgements.left_out
-    assert judgements.document()["left_out"] == [complete(one) for one in judgements.left_out]
-    jobs = {(job.name, rung) for job in selection.jobs("taylor") for rung in job.rungs}
-    assert not jobs & {(one.scene, one.rung) for one in judgements.left_out}
 
 
 def test_the_command_prints_its_document(
@@ -296,19 +276,3 @@ def test_its_repr_is_short_and_its_table_is_escaped(results: Judgements) -> None
     assert "&lt;script&gt;" in many._repr_html_()
     assert many._repr_html_().count("<tr>") == 41
     assert "and 11 more runs" in many._repr_html_()
-
-
-# The folder of reports.
-
-
-def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
-    """A call from Python and the command write the same files, and no lock is left."""
-    judgements = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
-    assert main(["run", "euler/rest", "--out", str(tmp_path / "its")]) == 0
-    mine, its = (
-        {file.relative_to(folder) for file in folder.rglob("*") if file.is_file()}
-        for folder in (tmp_path / "mine", tmp_path / "its")
-    )
-    assert mine == its
-    assert Path(LOCK) not in mine
-    assert judgements.passed

@@ -18,7 +18,7 @@ from taylor_verify.models.euler import heinbockel_moment
 from taylor_verify.models.kirchhoff import clebsch_rates, impulse_rates
 from taylor_verify.numbers.tensors import dot
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify_reports.claims.check import All, Residual, measured, worse
+from taylor_verify_reports.claims.check import All, Residual, measured
 from taylor_verify_reports.claims.claim import Claim, Verdict, examine
 from taylor_verify_reports.claims.field import Field
 from taylor_verify_reports.claims.heinbockel.equations import rigid, unsymmetric
@@ -315,15 +315,6 @@ def test_a_check_that_comes_to_no_number_is_a_nan() -> None:
     assert "do not agree" in outcome.because
     row = examine(replace(SOUND, check=check)).row()
     assert row.document()["residual"] == {"statement": None}
-
-
-def test_the_worse_of_two_is_the_one_that_matters() -> None:
-    """A NaN before a miss, a miss before what is within its bound, however small it is."""
-    nan, missed = Residual(math.nan, 1.0, "nan"), Residual(1e-30, 1e-40, "missed")
-    within = Residual(0.5, 1.0, "within")
-    assert worse(within, missed, nan) is nan
-    assert worse(within, missed) is missed
-    assert worse(Residual(0.0, 0.0, "exact"), within) is within
 
 
 @given(st.fractions("1e-9", "1/2", max_denominator=10**9))

@@ -92,19 +92,6 @@ def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) ->
         assert line.split(maxsplit=1) == [name, purpose]
 
 
-@pytest.mark.parametrize("verb", [[], ["list"], ["run"], ["exact"], ["explain"], ["publish"]])
-def test_every_verb_has_help_with_an_example(capsys: Captured, verb: list[str]) -> None:
-    """`--help` ends with status 0, and names a call that can be copied."""
-    with pytest.raises(SystemExit) as ended:
-        main([*verb, "--help"])
-    assert ended.value.code == 0
-    text = capsys.readouterr().out
-    assert "example" in text
-    if verb:
-        assert f"taylor-verify {verb[0]} " in text
-        assert "--json" in text
-
-
 def test_help_imports_nothing_heavy() -> None:
     """`--help` answers before numpy, mpmath, heyoka or rich are imported."""
     script = (
@@ -347,16 +334,6 @@ def test_reports_that_fail_at_the_end_cost_no_results(
     assert "3 pass" in out
     assert "No space left" in error
     assert not (tmp_path / "out").exists()
-
-
-def test_publish_without_data_says_what_it_needs(capsys: Captured, tmp_path: Path) -> None:
-    """Exit 2, one line, and no folder made."""
-    assert main(["publish", "--from", str(tmp_path / "nothing")]) == 2
-    out, error = capsys.readouterr()
-    assert out == ""
-    assert "run --out" in error
-    assert error.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 # explain

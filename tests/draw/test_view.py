@@ -8,7 +8,7 @@ from builders.motions import document
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.draw import axis_path, polhode
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.view import Ellipsoid, View
 
@@ -115,15 +115,3 @@ def test_the_axis_is_that_of_the_motion(scene: str, axis: int) -> None:
     assert series.axis == axis
     assert np.abs(np.linalg.norm(series.path, axis=1) - 1).max() <= 1e-7
     assert (series.fixed is None) == scene.startswith("manufactured")
-
-
-def test_a_path_has_its_bodies_apart() -> None:
-    """The path is the course's own; solids on it are no nearer to each other than their size."""
-    course = document("kirchhoff/ellipsoid-prolate")
-    series = centre_path.series(course)
-    assert series.path.tolist() == course["course"]["centre"]
-    places = series.path[series.instants]
-    apart = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    assert series.semi_axes is not None
-    assert len(series.instants) >= 2
-    assert apart.min() >= max(series.semi_axes)

@@ -185,21 +185,6 @@ def test_loads_and_wheels_leave_it_to_the_series(name: str) -> None:
     assert elements(scene).regime == NO_CLOSED_FORM
 
 
-def test_series_hold_the_damping_of_a_body_with_wheels() -> None:
-    """The rate of the motion at the start is that of (I omega)' = (I omega + h) x omega - c I omega."""
-    scene = damped("euler/gyrostat", Fraction(1, 10))
-    step = Fraction(1, 10**12)
-    ahead, back = solution(scene).motion([step, -step], 40)["omega"]
-    body: Any = scene.body
-    I, w, h = (
-        np.array(each, dtype=float) for each in (body.inertia, scene.initial.moving, body.rotor)
-    )
-    expected = np.linalg.solve(I, np.cross(I @ w + h, w) - 0.1 * I @ w)
-    with mp.workdps(40):
-        rate = (ahead - back) / (2 * mp.convert(step))
-    assert np.allclose(rate.astype(float), expected, rtol=1e-12)
-
-
 def test_what_is_out_of_reach_is_said_in_time() -> None:
     """A growth of e^100000 ends in a sentence, with the rows of the other times, and no number for it."""
     scene = damped("kirchhoff/four-real-roots", Fraction(-1))

@@ -18,7 +18,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.kirchhoff import quartic
-from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about, clebsch_about
+from taylor_verify.exact.kirchhoff.axes import UPRIGHT, body_about, clebsch_about
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -180,43 +180,6 @@ def test_the_start_is_the_scenes_own(route: str, n: Vector) -> None:
 # The axis.
 
 
-fractions = st.fractions(min_value=-3, max_value=3, max_denominator=7)
-
-
-@given(
-    n=st.tuples(entries, entries, entries).filter(any),
-    six=st.tuples(*[fractions] * 6),
-)
-def test_the_six_coefficients_come_back(n: tuple[int, ...], six: tuple[Fraction, ...]) -> None:
-    """T about any direction is recognised, with its coefficients and an axis along that direction."""
-    direction = tuple(map(Fraction, n))
-    body = body_about(Clebsch(*six), direction)
-    clebsch = clebsch_about(body)
-    assert clebsch is not None
-    assert body_about(clebsch[0], clebsch[1].n) == body
-    if six[0::2] != six[1::2]:
-        assert clebsch[0] == Clebsch(*six)
-        assert not any(tensors.cross(clebsch[1].n, direction))
-
-
-@given(n=st.tuples(entries, entries, entries).filter(any), v=st.tuples(*[fractions] * 3))
-def test_the_axes_about_a_direction_are_a_right_handed_orthonormal_triad(
-    n: tuple[int, ...], v: tuple[Fraction, ...]
-) -> None:
-    """Components of sqrt(nu) v along the columns are those of ``across`` and n.v."""
-    axes = Axes.about(tuple(map(Fraction, n)))
-    with mp.workdps(30):
-        e1, e2, e = axes.columns(mp.convert)
-        turned = [e1[i - 2] * e2[i - 1] - e1[i - 1] * e2[i - 2] for i in range(3)]
-        assert all(abs(a - b) <= mpf(10) ** -28 for a, b in zip(turned, e, strict=True))
-        assert abs(mp.fdot(e1, e1) - 1) <= mpf(10) ** -28
-        assert abs(mp.fdot(e1, e2)) <= mpf(10) ** -28
-        scaled = [mp.sqrt(mp.convert(axes.nu)) * mp.convert(entry) for entry in v]
-        expected = *axes.across(v, mp.convert), mp.convert(tensors.dot(axes.n, v))
-        for column, entry in zip((e1, e2, e), expected, strict=True):
-            assert abs(mp.fdot(column, scaled) - entry) <= mpf(10) ** -25
-
-
 LITTLE = Fraction(1, 10**60)
 
 
@@ -239,13 +202,6 @@ def test_what_is_nearly_of_revolution_is_not(block: str, i: int, k: int) -> None
     for solve in (enclosed, closed_form):
         with pytest.raises(NoClosedForm, match="about any axis"):
             solve(replace(scene, body=other))
-
-
-def test_two_matrices_with_different_axes_are_no_body_of_revolution() -> None:
-    """A about one direction, C about another."""
-    body = body_about(Clebsch(*SIX["cubic"]), DIRECTIONS[0])
-    other = body_about(Clebsch(*SIX["four-roots"]), DIRECTIONS[1])
-    assert clebsch_about(replace(body, linear=other.linear)) is None
 
 
 def test_a_body_with_a_choice_keeps_the_third_axis() -> None:

@@ -201,17 +201,6 @@ def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
         )
 
 
-def test_a_shift_that_few_rows_share_is_no_cause() -> None:
-    """No shift is constant if a quarter of the rows is late."""
-
-    def course(t: float) -> Fraction:
-        return Fraction(1, 1000) if t % 2 == 0 else Fraction(0)
-
-    shift = shifts_of("euler/with-attitude", course, samples=41)["omega"]
-    assert shift is not None
-    assert shift.kind is Kind.WANDERING
-
-
 def test_a_third_of_an_error_along_the_orbit_is_no_clock() -> None:
     """An error of which a shift leaves a third is a wrong equation, and not a clock that runs fast."""
     scene, exact = asked("euler/generic", 41)

@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
-from math import floor, inf, log, nan
+from math import floor, inf, log
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +20,6 @@ from matplotlib.ticker import FixedLocator
 from taylor_verify.cli import main
 from taylor_verify.plotting import log_axes
 from taylor_verify.plotting.picture import Picture, plotting
-from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery import page as gallery
@@ -69,31 +67,6 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
         slopes.append(log(e1 / e0) / log(t1 / t0))
         assert [one.get_gid() for one in axes.get_lines() if one is not line] == list(RUNGS)
     assert slopes == pytest.approx([0.5, 1.5])
-
-
-def test_shifts_are_those_of_rows_that_have_one() -> None:
-    """No number, no shift or a shift that explains nothing: no line. The best explained comes first."""
-    row = Verdict(
-        "euler/a",
-        "a",
-        "f64",
-        "control",
-        "omega",
-        Status.FAIL,
-        "reached the last sample",
-        **{"max": 1e-3, "residual": 1e-4, "time_shift": 0.5, "shift": "constant"},
-    )
-    rows = [
-        row,
-        replace(row, solver="b", residual=1e-9),
-        replace(row, solver="c", shift="none"),
-        replace(row, solver="d", max=None),
-        replace(row, solver="e", residual=nan),
-        replace(row, solver="f", residual=None, time_shift=None, shift=None),
-    ]
-    assert [one["solver"] for one in shifts.series(rows)] == ["b", "a"]
-    with pytest.raises(ValueError, match="expected an error with its shift of time"):
-        shifts.picture(rows[2:], "controls")
 
 
 def test_the_half_millisecond_is_found() -> None:

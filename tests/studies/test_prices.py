@@ -32,14 +32,6 @@ def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
     return dict(zip(form.states, rates, strict=True))
 
 
-def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
-    """The barest form of each model is its own unit, and every name is there once."""
-    assert len(set(NAMES)) == len(NAMES)
-    for place, variant in enumerate(variants()):
-        assert variant.against in NAMES[: place + 1]
-        assert named(variant.against).against == variant.against
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
     """The rates of a variant are those of the general equations, in rationals at random points."""

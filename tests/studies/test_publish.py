@@ -29,7 +29,6 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.records import store
-from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.store import load, write
@@ -395,12 +394,6 @@ def test_every_csv_holds_a_row_for_every_verdict_or_run(report: Path) -> None:
     state = [v for v in MIXED if v.quantity in {"omega", "impulse"}]
     assert len(rows(report, "accuracy.csv")) == len(state)
     assert len(rows(report, "conserved.csv")) == len({key(v) for v in MIXED})
-
-
-def test_the_ladder_goes_up_by_bits() -> None:
-    """IEEE formats come first, then MPFR by its number of bits and not by its name."""
-    ladder = ["f32", "f64", "f80", "f128", "mp64", "mp237", "mp1000"]
-    assert sorted(sorted(ladder), key=place_of_rung) == ladder
 
 
 def pages(report: Path) -> Iterable[str]:

@@ -173,18 +173,6 @@ def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
     assert machine.solved.count("broken:0.01") == 1
 
 
-def test_what_is_dear_is_solved_once(
-    machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The only solve of a dear setting is divided by the yardstick of all rounds."""
-    monkeypatch.setattr(rounds, "_SLOWEST_IN_ROUNDS", -1.0)
-    ratios = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
-    assert machine.solved.count("dear:0.3") == 1
-    assert machine.solved.count(YARDSTICK[0]) == 4
-    (one,) = ratios.values()
-    assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
-
-
 # What is measured, and what is stored of it.
 
 
