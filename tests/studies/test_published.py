@@ -228,10 +228,10 @@ def test_every_extreme_is_published_as_it_is_now() -> None:
 
 
 def test_some_exact_trajectories_are_those_of_the_code() -> None:
-    """The CSV of a third of the scenes, and the examples, equal those computed now, byte for byte."""
+    """The CSV of a sixth of the scenes, and the examples, equal those computed now, byte for byte."""
     fresh_files = (reports.some_references() / reference_files.FOLDER).iterdir()
     made_now = [file for file in fresh_files if file.suffix not in (".json", ".md")]
-    assert len(made_now) > len(names()) / 3
+    assert len(made_now) > len(names()) / 6
     assert [f.name for f in made_now if f.read_bytes() != published_reference(f.name)] == []
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from collections.abc import Collection, Mapping
@@ -19,6 +18,7 @@ from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
 from taylor_verify.solvers.files.file import read
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
 from taylor_verify_reports.studies.site.scene_page import scene_page
@@ -267,16 +267,13 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     assert stage.files["reports/data/hard.json"] == b"# A title\n"
 
 
-def test_somebody_elses_html_is_text(report: Path, tmp_path: Path) -> None:
+def test_somebody_elses_html_is_text(tmp_path: Path) -> None:
     """Markup in the words of a scene is shown and never taken for a part of the page."""
-    place = tmp_path / "report"
-    shutil.copytree(report, place)
-    file = place / "data" / "portraits" / "euler-with-attitude.json"
-    portrait = json.loads(file.read_text("utf-8"))
     markup = "<script>alert(1)</script>"
-    portrait |= {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
-    file.write_text(json.dumps(portrait), encoding="utf-8")
-    page = scene_page("euler/with-attitude", Report(place), ())
+    words = {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
+    reports.write_runs(tmp_path, [("euler/with-attitude", "f64")])
+    PORTRAITS.write(tmp_path, [reports.portrait_without_run("euler/with-attitude") | words])
+    page = scene_page("euler/with-attitude", Report(tmp_path), ())
     html = MarkdownIt("commonmark").enable("table").render(page)
     assert html.count("alert(1)") >= 4
     assert "<script>alert" not in html
@@ -311,11 +308,11 @@ def test_a_fault_of_a_page_is_an_error(report: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "site").exists()
 
 
-def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_installed_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing package is named as pip knows it, before anything is done."""
     monkeypatch.setattr(builder, "_NEEDED", ("no_such_package",))
     with pytest.raises(ImportError) as raised:
-        contents(report)
+        contents(tmp_path)
     assert raised.value.name == "no-such-package"
 
 
@@ -325,12 +322,12 @@ def test_the_site_is_the_same_every_time(checkout: Path, site: dict[str, str | b
     assert contents(checkout / "reports") == site
 
 
-def test_a_folder_of_somebody_else_is_left_alone(report: Path, tmp_path: Path) -> None:
+def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     """A target with other files is refused, and what is in it stays."""
     mine = tmp_path / "notes.txt"
     mine.write_text("mine", encoding="utf-8")
     with pytest.raises(ValueError, match="expected a folder that is empty or has an earlier site"):
-        build(report, tmp_path)
+        build(tmp_path, tmp_path)
     assert mine.read_text(encoding="utf-8") == "mine"
 
 
