@@ -229,6 +229,8 @@ def read(scene: Any) -> Question:
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
     if "manufactured" in scene:
         raise Unsuited("expected constant loads, got a manufactured motion")
+    if "loads" in scene:
+        raise Unsuited("expected constant loads, got some that the scene writes down")
     columns = scene["columns"][1:]
     if scene["model"] not in COLUMNS:
         raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
