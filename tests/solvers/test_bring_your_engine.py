@@ -143,7 +143,7 @@ track = ["attitude"]
 inertia = [[2, 0.1, 0], [0.1, 1.5, 0], [0, 0, 1]]
 rotor = [0.05, 0, 0.1]
 damping = "1/50"
-moment = ["clip(-q1 - 0.5*w1, -0.2, M)", "profile*sin(t)^2 + w3^3/8", "0.1*r13 - 0.02*abs(w3)*w3 - atan2(w1, 2)"]
+moment = ["clip(-q1 - w1/2, -0.2, M)", "profile*sin(t)^2 + w3^3/8", "r13/9 - abs(w3)*w3/50 - atan2(w1, 2)"]
 [define]
 M = "0.3 if t < 3.3 else 0.1"
 [tables]

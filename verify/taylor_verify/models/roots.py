@@ -14,7 +14,6 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.written import Written
 from taylor_verify.scenes.loads.steps import Step
 
-
 # The operations "*" or "/", and the place of a number.
 Factors = tuple[tuple[str, int], ...]
 

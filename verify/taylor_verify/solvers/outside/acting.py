@@ -26,7 +26,10 @@ Vector = Sequence[float]
 
 # The time over which a change of wheels is formed as a difference.
 _MOMENTARY = 2.0**-13
-_ALIKE = "sqrt exp log sin cos tan asin acos atan atan2 sinh cosh tanh floor".split()
+_ALIKE = [
+    *("sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "atan2"),
+    *("sinh", "cosh", "tanh", "floor"),
+]
 FUNCTIONS: dict[str, Callable[..., float]] = {
     **{name: getattr(math, name) for name in _ALIKE},
     "+": lambda a, b: a + b,
