@@ -39,9 +39,8 @@ def smooth(form: Form) -> tuple[Form, tuple[Kink, ...]]:
     made = _Smoothing()
     for step in equations.steps:
         made.take(step)
-    outputs = tuple(made.places[output] for output in equations.outputs)
     names = tuple(name for kink in made.kinks for name in kink.names)
-    turned = replace(equations, steps=tuple(made.steps), outputs=outputs)
+    turned = equations.moved(made.steps, made.places)
     return replace(form, equations=turned, parameters=form.parameters + names), tuple(made.kinks)
 
 

@@ -46,8 +46,7 @@ def unsquared(form: Form, zeros: Collection[int] = ()) -> Form:
     if not isinstance(equations, Written):
         return form
     made = _Unsquaring(equations.steps, frozenset(zeros))
-    outputs = tuple(made.places[output] for output in equations.outputs)
-    return replace(form, equations=replace(equations, steps=tuple(made.steps), outputs=outputs))
+    return replace(form, equations=equations.moved(made.steps, made.places))
 
 
 def _length(steps: Sequence[Step], step: Step) -> Length | None:
