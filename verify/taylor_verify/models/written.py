@@ -65,9 +65,7 @@ class Written:
     def _all_rates(self, n: Named, values: Any) -> dict[str, Any]:
         """Return the rates of all states, by the values of the steps at their places."""
         rates = self._rates(n, self._loads([values[k] for k in self.outputs]), values)
-        return rates | {
-            name: values[k] for name, k in zip(self.own, self.rates, strict=True) if name in n
-        }
+        return rates | {name: values[k] for name, k in zip(self.own, self.rates, strict=True)}
 
     def _rates(self, n: Named, loads: Mapping[str, Any], values: Any) -> dict[str, Any]:
         """Return the rates under these loads, and with the drift of the fluid in that of the centre."""
@@ -87,9 +85,9 @@ class Written:
         loads = self._loads([names[place] for place in self.outputs])
         rates = self._rates(n, {name: Symbol(name) for name in loads}, names)
         rates |= {name: names[k] for name, k in zip(self.own, self.rates, strict=True)}
-        functions, inputs = functions_of(names[0]), self._inputs(n, names)
+        functions, inputs = functions_of(names[0]), self.inputs(n)
         steps = {
-            names[place].name: _value(step, names, functions, inputs)
+            names[place].name: value(step, names, functions, inputs)
             for place, step in enumerate(self.steps)
         }
         return {f"{name}'": rate for name, rate in rates.items() if name in n} | loads | steps
@@ -102,24 +100,23 @@ class Written:
 
     def values(self, n: Named) -> list[Any]:
         """Return the value of each step."""
-        functions = functions_of(n["H1"] if "H1" in n else n["x1"])
-        wheels = dict[int, Any]()
-        for place in self._turning:
-            wheels[place] = _value(self.steps[place], wheels, functions, _Inputs(n))
-        inputs, values = self._inputs(n, wheels), list[Any]()
-        for place, step in enumerate(self.steps):
-            known = place in wheels
-            values.append(wheels[place] if known else _value(step, values, functions, inputs))
+        inputs, functions = self.inputs(n), _functions(n)
+        values = list[Any]()
+        for step in self.steps:
+            values.append(value(step, values, functions, inputs))
         return values
 
-    def _inputs(self, n: Named, values: Any) -> _Inputs:
-        """Return the inputs of the steps; those at ``rotor`` have values, and read no momentum."""
-        return _Inputs(Named({**n, **_alone(n, [values[k] for k in self.rotor])}))
+    def inputs(self, n: Named) -> Inputs:
+        """Return what the steps read, by name; the momentum is that of the body without its wheels."""
+        wheels = dict[int, Any]()
+        for place in needed(self.steps, self.rotor):
+            # The momentum of wheels reads none itself.
+            wheels[place] = value(self.steps[place], wheels, _functions(n), Inputs(n))
+        return Inputs(Named({**n, **_alone(n, [wheels[k] for k in self.rotor])}))
 
-    @property
-    def _turning(self) -> list[int]:
-        """The places of the steps that the momentum of the wheels is made of, in order."""
-        return needed(self.steps, self.rotor)
+
+def _functions(n: Named) -> Functions:
+    return functions_of(n["H1"] if "H1" in n else n["x1"])
 
 
 def _alone(n: Named, wheels: Sequence[Any]) -> dict[str, Any]:
@@ -140,7 +137,7 @@ def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
     return sorted(kept)
 
 
-class _Inputs:
+class Inputs:
     """Inputs that steps read, in the units of the problem, each formed where it is asked for."""
 
     def __init__(self, n: Named) -> None:
@@ -164,7 +161,7 @@ class _Inputs:
         return {f"r{i + 1}{j + 1}": R[i][j] for i in range(3) for j in range(3)}
 
 
-def _value(step: Step, values: Sequence[Any], functions: Functions, inputs: Any) -> Any:
+def value(step: Step, values: Any, functions: Functions, inputs: Any) -> Any:
     """Return the value of a step, from those before it."""
     operands = [values[place] for place in step.operands]
     match step.operation:
@@ -204,15 +201,14 @@ def counted(
     ``centre`` is where the body starts: the states have the way from there.
     """
     made = _Counting()
-    known = {n: (own.in_form(n, loads), Fraction(1)) for n in loads.held_values}
-    for name, unit in zip(loads.continuous, units.own, strict=True):
-        known[name] = own.in_form(name, loads), unit
     places: dict[int, int] = {}
     for k in needed(piece.steps, (*piece.outputs, *piece.rates, *piece.rotor)):
         step = piece.steps[k]
         if step.operation == "input":
-            name, unit = known.get(step.name, (step.name, _unit(step.name, units)))
-            place = made.scaled(made.add(Step("input", name=name)), unit)
+            name = own.in_form(step.name, loads)
+            place = made.scaled(
+                made.add(Step("input", name=name)), unit_of(step.name, loads, units)
+            )
             if step.name in CENTRE:
                 start = centre[int(step.name[1]) - 1]
                 place = made.add(Step("+", (place, made.number(start)))) if start else place
@@ -259,8 +255,12 @@ class _Counting:
         return place if unit == 1 else self.add(Step("*", (self.number(unit), place)))
 
 
-def _unit(name: str, units: Units) -> Fraction:
-    """Return the unit of an input."""
+def unit_of(name: str, loads: Loads, units: Units) -> Fraction:
+    """Return the unit of an input of the steps; held values have none."""
+    if name in loads.held_values:
+        return Fraction(1)
+    if name in loads.continuous:
+        return units.own[loads.continuous.index(name)]
     of_letter = {
         "t": units.time,
         "w": 1 / units.time,
