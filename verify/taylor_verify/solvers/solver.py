@@ -92,8 +92,8 @@ class Callback(Solver):
     """A user's function as a solver: ``answer(problem)`` returns states of shape (samples, n).
 
     Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it is, then
-    the tracked states of the scene's own. A Python or NumPy number, a Fraction or an mpf is taken exactly. A
-    masked number and a table with named columns are refused. An exception is a failed run, and so is
+    the tracked states of the scene's own. A Python or NumPy number, a Fraction or an mpf is taken exactly.
+    A masked number and a table with named columns are refused. An exception is a failed run, and so is
     `sys.exit` with any code; an interrupt stays an interrupt.
     """
 
