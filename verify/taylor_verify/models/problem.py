@@ -299,15 +299,15 @@ class _InScene(dict[str, Any]):
     def __init__(self, problem: Problem, loads: Loads, state: Vector, elapsed: Fraction) -> None:
         form, units = problem.form, problem.units
         assert isinstance(form.equations, Written)
-        values = map(held_exactly, (*state, *problem.parameters))
-        time = held_exactly(elapsed / units.time)
-        named = Named(zip(form.states + form.parameters, values, strict=True), t=time)
-        named |= {name: held_exactly(value) for name, value in _held(loads, problem.held).items()}
+        # Texts may read what the equations of a simple body do not have.
+        numbers = {**problem.parameter, **dict(zip(form.states, state, strict=True))}
+        numbers |= {**_held(loads, problem.held), "t": elapsed / units.time}
+        named = Named({name: held_exactly(value) for name, value in numbers.items()})
         self._inputs, self._loads, self._units = form.equations.inputs(named), loads, units
         self._centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
 
     def __missing__(self, name: str) -> Any:
-        value = self._inputs[own.in_form(name, self._loads)]
+        value = mp.mpf(self._inputs[own.in_form(name, self._loads)])
         value *= held_exactly(written.unit_of(name, self._loads, self._units))
         return value + held_exactly(self._centre[int(name[1]) - 1]) if name in CENTRE else value
 

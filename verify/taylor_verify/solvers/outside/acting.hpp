@@ -154,7 +154,7 @@ class Piece {
 
   static double value(const Step &step, const Vector &done, const Known &known) {
     if (step.word == "number") return step.number;
-    if (step.word == "input") return known.at(step.name);
+    if (step.word == "input") return known.count(step.name) ? known.at(step.name) : std::nan("");
     Vector of;
     for (int k : step.operands) of.push_back(done[k]);
     return of.empty() ? std::acos(-1.0) : function(step.word, of, step.number);
@@ -170,6 +170,8 @@ class Piece {
     if (word == "power") return std::pow(of[0], number);
     if (word == "norm") return std::sqrt(std::inner_product(of.begin(), of.end(), of.begin(), 0.0));
     if (word == "sign") return (of[0] > 0) - (of[0] < 0);
+    if (word == "step") return of[0] >= 0;
+    if (word == "choose") return of[0] >= 0 ? of[1] : of[2];
     if (word == "+") return of[0] + of[1];
     if (word == "-") return of[0] - of[1];
     if (word == "*") return of[0] * of[1];

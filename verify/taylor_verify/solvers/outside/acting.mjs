@@ -21,6 +21,8 @@ const FUNCTIONS = {
   pi: () => Math.PI,
   norm: Math.hypot,
   power: Math.pow,
+  step: (a) => (a >= 0 ? 1 : 0),
+  choose: (a, b, c) => (a >= 0 ? b : c),
 };
 
 // A number, vector or matrix of the question as doubles.

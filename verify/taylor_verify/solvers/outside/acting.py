@@ -42,6 +42,8 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "max": max,
     "norm": math.hypot,
     "power": math.pow,
+    "sign": lambda a: (a > 0) - (a < 0),
+    "step": lambda a: float(a >= 0),
 }
 
 
@@ -70,12 +72,19 @@ class Piece:
         """Return the values of the steps at some places; ``known`` has the inputs by name."""
         done: list[float] = []
         for word, numbers, operands in self._steps[: max(places, default=-1) + 1]:
-            if word == "number":
-                done += numbers
-            elif word in FUNCTIONS:
-                done.append(FUNCTIONS[word](*(done[k] for k in operands), *numbers))
-            else:
-                done.append(known[word])
+            try:
+                if word == "number":
+                    done += numbers
+                elif word == "choose":
+                    condition, first, second = operands
+                    done.append(done[first] if done[condition] >= 0 else done[second])
+                elif word in FUNCTIONS:
+                    done.append(FUNCTIONS[word](*(done[k] for k in operands), *numbers))
+                else:
+                    done.append(known.get(word, math.nan))
+            except (ArithmeticError, ValueError):
+                # What has no value may be a branch that is not chosen.
+                done.append(math.nan)
         return [done[place] for place in places]
 
 

@@ -28,7 +28,7 @@ from taylor_verify.models.registry import mechanics
 from taylor_verify.numbers.precision import Rung, double_text, hexadecimal
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
-from taylor_verify.solvers.process.loads import written_loads
+from taylor_verify.solvers.process.loads import states, written_loads
 from taylor_verify.solvers.process.numbers import exact_text
 from taylor_verify.solvers.values import exact, named_once
 
@@ -88,6 +88,7 @@ def question(problem: Problem) -> dict[str, Any]:
         "columns": column_names(problem),
         **_data(problem),
         **({} if scene.body.loads is None else {"loads": written_loads(problem)}),
+        **states(problem),
     }
 
 
