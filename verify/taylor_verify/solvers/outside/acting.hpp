@@ -190,6 +190,7 @@ class Acting {
 
   Acting(const Json &question, std::function<Vector()> state)
       : state_(std::move(state)),
+        attitude_(floats(question["initial"]["attitude"])),
         sign_(floats(question["time"]["elapsed"]).back() < 0 ? -1 : 1),
         inertia_(floats(question["body"]["inertia"])),
         constant_(floats(question["body"]["moment"])) {
@@ -237,6 +238,8 @@ class Acting {
 
  private:
   std::function<Vector()> state_;
+  // A quaternion and its negative are one attitude; loads read the one that goes on from the scene's.
+  Vector attitude_;
   std::vector<std::string> moving_, held_;
   int sign_;
   Vector inertia_, constant_, wheels_ = {0, 0, 0}, rates_, stops_;
@@ -268,6 +271,9 @@ class Acting {
 
   // Take the values that are due, all of them before any is set, and begin what begins here.
   void arrive() {
+    const Vector state = state_();
+    const double sign = nearness(state) < 0 ? -1 : 1;
+    for (int i = 0; i < 4; i++) attitude_[i] = sign * state[3 + i];
     for (const Piece &piece : pieces_)
       if (sign_ > 0 ? piece.begin <= t && t < piece.end : piece.begin < t && t <= piece.end) piece_ = &piece;
     if (instants_.count(t)) {
@@ -287,7 +293,8 @@ class Acting {
 
   // All that steps may read, by name; the quaternion is unit.
   Known known(double at, const Vector &state, const Known &own) const {
-    const double p = state[3], x = state[4], y = state[5], z = state[6];
+    const double sign = nearness(state) < 0 ? -1 : 1;
+    const double p = sign * state[3], x = sign * state[4], y = sign * state[5], z = sign * state[6];
     Known made = own;
     made.insert(values_.begin(), values_.end());
     made.insert({{"t", at}, {"w1", state[0]}, {"w2", state[1]}, {"w3", state[2]},
@@ -296,6 +303,11 @@ class Acting {
                  {"r21", 2 * (x * y + p * z)}, {"r22", 1 - 2 * (x * x + z * z)}, {"r23", 2 * (y * z - p * x)},
                  {"r31", 2 * (x * z - p * y)}, {"r32", 2 * (y * z + p * x)}, {"r33", 1 - 2 * (x * x + y * y)}});
     return made;
+  }
+
+  // The product of the quaternion of a state and the one before.
+  double nearness(const Vector &state) const {
+    return std::inner_product(attitude_.begin(), attitude_.end(), state.begin() + 3, 0.0);
   }
 
   // What the change of the momentum of wheels does to the body, -h'.

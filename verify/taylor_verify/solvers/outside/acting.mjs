@@ -70,12 +70,14 @@ function prepared([word, ...rest]) {
 }
 
 export class Acting {
-  #state; #sign; #inertia; #constant; #wheels; #damping; #pieces; #piece; #values = {}; #moving;
+  #state; #attitude; #sign; #inertia; #constant; #wheels; #damping; #pieces; #piece; #values = {}; #moving;
   #held; #rates; #instants; #stops; #target; #left;
 
-  constructor({ body, time, loads, states = [], instants = [] }, state) {
+  constructor({ body, initial, time, loads, states = [], instants = [] }, state) {
     this.t = 0;
     this.#state = state;
+    // A quaternion and its negative are one attitude; loads read the one that goes on from the scene's.
+    this.#attitude = floats(initial.attitude);
     this.#sign = floats(time.elapsed).at(-1) < 0 ? -1 : 1;
     this.#inertia = floats(body.inertia);
     this.#constant = floats(body.moment);
@@ -134,6 +136,7 @@ export class Acting {
   // Take the values that are due, all of them before any is set, and begin what begins here.
   #arrive() {
     const forwards = this.#sign > 0;
+    this.#attitude = continued(this.#state().slice(3), this.#attitude);
     for (const piece of this.#pieces)
       if (forwards ? piece.begin <= this.t && this.t < piece.end : piece.begin < this.t && this.t <= piece.end)
         this.#piece = piece;
@@ -154,7 +157,8 @@ export class Acting {
   }
 
   #known(t, state, own) {
-    return { t, ...inputs(state), ...this.#values, ...own };
+    const attitude = continued(state.slice(3), this.#attitude);
+    return { t, ...inputs([...state.slice(0, 3), ...attitude]), ...this.#values, ...own };
   }
 
   // The momentum of wheels whose momentum changes, and what its change does to the body.
@@ -177,6 +181,12 @@ function inputs([w1, w2, w3, q0, q1, q2, q3]) {
     ...{ r21: 2 * (q1 * q2 + q0 * q3), r22: 1 - 2 * (q1 * q1 + q3 * q3), r23: 2 * (q2 * q3 - q0 * q1) },
     ...{ r31: 2 * (q1 * q3 - q0 * q2), r32: 2 * (q2 * q3 + q0 * q1), r33: 1 - 2 * (q1 * q1 + q2 * q2) },
   };
+}
+
+// The quaternion or its negative, whichever is nearer to the one before.
+function continued(attitude, before) {
+  const product = attitude.reduce((sum, entry, i) => sum + entry * before[i], 0);
+  return attitude.map((entry) => (product < 0 ? -entry : entry));
 }
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

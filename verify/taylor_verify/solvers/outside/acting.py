@@ -114,11 +114,13 @@ class Acting:
         self._damping = floats(body["damping"]) if "damping" in body else 0.0
         self._pieces = list(map(Piece, question.get("loads", {}).get("pieces", [])))
         self._values = {name: floats(s["start"]) for name, s in initial.items() if s["start"]}
+        # A quaternion and its negative are one attitude; loads read the one that goes on from the scene's.
+        self._attitude: Vector = floats(question["initial"]["attitude"])
         self._moving = [name for name, s in initial.items() if "rate" in s]
         self._held = [name for name, s in initial.items() if "value" in s]
-        self._instants = {floats(at): names for at, names in question.get("instants", [])}
-        self._stops = [*self._instants, *(piece.end for piece in self._pieces[:-1])]
-        self._arrive()
+        self._pending = [(floats(at), names) for at, names in question.get("instants", [])]
+        self._stops = [at for at, _ in self._pending] + [piece.end for piece in self._pieces[:-1]]
+        self._arrive(self.t)
 
     @property
     def own(self) -> dict[str, float]:
@@ -133,15 +135,18 @@ class Acting:
         return (self._target - self.t) / self._left
 
     def move(self, step: float) -> None:
-        """Note that the engine has made this step; states of one's own follow, by Heun's method."""
-        before = self.t
-        ahead = self._advanced(step)
-        self.t = self._target if self._left == 1 else self.t + step
+        """Note that the engine has made this step."""
+        self.move_to(self._target if self._left == 1 else self.t + step)
+
+    def move_to(self, t: float) -> None:
+        """Note that the engine has gone on to this time; one's own states follow, by Heun's method."""
+        before, ahead = self.t, self._advanced(t - self.t)
+        self.t = t
         if self._moving:
-            after = self._piece.values(self._piece.rates, self._known(self.t, self._state(), ahead))
+            after = self._piece.values(self._piece.rates, self._known(t, self._state(), ahead))
             for name, a, b in zip(self._moving, self._rates, after, strict=True):
-                self._values[name] += (self.t - before) * (a + b) / 2
-        self._arrive()
+                self._values[name] += (t - before) * (a + b) / 2
+        self._arrive(before)
 
     def moment(self, t: float, state: Vector) -> list[float]:
         """Return the moment in body axes, of all that acts: I w' = I w x w + this."""
@@ -157,14 +162,19 @@ class Acting:
         wheels, reaction = self._turning(t, state, known)
         return _plus(_plus(moment, _cross(wheels, omega)), reaction)
 
-    def _arrive(self) -> None:
+    def _arrive(self, before: float) -> None:
         """Take the values that are due, all of them before any is set, and begin what begins here."""
-        state = self._state()
+        # A clock that counts steps may be a rounding beside an instant.
+        near = 1e-9 * abs(self.t - before)
+        here, state = self._sign * self.t + near, self._state()
+        self._attitude = _continued(state[3:], self._attitude)
         for piece in self._pieces:
-            is_inside = piece.begin <= self.t < piece.end
-            if is_inside if self._sign > 0 else piece.begin < self.t <= piece.end:
+            first, last = sorted((piece.begin * self._sign, piece.end * self._sign))
+            if first <= here < last:
                 self._piece = piece
-        due = self._instants.get(self.t, [])
+        due = set[str]()
+        while self._pending and self._pending[0][0] <= here:
+            due.update(self._pending.pop(0)[1])
         if due:
             values = self._piece.values(self._piece.taken, self._known(self.t, state, {}))
             taken = dict(zip(self._held, values, strict=True))
@@ -183,7 +193,8 @@ class Acting:
         }
 
     def _known(self, t: float, state: Vector, own: Mapping[str, float]) -> dict[str, float]:
-        return {"t": t, **inputs(state), **self._values, **own}
+        attitude = _continued(state[3:], self._attitude)
+        return {"t": t, **inputs([*state[:3], *attitude]), **self._values, **own}
 
     def _turning(
         self, t: float, state: Vector, known: Mapping[str, float]
@@ -210,6 +221,12 @@ def inputs(state: Vector) -> dict[str, float]:
         "r21": 2 * (q1 * q2 + q0 * q3), "r22": 1 - 2 * (q1 * q1 + q3 * q3), "r23": 2 * (q2 * q3 - q0 * q1),
         "r31": 2 * (q1 * q3 - q0 * q2), "r32": 2 * (q2 * q3 + q0 * q1), "r33": 1 - 2 * (q1 * q1 + q2 * q2),
     }  # fmt: skip
+
+
+def _continued(attitude: Vector, before: Vector) -> list[float]:
+    """Return the quaternion or its negative, whichever is nearer to the one before."""
+    is_near = sum(a * b for a, b in zip(attitude, before, strict=True)) >= 0
+    return [entry if is_near else -entry for entry in attitude]
 
 
 def _cross(a: Vector, b: Vector) -> list[float]:

@@ -1,10 +1,10 @@
-"""The loads and states that a scene writes down, in the question: their texts, and their elementary steps.
+"""The loads and states that a scene writes down, in the question: texts, and their elementary steps.
 
 ``steps`` are lists: ["input", name], ["number", text, hex], ["power", place, text, hex], and [operation,
 place, ...] for the rest, where a place counts the steps from 0. The input t is the time since the start.
-``from`` and ``to`` are such times, and null where a piece has no end. Of a piece ``rates`` are the places of
-the rates of all states with a rate, ``values`` those of the values of all held ones, both in the order of
-``states``, and ``rotor`` those of the momentum of the wheels; each is there where the scene writes it.
+``from`` and ``to`` are such times, and null where a piece has no end. Of a piece ``rates`` are the places
+of the rates of all states with a rate, ``values`` those of the values of all held ones, both in the order
+of ``states``, and ``rotor`` those of the momentum of wheels; each is there where the scene writes it.
 """
 
 from __future__ import annotations
