@@ -184,8 +184,9 @@ def test_all_faults_of_states_come_at_once() -> None:
 @pytest.mark.parametrize(
     ("rotor", "got"),
     [
-        ("m", "got `m`"),
-        ("2*d", "got `m`"),
+        ("m", "states that have a rate, got `m`"),
+        ("2*d", "states that have a rate, got `m`"),
+        ("w1 + t", "states that have a rate, got `w1`"),
         ("step(t - 1)", "got a jump by the time"),
         ("1 if t < 1 else 2", "got a jump by the time"),
         ("floor(t)", "got a jump by the time"),
@@ -202,7 +203,7 @@ def test_a_rotor_does_not_jump(rotor: str, got: str) -> None:
     [states]
     m = { every = 1, value = "w1" }
     """
-    with pytest.raises(Refused, match=r"a rotor that does not jump.*body\.rotor\[1\]") as refused:
+    with pytest.raises(Refused, match=r"a rotor.*body\.rotor\[1\]") as refused:
         scene(tables, body=f'rotor = [0, "{rotor}", 0]')
     assert got in str(refused.value)
 

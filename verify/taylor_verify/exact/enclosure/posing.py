@@ -9,7 +9,6 @@ from taylor_verify.exact.enclosure.system import System, always, natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene
 
@@ -17,8 +16,6 @@ from taylor_verify.scenes.scene import Scene
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
     body, kind = scene.body, kind_of(scene.body)
-    if body.loads is not None and (body.loads.states or body.loads.rotor):
-        raise Unsettled("states of a scene's own, and a rotor as text, are not enclosed")
     if body.loads is not None:
         return LoadedBody(scene, body.loads).system()
     start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
@@ -28,7 +28,8 @@ from taylor_verify.scenes.loads.vocabulary import (
     names,
 )
 
-_NO_JUMP = "a rotor that does not jump: no held state, `step`, `sign`, `floor`, `if` or hold table"
+_NO_JUMP: Final = "a rotor that does not jump: no `step`, `sign`, `floor`, `if` or hold table"
+_OF_TIME: Final = "a rotor of t and of the scene's own states that have a rate"
 
 
 class Hung(NamedTuple):
@@ -193,10 +194,11 @@ class Loads:
         for i, entry in enumerate(self.rotor):
             reader, place = PieceReader(self, is_scan=True), f"body.rotor[{i}]"
             reader.entries((entry,), place)
-            which = sorted(reader.reads().intersection(self.held_values))
-            if which or reader.jumps:
-                got = ", ".join(f"`{name}`" for name in which) or "a jump by the time"
-                yield Fault(place, 1, _NO_JUMP, got)
+            others = sorted(reader.reads().difference(("t", *self.continuous)))
+            if others:
+                yield Fault(place, 1, _OF_TIME, ", ".join(f"`{name}`" for name in others))
+            if reader.jumps:
+                yield Fault(place, 1, _NO_JUMP, "a jump by the time")
 
     def _missing_starts(self) -> Iterator[Fault]:
         """Yield held states that are read before they are first taken, and have no start."""

@@ -73,8 +73,11 @@ thrust forces wrench propeller thrusters: write `force` and `couple`, in body ax
 linear_velocity angular_velocity linear_impulse angular_impulse attitude: it stands in [initial]
 """
 _INITIAL: Final = """\
-quaternion orientation q quat pose rotation rpy euler euler_angles roll pitch yaw attitude_deg: write
-  `attitude = [q0, q1, q2, q3]`, a quaternion, scalar first, body to space
+quaternion orientation q quat pose: write `attitude = [q0, q1, q2, q3]`, scalar first, body to space
+rpy euler_angles roll pitch yaw ypr attitude_deg: write `euler = { sequence = "zyx", degrees = [yaw, pitch,
+  roll] }`: turns about axes that move along
+rotation rotvec rotation_matrix: write `rotation_vector`, the axis times the angle in radians, or `attitude`
+rodrigues: write `mrp`, the axis times the tangent of a quarter of the angle
 t t0 time: the time of the initial state is `start` in [time]
 """
 _EULER_INITIAL: Final = (
