@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.acted import ACTED
 from builders.oblique import oblique
 from builders.other_equations import WITHOUT_GYROSCOPIC_TERM, has_other_equations
 from builders.processes import PATIENCE
@@ -20,11 +21,12 @@ from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome
 
 STEP = 1 / 32
 # Settings that exclude each other: the explicit methods of Exudyn have no constraint.
@@ -87,6 +89,32 @@ def test_an_engine_is_right_under_every_setting(name: str, monkeypatch: pytest.M
     roundoff = 30 * 2.0**-bits * 4 / STEP
     comes_nearer = errors[1] <= max(errors[0] / 1.5 if stepped else 0.0, roundoff)
     assert comes_nearer is not has_other_equations(name)
+
+
+def pushed() -> list[str]:
+    """The engines that take all that acts on a body."""
+    return [one.name for one in engines().values() if one.script.about.loads == "written"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", pushed())
+def test_an_engine_is_given_loads_and_states(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the step leaves two thirds of the error or less, with loads, wheels and a sampled controller."""
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(f"outside:{name}")
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    asked, errors = read(ACTED.replace("END", "5"), "acted"), []
+    for step in (STEP, STEP / 2):
+        solver = solver_named(f"outside:{name}?step={step}")
+        on = next(rung(on) for on in ("f64", "f32") if not solver.unavailable(rung(on)))
+        answered = solver.solve(solver.problem(asked, on))
+        assert answered.outcome is Outcome.FINISHED, answered.detail
+        exact = solver_named("taylor").solve(pose(asked, on))
+        errors.append(np.abs(answered.quantities["omega"] - exact.quantities["omega"]).max())
+    assert errors[1] <= errors[0] / 1.5
+    assert errors[0] < 0.1
 
 
 @pytest.mark.slow
