@@ -12,6 +12,7 @@ import pytest
 from builders.acted import ACTED
 
 from taylor_verify.judge.judgement import Judgement
+from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import load, read
