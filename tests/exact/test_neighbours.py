@@ -143,20 +143,6 @@ def test_the_motion_beside_its_derivative_is_the_exact_one() -> None:
         assert distance(one, two) <= 4 * max(*one.radius, *two.radius) < mpf(10) ** -19
 
 
-def test_the_exact_motion_leads_to_itself() -> None:
-    """A state that is not off is not off afterwards."""
-    with mp.workdps(DIGITS + 20):
-        scene = load("euler/gyrostat-moment")
-        exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS)]
-        with precision():
-            motion = neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), exact[0], 40)
-        assert motion is not None
-        there = {name: to_mpf(rows) for name, rows in exact[1].quantities.items()}
-        arrived = {name: to_mpf(rows) for name, rows in motion.quantities.items()}
-        left = distance(Motion(arrived, motion.radius), Motion(there, motion.radius))
-        assert left <= mpf(10) ** -(DIGITS - 1)
-
-
 def test_no_answer_where_doubles_are_not_enough() -> None:
     """Of a difference of a thousandth float64 has no twenty digits of the motion."""
     with mp.workdps(DIGITS + 20):
