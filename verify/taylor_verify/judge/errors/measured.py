@@ -174,7 +174,8 @@ class Comparison:
         return {"attitude" if name == "quaternion" else name for name in self.quantities}
 
     def _has_quantity(self, quantity: str) -> bool:
-        return any(GROUPS[name].quantity == quantity for name in self._has)
+        groups = {**GROUPS, **{group.name: group for group in self.scene.groups}}
+        return any(groups[name].quantity == quantity for name in self._has)
 
     @property
     def _arc_scene(self) -> Scene:
@@ -214,9 +215,10 @@ class Comparison:
     def _has_arcs(self, loads: Loads) -> bool:
         """Return True if an arc can begin at a row: where loads read the frame, it needs all of the frame.
 
-        Loads that read the quaternion itself read its sign, which a row does not determine.
+        Loads that read the quaternion itself read its sign, which a row does not determine. Nor do rows
+        determine states of the scene's own that are in flight.
         """
-        if not loads.inputs.isdisjoint(QUATERNION):
+        if loads.states or loads.rotor or not loads.inputs.isdisjoint(QUATERNION):
             return False
         frame = {"quaternion"} if loads.reads_attitude else set()
         frame |= {"centre"} if loads.reads_centre else set()

@@ -45,7 +45,7 @@ from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
+from taylor_verify.records.quantities import COLUMNS, GROUPS, is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -165,7 +165,7 @@ def _fits(judged: Judgement) -> bool:
 
     A tolerance that is nearly as large as the motion could let a wrong convention pass.
     """
-    states = [verdict for verdict in judged.verdicts if verdict.quantity in STATES]
+    states = [verdict for verdict in judged.verdicts if is_state(verdict.quantity)]
     return all(
         verdict.verdict is Status.PASS and (verdict.tolerance or 0.0) <= EXPLAINS
         for verdict in states
