@@ -200,6 +200,7 @@ def from_scaled(
     omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
     """
     names = (*problem.form.states, *problem.held_names)
+    columns: dict[str, Sequence[Fraction]]
     columns = dict(zip(names, zip(*rows, strict=True), strict=True))
     columns |= _without_wheels(problem, columns, times or problem.times)
     units, given = problem.units, problem.given
