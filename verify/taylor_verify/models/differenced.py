@@ -46,17 +46,17 @@ class Differenced:
         return self.fastest(states) <= rate
 
     def _jacobians(self, rows: Floats, t: float) -> Floats:
-        count = rows.shape[1]
-        J = np.empty((len(rows), count, count))
-        for k in range(count):
-            step = _STEP * np.maximum(1.0, np.abs(rows[:, k]))
-            around = [rows.copy(), rows.copy()]
-            around[0][:, k] += step
-            around[1][:, k] -= step
-            ahead, behind = (self._rates(states, t) for states in around)
-            J[:, :, k] = (ahead - behind) / (2 * step)[:, None]
-        return J
+        steps = _STEP * np.maximum(1.0, np.abs(rows))
+        # One state beside each row for each component.
+        beside = steps[:, None, :] * np.eye(rows.shape[1])
+        ahead, behind = (self._rates(rows[:, None, :] + sign * beside, t) for sign in (1, -1))
+        return np.swapaxes((ahead - behind) / (2 * steps)[:, :, None], 1, 2)
 
-    def _rates(self, rows: Floats, t: float) -> Floats:
-        rates = self._form.rates(list(rows.T), self._parameters, np.full(len(rows), t))
-        return np.array([rate + np.zeros(len(rows)) for rate in rates]).T
+    def _rates(self, states: Floats, t: float) -> Floats:
+        """Return the rates at each of many states, the last axis of the array."""
+        columns = list(states.reshape(-1, states.shape[-1]).T)
+        times = np.full(len(columns[0]), t)
+        rates = self._form.rates(columns, self._parameters, times)
+        return np.stack([rate + np.zeros(len(times)) for rate in rates], axis=-1).reshape(
+            states.shape
+        )
