@@ -126,6 +126,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
 
     Raises NotRepresentable if the rounded data are no valid body or sample times coincide.
     """
+    _check_states(scene)
     units = natural_units(scene)
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
@@ -152,6 +153,12 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     if loads is None:
         return posed
     return _with_loads(posed, data, loads)
+
+
+def _check_states(scene: Scene) -> None:
+    loads = scene.body.loads
+    if loads is not None and (loads.states or loads.rotor):
+        raise NotRepresentable("no solver has states of a scene's own, or a rotor as text")
 
 
 def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
@@ -240,7 +247,11 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     The data are rounded as in `pose_as_stored`, and the instants are exact. Raises NotRepresentable if the
     rounded data are no valid body.
     """
-    posed, clock = pose_as_stored(scene, rung), Clock(scene.clock.start, instants)
+    clock = Clock(scene.clock.start, instants)
+    if scene.body.loads is not None:
+        loads = scene.body.loads.reaching(clock.elapsed[-1])
+        scene = replace(scene, body=scene.body.with_loads(loads))
+    posed = pose_as_stored(scene, rung)
     return replace(
         posed,
         scene=replace(scene, clock=clock),

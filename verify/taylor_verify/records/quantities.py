@@ -1,6 +1,7 @@
 """Records of all quantities: states, conserved quantities, and the columns of a trajectory file.
 
-Readers, solvers and the judge take names, columns and units from here. To add a state quantity is to add
+Readers, solvers and the judge take names, columns and units from here. A scene lists what it tracks, states
+of its own among it (`Scene.tracked` and `Scene.groups`). To add a state quantity is to add
 its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state has it
 (solvers/trajectory.py), what the exact motion makes of it, and how an error reaches it.
 """
@@ -22,6 +23,8 @@ class Measure(Enum):
     ANGLE = "angle"
     # The distance of two places, over the length of the path.
     PATH = "path"
+    # The difference of vectors, over the largest of them up to their row.
+    SO_FAR = "so far"
 
 
 @dataclass(frozen=True)
@@ -183,10 +186,18 @@ CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
         Conserved("y_space", ("attitude", "centre")),
     )
 }
+# Keys of documents that stand beside quantities.
+_KEYS: Final = ("t", "time", "radius", "absolute", "held", "loads")
+
 # Rows that compare no quantity of their own: the start, the extent of an answer, the length of quaternions.
 INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
 UNIT_QUATERNION: Final = "unit quaternion"
+
+# The names that a state of a scene's own may not have, which stands beside these in files and verdicts.
+RESERVED: Final = frozenset(
+    (*QUANTITIES, *GROUPS, *CONSERVED_QUANTITIES, INITIAL, COMPLETE, UNIT_QUATERNION, *_KEYS)
+)
 
 # A gate allows this many times the roundoff floor, which is the root mean square of a random sum. Ten
 # leaves room for a solver that rounds a few times per step and for the tail of the distribution, but none
@@ -224,6 +235,12 @@ def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]
 def state_groups(model: str, track: Collection[str]) -> tuple[str, ...]:
     """Return the groups of columns that a solver's states have, in their order."""
     return tuple(name for quantity in state_quantities(model, track) for name in quantity.groups)
+
+
+def own_state(name: str, columns: tuple[str, ...]) -> tuple[Quantity, Group]:
+    """Return the records of a state of a scene's own, whose components are these columns of files."""
+    quantity = Quantity(name, f"max|{name}|", (name,), measure=Measure.SO_FAR)
+    return quantity, Group(name, columns, name, f"state {name}", "number", moves_with="")
 
 
 def with_needs(track: Collection[str]) -> frozenset[str]:

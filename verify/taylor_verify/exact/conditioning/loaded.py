@@ -18,9 +18,11 @@ from flint import arb, ctx
 from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
-from taylor_verify.exact.enclosure.course import Coarse, Course, Row
+from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import LoadedBody
+from taylor_verify.exact.enclosure.stopping import Coarse
 from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
 from taylor_verify.exact.solution import Unsettled

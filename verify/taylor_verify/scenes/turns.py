@@ -2,8 +2,9 @@
 
 The sine and cosine of a rational angle are irrational. But the matrix of a quaternion of rational
 components is rational, and orthogonal exactly, whatever the length of the quaternion. So the quaternion
-of an angle is formed with 400 bits, its largest component made 1, and the others rounded to 20 decimals;
-everything after that is exact, and a tensor that is turned by it keeps its principal moments.
+of an angle is formed with some bits to spare, its largest component made 1, and the others rounded, to 20
+decimals where a file is imported; everything after that is exact, and a tensor that is turned by it keeps
+its principal moments.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.motion import Quaternion
 
 DECIMALS: Final = 20
-_BITS: Final = 400
+_BITS: Final = 500
 # An angle written with four digits, 1.571, is as near as this to a quarter turn.
 _NEAR: Final = 3e-4
 AXES: Final = tensors.diagonal((Fraction(1),) * 3)
@@ -34,20 +35,18 @@ class Turn(NamedTuple):
     degrees: bool = False
 
 
-def combined(turns: Iterable[Turn]) -> Quaternion:
+def combined(turns: Iterable[Turn], parts: int = 10**DECIMALS) -> Quaternion:
     """Return the product of the turns, the last one done first: each is about an axis that moves along.
 
-    Turns by zero, and whole quarter turns in degrees about body axes, are exact.
+    Each component is a whole number over ``parts``, at most 2^400, and the largest is 1. Turns by zero, and
+    whole quarter turns in degrees about body axes, are exact.
     """
     from mpmath import mp
 
     with mp.workprec(_BITS):
         q = reduce(_product, map(_half_angle, turns))
         largest = max(q, key=abs)
-        scale = mp.mpf(10) ** DECIMALS
-        w, x, y, z = (
-            Fraction(round(exact_value(part / largest * scale)), 10**DECIMALS) for part in q
-        )
+        w, x, y, z = (Fraction(round(exact_value(part / largest) * parts), parts) for part in q)
     return (w, x, y, z)
 
 
