@@ -129,6 +129,7 @@ class Evaluated:
         entries += [e for state in loads.states for e in state.entries]
         self.words = {word for e in entries if isinstance(e, str) for word in _WORD.findall(e)}
         self.clock = mpf(0)
+        self._constant_wheels = [value(c) for c in body.parts().get("rotor", ())]
         self._moving = [s for s in loads.states if isinstance(s, Continuous)]
         self._sampled = [s for s in loads.states if isinstance(s, Held)]
         self.values = {
@@ -183,6 +184,8 @@ class Evaluated:
             for state in self._sampled
             if elapsed >= state.offset and not (elapsed - state.offset) % state.every
         ]
+        # Just behind the time: a switch belongs to the later piece.
+        self.clock = t + mpf(10) ** -mp.dps
         names = self._meanings(t, y)
         taken = {
             name: self._entry(entry, names)
@@ -228,6 +231,8 @@ class Evaluated:
             return [*_apply(R, loads[0]), *turned, *own]
         if self._is_euler:
             momentum = _apply(self._matrix, w)
+            if self._constant_wheels:
+                momentum = _sum(momentum, self._constant_wheels)
             return [*_apply(self._inverse, _sum(_cross(momentum, w), loads[0])), *turned, *own]
         x_rate = _sum(_cross(z[:3], w), loads[0])
         y_rate = _sum(_sum(_cross(z[3:], w), _cross(z[:3], u)), loads[1])
@@ -311,16 +316,14 @@ def end_of(
         ends = sorted({*switches, *instants(scene, time), end}, reverse=time < 0)
         y, now, error = equations.start(), value(start), mpf(0)
         for stop in ends:
-            equations.sides.begin_piece()
-            equations.clock = (now + value(stop)) / 2
             equations.take(now, begun, y)
             equations.sides.begin_piece()
+            equations.clock = (now + value(stop)) / 2
             h = (value(stop) - now) / parts
             for _ in range(parts):
                 y, missed = extrapolated(equations.rates, now, y, h, columns)
                 now, error = now + h, error + missed
             now, begun = value(stop), stop - start
-        equations.clock = now + (now - equations.clock)
         equations.take(now, begun, y)
         if scene.model == "euler":
             y[:3] = equations.omega(now, y)
