@@ -45,7 +45,7 @@ from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, is_state, with_needs
+from taylor_verify.records.quantities import is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -79,7 +79,7 @@ class FileJudgement(Judgement):
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
-        columns = (column for group in self.file.groups for column in COLUMNS[group])
+        columns = (column for group in self.file.groups for column in self.file.columns[group])
         file = FileRead(self.file.name, len(self.file.times), ("t", *columns), self.notes)
         conventions = [
             Convention(
@@ -122,8 +122,8 @@ def judge_file(
     groups = comparable(file, scene)
     asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
-    tracked = with_needs({GROUPS[name].quantity for name in groups})
-    scene = replace(scene, track=scene.track & tracked)
+    tracked = with_needs({scene.known_groups[name].quantity for name in groups})
+    scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
     known = Conventions((), World(scene), {})
     answer = FileRows.of(compared, rung, known)
     try:

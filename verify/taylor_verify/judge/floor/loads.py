@@ -175,6 +175,15 @@ class Along:
         """Return what the roundings inside the texts add up to by output, in units of roundoff."""
         return _placed(self, Piece.sizes)
 
+    def by_numbers(self) -> Floats:
+        """Return what a rounding of each number of the texts adds up to by output."""
+
+        def total(piece: Piece) -> Floats:
+            parts = [abs(by) for _, by in piece.numbers()]
+            return sum(parts, np.zeros((len(piece.places), len(piece.outputs))))
+
+        return _placed(self, total)
+
     @property
     def body(self) -> Body:
         return self.path.scene.body
@@ -228,10 +237,10 @@ class Along:
             rows = self.path.carried.own[state.name]
             inputs |= dict(zip(state.components, rows.T, strict=True))
         inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
-        return inputs | {f"q{i}": rows for i, rows in enumerate(self._quaternions.T)}
+        return inputs | {f"q{i}": rows for i, rows in enumerate(self.quaternions.T)}
 
     @cached_property
-    def _quaternions(self) -> Floats:
+    def quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
         rows, start = quaternions(self.attitude), self.path.scene.initial.attitude
         return rows if rows[0] @ np.array(start, dtype=float) >= 0 else -rows
