@@ -144,7 +144,7 @@ class Along:
 
     @property
     def own_starts(self) -> list[float]:
-        """Where the own states begin, by component, those with a rate first."""
+        """The starts of own states by component, those with a rate first."""
         starts = {s.name: s.start or [0] * len(s.components) for s in self.loads.states}
         return [float(value) for name in self.path.carried.own for value in starts[name]]
 
@@ -219,7 +219,8 @@ class Along:
             return 0.0
         _, rates, values, wheels = self.split(self.outputs())
         changes = np.hstack([rates, np.zeros_like(values)])
-        return np.cross(wheels, spin) - np.einsum("tij,tj->ti", self.wheels, changes)
+        moment: Floats = np.cross(wheels, spin) - np.einsum("tij,tj->ti", self.wheels, changes)
+        return moment
 
     @cached_property
     def _inputs(self) -> Mapping[str, Floats]:
