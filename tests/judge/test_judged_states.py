@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.written_loads import End, end_of
-from mpmath import mp
+from builders.integrators import step
+from builders.written_loads import End, Evaluated, end_of
+from mpmath import mp, mpf
 
 from taylor_verify import check, explain
 from taylor_verify.exact.conditioning.condition import transition
@@ -118,6 +119,36 @@ def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_pat
     passed = {v.quantity for v in answer.verdicts if v.verdict is Status.PASS}
     assert failing <= failed
     assert passing <= passed
+
+
+def by_steps(scene: Scene, steps: int) -> list[End]:
+    """The states at ROWS by the classical Runge-Kutta method; values are taken where a step ends."""
+    with mp.workdps(17):
+        equations, ends, h = Evaluated(scene), list[End](), mpf(1) / steps
+        y, due = equations.start(), 0
+        for k in range(steps + 1):
+            while Fraction(due, 4) <= Fraction(k, steps):
+                equations.take(k * h, Fraction(due, 4), y)
+                due += 1
+            if Fraction(k, steps) in ROWS:
+                ends.append(End(list(y), mpf(0), False, equations.own(y)))
+            y = step(equations.rates, k * h, y, h)
+        return ends
+
+
+@pytest.mark.parametrize(("counts", "order"), [((10, 18, 26), 1), ((8, 12, 16), 4)])
+def test_steps_over_the_instants_are_of_order_one(
+    counts: Sequence[int], order: int, tmp_path: Path
+) -> None:
+    """Steps that end at every instant have their own order; others have 1, and the judge says why."""
+    files = [
+        written(tmp_path / f"run_{n}.csv", RIGHT, by_steps(RIGHT, n), ("m", "i")) for n in counts
+    ]
+    answer = check(RIGHT, files, partial=True, steps=[1 / n for n in counts])
+    (attitude,) = (each for each in answer.order if each.quantity == "attitude")
+    assert attitude.order == pytest.approx(order, abs=0.5)
+    over = [note for note in answer.notes if "steps end at the instants of held states" in note]
+    assert bool(over) is (order == 1)
 
 
 def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
-from taylor_verify.judge.load_notes import load_notes
+from taylor_verify.judge.load_notes import breaks_of, load_notes
 from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
@@ -66,11 +66,13 @@ class FileJudgement(Judgement):
     """The verdicts on a file, its conventions and notes.
 
     ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected.
+    ``breaks`` says where the equations of the scene are not smooth in time; empty where they are.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
+    breaks: str = ""
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -156,7 +158,7 @@ def judge_file(
         notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, known.findings, accept_conventions)
+    of_file = (file, known.findings, accept_conventions, breaks_of(scene))
     return FileJudgement(verdicts, judged.record, *of_file, causes=causes, notes=notes)
 
 
