@@ -19,7 +19,10 @@ from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.rows import quaternions
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.taylor import arcs
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
@@ -249,6 +252,33 @@ def test_satellites_are_where_another_integrator_leads(name: str) -> None:
             apart = mp.norm([a - b for a, b in zip(got[quantity][0], wanted, strict=True)])
             assert apart <= slack * (mp.norm(wanted) or 1)
         assert max(got.radius) <= mpf(10) ** -DIGITS
+
+
+def test_arcs_begin_with_own_states_of_their_own() -> None:
+    """From the middle of a motion they lead to its end, with values held as they were there."""
+    for name in ("sampled", "wheel of a text"):
+        scene = satellite(name)
+        whole = solution(scene).motion([Fraction(3, 4), Fraction(1)], DIGITS)
+        with mp.workdps(DIGITS + 10):
+            exact = {
+                n: tuple(map(exact_value, rows[0].flat)) for n, rows in whole.quantities.items()
+            }
+            q = quaternions(whole["attitude"][:1].astype(float))[0]
+        del exact["attitude"]
+        start = replace(scene.initial, omega=exact.pop("omega"), attitude=tuple(map(Fraction, q)))
+        end = arcs(scene, [start], [Fraction(1, 4)], 12, [Fraction(3, 4)], [exact])
+        with mp.workdps(DIGITS):
+            # The attitude of the arc is right to the digits of float64.
+            assert mp.norm(list((end["omega"][0] - whole["omega"][1]).flat)) <= 1e-13
+    with pytest.raises(ValueError, match="own states at the start of 1 arcs"):
+        arcs(scene, [start], [Fraction(1, 4)], 12, [Fraction(3, 4)])
+
+
+def test_stairs_go_on_beyond_the_scene() -> None:
+    """A motion to twice the end of its scene knows their later stairs: w' = floor(t)."""
+    scene = about_axes("f = { start = 0, rate = 0 }", 'moment = ["floor(t)", 0, 0]', end="2")
+    assert_near(motion(scene, "4"), "omega", 0, [6, 0, 0])
+    assert_near(motion(scene, "-2"), "omega", 0, [3, 0, 0])
 
 
 # Wide boxes, and what is left out of them.

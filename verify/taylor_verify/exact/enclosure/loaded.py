@@ -82,8 +82,8 @@ class LoadedBody:
             start += state.start or (Fraction(0),) * len(state.components)
         return start
 
-    def _begin(self) -> list[arb]:
-        """The start in balls, with the momentum of the rotor."""
+    def _begin(self, time: Fraction) -> list[arb]:
+        """The start in balls, with the momentum of the rotor at an elapsed time."""
         start = balls(self.start)
         box = Box.about(start)
         wheels = Image(
