@@ -148,6 +148,13 @@ def test_a_lag_is_an_exponential() -> None:
             assert_near(got, "omega", row, [t - 1 + mp.exp(-t), 0, 0])
 
 
+def test_a_state_may_begin_to_move_with_any_order() -> None:
+    """i with the third derivative t, from rest, is t^4/24: its first orders are all zero."""
+    states = 'i = { start = 0, rate = "k" }\nk = { start = 0, rate = "w1" }'
+    got = motion(about_axes(states, 'moment = ["t", 0, 0]'), "2")
+    assert_near(got, "i", 0, [Fraction(2, 3)])
+
+
 def test_a_sampled_controller_is_a_recursion() -> None:
     """m = -w every half second halves w each time; a row on an instant is read after it."""
     scene = about_axes('m = { every = "1/2", value = "-w1" }', 'moment = ["m", 0, 0]', "[1, 0, 0]")

@@ -86,9 +86,7 @@ class LoadedBody:
         """The start in balls, with the momentum of the rotor at an elapsed time."""
         start = balls(self.start)
         box = Box.about(start)
-        wheels = Image(
-            self._tapes_at(Fraction(0), is_later=True).wheels, box, Fraction(0)
-        ).outputs()
+        wheels = Image(self._tapes_at(time, is_later=True).wheels, box, time).outputs()
         added = over_box(box, *wheels)
         return [z + h for z, h in zip(start, added, strict=False)] + start[len(added) :]
 
