@@ -107,9 +107,9 @@ class Stepper:
             if around is not None and excess <= 0:
                 way = self._leg(series, frame, around, moving, box)
                 terms, is_flat = bounds.terms(), bool(series.flat)
-                seen = reach if is_flat else self._reach(series)
+                radius = reach if is_flat else self._reach(series)
                 state, step = series.rows, series.step
-                return Step(step, state, around, moving, way, terms, is_flat, seen, image)
+                return Step(step, state, around, moving, way, terms, is_flat, radius, image)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
             frame = scaled(frame, ball(share))
@@ -138,7 +138,8 @@ class Stepper:
         for span in self.system.spans:
             size = _moved_by(rows, span)
             lost = size_of(missed, span)
-            if lost > float("-inf"):
+            # A block that is zero throughout has no last bits.
+            if min(lost, size) > float("-inf"):
                 excess = max(excess, lost - size + ctx.prec - SPARE_BITS)
         return excess
 
