@@ -6,6 +6,7 @@ import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -90,10 +91,11 @@ def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str])
     return path
 
 
+@cache
 def answers(scene: Scene) -> list[End]:
     """The states at ROWS, by an integrator that reads the texts by itself."""
     with mp.workdps(40):
-        return [end_of(scene, time, 20, 4) for time in ROWS]
+        return [end_of(scene, time, 18, 2, columns=10) for time in ROWS]
 
 
 def judged(tmp_path: Path, scene: Scene, names: Sequence[str] = ("m", "i"), **options: Any) -> Any:
