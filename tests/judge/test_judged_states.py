@@ -77,6 +77,12 @@ TWINS: Mapping[str, tuple[Scene, set[str], set[str]]] = {
 }  # fmt: skip
 
 
+SPUN_UP = 'h = { start = [0, 0, 0], rate = ["q1/2 + w1/4", "q2/2 + w2/4", "q3/2 + w3/4"] }'
+WHEELS = satellite(SPUN_UP, 'rotor = ["h1", "h2", "h3"]', ("h",))
+# The gyroscopic term of the wheels, without the reaction of their motors.
+UNMOVED = satellite(SPUN_UP, 'moment = ["h2*w3 - h3*w2", "h3*w1 - h1*w3", "h1*w2 - h2*w1"]', ("h",))
+
+
 def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str]) -> Path:
     """A file of these states, with the columns of some of the scene's own states."""
     assert scene.body.loads is not None
@@ -121,6 +127,19 @@ def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_pat
     passed = {v.quantity for v in answer.verdicts if v.verdict is Status.PASS}
     assert failing <= failed
     assert passing <= passed
+
+
+def test_the_momentum_of_body_and_wheels_is_conserved(tmp_path: Path) -> None:
+    """H = I omega + h stays as it is in space; a program that forgets the reaction of a motor fails it."""
+    right, wrong = (
+        check(WHEELS, written(tmp_path / "run.csv", scene, answers(scene), ("h",)), partial=True)
+        for scene in (WHEELS, UNMOVED)
+    )
+    assert right.passed, str(right)
+    of_right, of_wrong = ({v.quantity: v for v in each.verdicts} for each in (right, wrong))
+    for name in ("H2", "H_space"):
+        assert "polynomial zero" in str(of_right[name].reason)
+        assert of_wrong[name].verdict is Status.FAIL
 
 
 def by_steps(scene: Scene, steps: int) -> list[End]:
