@@ -211,17 +211,17 @@ class PieceReader:
 
     def _since_start(self, table: Table) -> Table:
         loads = self._loads
-        times = [time - loads.origin for time in table.times]
-        if loads.rung is not None:
-            times = [loads.rung.round(time) for time in times]
-            if any(a >= b for a, b in pairwise(times)):
-                raise NoStep(
-                    "knots of a table that differ", f"two that {loads.rung.name} makes one"
-                )
+        times = [self._on_rung(time - loads.origin) for time in table.times]
+        if loads.rung is not None and any(a >= b for a, b in pairwise(times)):
+            raise NoStep("knots of a table that differ", f"two that {loads.rung.name} makes one")
         return replace(table, times=tuple(times))
 
+    def _on_rung(self, time: Fraction) -> Fraction:
+        """A time, rounded once to the rung if there is one, as samples and instants are."""
+        return time if self._loads.rung is None else self._loads.rung.round(time)
+
     def _is_after(self, switch: Fraction) -> bool:
-        self.jumps = True
+        self.jumps, switch = True, self._on_rung(switch)
         if self._is_scan:
             self.switches.add(switch)
             self._check_switches(len(self.switches))
@@ -238,7 +238,7 @@ class PieceReader:
             ends = [slope * time + value for time in (Fraction(0), self._loads.reach)]
             first, last = ceil(min(ends)) - 1, floor(max(ends)) + 1
             self._check_switches(len(self.switches) + last - first + 1)
-            stairs = sorted((k - value) / slope for k in range(first, last + 1))
+            stairs = sorted(self._on_rung((k - value) / slope) for k in range(first, last + 1))
             self.switches.update(stairs)
             self.known.append((stairs[0], stairs[-1]))
         return floor(slope * self._inside + value)
