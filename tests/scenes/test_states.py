@@ -268,7 +268,7 @@ def test_instants_switches_and_knots_at_one_time_stay_at_one_time() -> None:
     [tables]
     p = { times = [0, 0.3], values = [1, 2], kind = "hold" }
     [states]
-    m = { every = "1/10", value = "p + step(t - 0.3)*floor(10*t/3)" }
+    m = { every = "1/10", value = "p + step(t - 0.3)" }
     """
     loads = scene(tables).body.loads
     assert loads is not None
