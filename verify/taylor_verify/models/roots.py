@@ -36,8 +36,8 @@ def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
     equations = form.equations
     if not isinstance(equations, Written):
         return ()
-    found = (_length(equations.steps, step) for step in equations.steps)
-    return tuple(sorted({length.parts for length in found if length is not None}))
+    every = (_length(equations.steps, step) for step in equations.steps)
+    return tuple(sorted({length.parts for length in every if length is not None}))
 
 
 def unsquared(form: Form, zeros: Collection[int] = ()) -> Form:

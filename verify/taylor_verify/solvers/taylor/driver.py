@@ -89,9 +89,9 @@ class Taylor(Solver):
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
         seconds = perf_counter() - ready
         if lengths(problem.form) and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
-            seen = Lengths(problem, rows)
-            if outcome is Outcome.NON_FINITE or seen.are_on_a_line():
-                form = unsquared(problem.form, seen.zeros)
+            vectors = Lengths(problem, rows)
+            if outcome is Outcome.NON_FINITE or vectors.are_on_a_line():
+                form = unsquared(problem.form, vectors.zeros)
                 if form != problem.form:
                     return self._solve(replace(problem, form=form))
                 return refused(f"{self.name} {_NO_LENGTH}")
