@@ -83,7 +83,7 @@ class Taylor(Solver):
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
         way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
-        way = way_of(problem, tolerance, self.is_optimised)
+        way, turned, kinks = way_of(problem, tolerance, self.is_optimised)
         ready = perf_counter()
         is_slow = arithmetic(problem.rung).is_software
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
@@ -95,7 +95,6 @@ class Taylor(Solver):
                 if form != problem.form:
                     return self._solve(replace(problem, form=form))
                 return refused(f"{self.name} {_NO_LENGTH}")
-        turned, kinks = smoothed(problem)
         if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
             return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
         if kinks and outcome is Outcome.STEP_LIMIT:
@@ -196,20 +195,22 @@ def _foreseen(problem: Problem) -> float:
     return Way(integrator, turned, scout).fastest()
 
 
-def _way(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> Way:
-    """Return the way of a problem; the tolerance is a quotient, which is found sooner than a Fraction."""
+def _way(
+    problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool
+) -> tuple[Way, Problem, tuple[Kink, ...]]:
+    """Return the way of a problem, the problem without kinks that it goes, and these kinks.
+
+    The tolerance is a quotient, which is looked up sooner than a Fraction.
+    """
     turned, kinks = smoothed(problem)
-    return Way(
-        compiled(
-            turned.form,
-            problem.rung,
-            None if tolerance is None else Fraction(*tolerance),
-            is_optimised or pays(turned.form, problem.rung, problem),
-            kinks=kinks,
-        ),
-        turned,
-        problem,
+    integrator = compiled(
+        turned.form,
+        problem.rung,
+        None if tolerance is None else Fraction(*tolerance),
+        is_optimised or pays(turned.form, problem.rung, problem),
+        kinks=kinks,
     )
+    return Way(integrator, turned, problem), turned, kinks
 
 
 _kept_way = lru_cache(maxsize=_MOST_WAYS)(_way)
