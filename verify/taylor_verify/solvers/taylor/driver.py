@@ -23,7 +23,7 @@ import numpy as np
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.roots import lengths, unsquared
+from taylor_verify.models.roots import lengths, radicands, unsquared
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.pieces import piece_by_piece
@@ -95,6 +95,8 @@ class Taylor(Solver):
                 if form != problem.form:
                     return self._solve(replace(problem, form=form))
                 return refused(f"{self.name} {_NO_LENGTH}")
+        if outcome is Outcome.INTERRUPTED and radicands(turned.form):
+            return refused(f"{self.name} {_NO_LENGTH}")
         if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
             return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
         if kinks and outcome is Outcome.STEP_LIMIT:
@@ -151,8 +153,8 @@ def compiled(
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
-    if kinks:
-        options["t_events"] = crossings(form, kinks, coefficients, rung)
+    if events := crossings(form, kinks, coefficients, rung):
+        options["t_events"] = events
     return stored(hy.taylor_adaptive, system, **options)
 
 
