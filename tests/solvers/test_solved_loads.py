@@ -123,6 +123,15 @@ def test_odefun_goes_from_switch_to_switch(scene: str) -> None:
     assert error(SMOOTH[scene], "mpmath:odefun", "f64") < 1e-13
 
 
+@pytest.mark.parametrize("scene", ["sine", "gradient", "thrusters", "backwards"])
+def test_a_splitting_with_kicks_has_order_two(scene: str) -> None:
+    """With a full tensor, loads of time, attitude and omega, and switches that no step goes over."""
+    errors = [
+        error(SMOOTH[scene], f"geometric:splitting?step={h}", "f64") for h in ("1/32", "1/64")
+    ]
+    assert 3.8 < errors[0] / errors[1] < 4.2
+
+
 # A body that turns about one axis alone.
 SWING = """
 title = "A swing about one axis"
@@ -180,7 +189,7 @@ def test_a_length_that_may_vanish_is_refused(name: str) -> None:
 
 # Who takes none.
 
-TAKING = ("taylor", "scipy", "mpmath", "fmu")
+TAKING = ("taylor", "scipy", "mpmath", "fmu", "geometric:splitting")
 
 
 @pytest.mark.parametrize(
