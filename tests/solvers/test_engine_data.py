@@ -22,7 +22,6 @@ from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, Outside, solve
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
-from taylor_verify.tradeoff.accuracy import Truths
 
 # RK4 in doubles, on I and omega as the question has them: its own error is beyond float32.
 TWIN = """\
@@ -95,7 +94,6 @@ PUSHED = (
     .replace("answer(solve)", "answer(solve, pushed_body)")
 )
 FLOAT32 = 2.0**-24
-F32 = rung("f32")
 
 
 # An engine that remembers what it was asked before, in its process, and dies of a negative omega.
@@ -170,7 +168,7 @@ def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = T
 
 
 def judged(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch) -> Judgement:
-    return run(scene(), twin(folder, data, monkeypatch), "f32")
+    return run(scene(), twin(folder, data, monkeypatch), "f32", causes=False)
 
 
 def scene() -> Scene:
@@ -198,26 +196,12 @@ def test_the_same_engine_on_the_other_data_has_their_rounding_for_an_error(
     assert errors(judged(tmp_path, "", monkeypatch))["omega"] >= FLOAT32 / 4
 
 
-def test_truths_tell_the_data_of_two_solvers_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A table of solvers that take other data of one scene compares each with the motion of its own."""
-    solver, truths = twin(tmp_path, 'data = "tensor"', monkeypatch), Truths()
-    on_tensor, on_inverse = solver.problem(scene(), F32), pose(scene(), F32)
-    trajectory = solver.solve(on_tensor)
-    other, own = (truths.accuracy(problem, trajectory) for problem in (on_inverse, on_tensor))
-    assert other is not None
-    assert own is not None
-    assert other.max["omega"] >= FLOAT32 / 4
-    assert own.max["omega"] <= FLOAT32 / 10
-
-
 @pytest.mark.parametrize("name", ["euler/constant-moment", "euler/gyrostat", "euler/damped"])
 def test_an_engine_for_free_bodies_is_not_asked_for_others(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a moment, wheels or damping an engine of `loads = false` is unavailable: it has not failed."""
-    judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32")
+    judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32", causes=False)
     assert {str(v.verdict) for v in judgement.verdicts} == {"unavailable"}
     assert "free bodies without wheels" in str(judgement.verdicts[0].reason)
 

@@ -152,24 +152,6 @@ def test_rodrigues_parameters_are_the_attitude(
     assert abs(abs(back @ attitude) - 1) <= 4 * 2**-53
 
 
-def test_a_step_of_basilisk_is_whole_nanoseconds(sibling: Callable[[str], Any]) -> None:
-    """A decimal step is counted in nanoseconds, and one between two of them is refused."""
-    basilisk = sibling("with_basilisk")
-    assert basilisk.nanoseconds(0.003) == 3_000_000
-    for step in (1 / 3, 4e-10):
-        with pytest.raises(SystemExit, match="expected a step of whole nanoseconds"):
-            basilisk.nanoseconds(step)
-
-
-def test_explicit_methods_of_exudyn_take_no_constraint(sibling: Callable[[str], Any]) -> None:
-    """Euler parameters with an explicit method are refused before anything is loaded."""
-    settings = sibling("free_body").Settings(
-        coordinates="EulerParameters", integrator="RK44", step=0.1
-    )
-    with pytest.raises(SystemExit, match="got RK44 @ integrator"):
-        sibling("with_exudyn").solve(None, settings)
-
-
 NOISY = """
 import json, os, sys
 sys.path.insert(0, {folder!r})

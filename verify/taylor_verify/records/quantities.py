@@ -177,13 +177,15 @@ CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
     each.name: each
     for each in (
         Conserved("T", is_positive=True),
+        Conserved("T+V", ("attitude", "centre")),
         Conserved("H2", is_positive=True),
-        Conserved("H_space", ("attitude",)),
+        Conserved("H_axis"),
+        *(Conserved(name, ("attitude",)) for name in ("H_space", "H_along")),
         Conserved("F2", is_positive=True),
         *map(Conserved, ("FG", "y1", "y2", "y3", "y_axis")),
         *map(Conserved, ("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov")),
-        Conserved("x_space", ("attitude",)),
-        Conserved("y_space", ("attitude", "centre")),
+        *(Conserved(name, ("attitude",)) for name in ("x_space", "x_along")),
+        *(Conserved(name, ("attitude", "centre")) for name in ("y_space", "y_along")),
     )
 }
 # Keys of documents that stand beside quantities.

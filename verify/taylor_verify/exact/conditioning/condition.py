@@ -26,7 +26,7 @@ import numpy as np
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
-from taylor_verify.exact.conditioning.loaded import between, enclosed, frame
+from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, samples_and_between
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
@@ -224,16 +224,18 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
 
 
-def path(scene: Scene) -> Path:
+def path(scene: Scene, digits: int = DIGITS) -> Path:
     """The orbit of a scene at as many times as it takes; some or all samples are among them.
+
+    ``digits`` are those of a motion that comes with its derivative.
 
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
     _refuse_far_decay(scene, elapsed)
     if scene.body.loads is not None:
-        points = between(elapsed)
-        return Path(scene, flow, points, enclosed(scene, flow, points))
+        times = samples_and_between(elapsed)
+        return Path(scene, flow, times, enclosed(scene, flow, times, digits))
     coarse = _along(scene, flow, few(elapsed))
     if coarse.is_regular:
         return coarse

@@ -7,36 +7,39 @@ R = R_0 R(e). A turn theta of the frame, in space axes, changes e by (0, R_0^T t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Final
+from functools import cached_property, lru_cache
+from typing import Final, final
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, arb_mat
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import ball, balls, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import LoadedBody
-from taylor_verify.exact.enclosure.stopping import Coarse
-from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
-from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
+from taylor_verify.exact.taylor import Enclosing, Times
 from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.instants import chosen
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# Derivatives are wanted to their leading digits, along a motion right to about float64.
-_BITS: Final = 96
-_MOST_BITS: Final = 4000
-_ATTEMPTS: Final = 6
-# As many samples as this, and as many times between them, which share no rhythm with the samples.
+# As many times between the samples as this, which share no rhythm with them.
 _POINTS: Final = 400
 _GOLDEN: Final = Fraction(0.6180339887498949)
+# Up to this many samples the motion and its derivative come from one run.
+_MOST_SAMPLES: Final = 2000
+# Digits where the derivative alone is wanted.
+DIGITS: Final = 15
 
 
 def frame(scene: Scene) -> frozenset[str]:
@@ -47,68 +50,147 @@ def frame(scene: Scene) -> frozenset[str]:
     return frozenset(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
-def between(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Return samples and the times between them, sorted away from the start."""
+def samples_and_between(elapsed: Sequence[Fraction]) -> list[Fraction]:
+    """Return samples, all of them unless they are many, and times between, sorted away from the start."""
     shares = ((k + k * _GOLDEN % 1) / _POINTS for k in range(_POINTS))
-    points = {Fraction(0), *chosen(elapsed, _POINTS), *(elapsed[-1] * share for share in shares)}
-    return sorted(points, key=abs)
+    samples = elapsed if len(elapsed) <= _MOST_SAMPLES else chosen(elapsed, _POINTS)
+    return sorted({Fraction(0), *samples, *(elapsed[-1] * share for share in shares)}, key=abs)
 
 
-def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction]) -> Steps:
+def truth(scene: Scene, digits: int) -> Solution:
+    """Return the exact solution; under written loads that which comes with the derivative of its motion."""
+    if scene.body.loads is None or len(scene.clock.elapsed) > _MOST_SAMPLES:
+        return solution(scene)
+    return Linearised(scene, digits)
+
+
+def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
     """Return the derivative of the motion between these times, the first of which is the start.
 
     Raises Unsettled where the motion is not reached.
     """
-    assert scene.body.loads is not None
-    system = LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
-    bits = _BITS
-    for _ in range(_ATTEMPTS):
-        try:
-            with ctx.workprec(bits):
-                return _steps(scene, flow, system, elapsed, bits)
-        except Coarse as reason:
-            if reason.bits > _MOST_BITS or reason.stuck is not None:
-                raise Unsettled(reason.because or _LOST) from reason
-            bits = max(reason.bits, bits * 5 // 4)
-    raise Unsettled(_LOST)
+    return _run(scene, tuple(elapsed), digits).steps(flow)
 
 
-_LOST: Final = "the derivative of the motion is not reached"
+@final
+@dataclass(frozen=True)
+class Linearised(Solution):
+    """The motion of a scene at its own samples from the run that gives its derivative, to ``digits``."""
+
+    scene: Scene
+    digits: int
+
+    route = "taylor"
+    regime = NO_CLOSED_FORM
+
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        samples = self.scene.clock.elapsed
+        if elapsed != samples or digits > self.digits:
+            return solution(self.scene).motion(elapsed, digits)
+        motion = _run(self.scene, self._times, self.digits).whole
+        return motion.at([self._places[time] for time in elapsed])
+
+    def derivatives(
+        self, flow: Flow, begins: Sequence[Fraction], ends: Sequence[Fraction]
+    ) -> Floats:
+        """Return the derivative of the motion over arcs between samples, or from the start."""
+        steps = enclosed(self.scene, flow, self._times, self.digits).steps
+        places = ((self._places[a], self._places[b]) for a, b in zip(begins, ends, strict=True))
+        return np.array([products(steps[a:b])[-1] for a, b in places])
+
+    @cached_property
+    def _times(self) -> tuple[Fraction, ...]:
+        return tuple(samples_and_between(self.scene.clock.elapsed))
+
+    @cached_property
+    def _places(self) -> Mapping[Fraction, int]:
+        return {time: k for k, time in enumerate(self._times)}
 
 
-def _steps(
-    scene: Scene, flow: Flow, system: System, elapsed: Sequence[Fraction], bits: int
-) -> Steps:
-    widths = _widths(system, bits)
-    start = [ball(z) + arb(0, w) for z, w in zip(system.start, widths, strict=True)]
-    course = Course.of(system, start, None, bits, _MOST_BITS)
-    course = replace(course, differentiates=True, begin=scene.clock.start)
-    later = [time for time in elapsed if time]
-    rows = [course.first_row(), *(row for _, row in course.rows(later))] if later else []
-    rows = rows or [course.first_row()]
-    frame = _Frame(scene, flow)
-    states = np.array([[float(midpoint(entry)) for entry in row.state] for row in rows])
-    matrices = [
-        frame.counted(states[k - 1], states[k], _floats(rows[k])) for k in range(1, len(rows))
-    ]
-    steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
-    momentum, centre, attitude = frame.path(states)
-    return Steps(steps, products(steps), momentum, centre, attitude)
+@lru_cache(maxsize=4)
+def _run(scene: Scene, elapsed: tuple[Fraction, ...], digits: int) -> _Run:
+    return _Run(scene, elapsed, digits)
 
 
-def _widths(system: System, bits: int) -> list[arb]:
-    """Return a small width for each component of the start: no derivative is made of an exact state."""
-    widths: list[arb] = []
-    for span in system.spans:
-        size = max(abs(system.start[i]) for i in span)
-        unit = power_of_two((floor_log2(size) if size else 0) - bits + 8)
-        widths += [ball(unit).upper()] * len(span)
-    return widths
+@final
+@dataclass(frozen=True)
+class _Run(Enclosing):
+    """The motion and its derivative at some times, from one run of the enclosure."""
+
+    elapsed: tuple[Fraction, ...]
+    digits: int
+    states: list[Floats] = field(default_factory=list)
+    derivatives: list[Floats] = field(default_factory=list)
+
+    @cached_property
+    def whole(self) -> Motion:
+        """The motion at all times."""
+        return self.motion(self.elapsed, self.digits)
+
+    def steps(self, flow: Flow) -> Steps:
+        """The derivative between the times, in the units of a flow."""
+        _ = self.whole
+        frame, states = _Frame(self.scene, flow), np.array(self.states)
+        matrices = [
+            frame.counted(states[k - 1], states[k], derivative)
+            for k, derivative in enumerate(self.derivatives, start=1)
+        ]
+        steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
+        return Steps(steps, products(steps), *frame.path(states))
+
+    def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
+        """The row for the place of each time; the course meets all times, whichever are asked for."""
+        self.states.clear()
+        self.derivatives.clear()
+        for place, row in enumerate(self._course(bits, most_bits)):
+            self.states.append(np.array([float(midpoint(entry)) for entry in row.state]))
+            if row.since is not None:
+                self.derivatives.append(_floats(row.since))
+            if place in times:
+                yield place, self._in_space(row)
+            if not any(times.values()):
+                # The start belongs to both directions of time.
+                return
+
+    def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
+        scene = self.scene
+        assert scene.body.loads is not None
+        system = LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
+        course = Course.of(system, _widened(system.start, bits), None, bits, most_bits)
+        course = replace(course, differentiates=True, begin=scene.clock.start)
+        yield replace(course, start=balls(system.start)).first_row()
+        if later := self.elapsed[1:]:
+            yield from (row for _, row in course.rows(later))
+
+    def _in_space(self, row: Row) -> Row:
+        """The row with the frame that its state has."""
+        initial, track = self.scene.initial, self.scene.track
+        d, has_centre = len(initial.moving), "centre" in track
+        if not track:
+            return replace(row, state=row.state[:d])
+        start, turned = rotation_matrix(initial.attitude), rotation_rows(row.state[d : d + 4])
+        turn = [
+            sum((ball(start[i][k]) * turned[k][j] for k in range(3)), arb(0))
+            for i in range(3)
+            for j in range(3)
+        ]
+        largest = (*row.largest[: d // 3], row.largest[-2])
+        return Row(row.state[:d], turn, row.state[d + 4 :] if has_centre else None, largest)
 
 
-def _floats(row: Row) -> Floats:
-    assert row.since is not None
-    return np.array([[float(midpoint(entry)) for entry in line] for line in row.since.tolist()])
+def _widened(start: Vector, bits: int) -> list[arb]:
+    """Return the start with a small width: no derivative is made of an exact state.
+
+    The largest component has it, so that a vector which is zero stays zero.
+    """
+    widened, k = balls(start), max(range(len(start)), key=lambda i: abs(start[i]))
+    unit = power_of_two((floor_log2(start[k]) if start[k] else 0) - bits)
+    widened[k] += arb(0, ball(unit).upper())
+    return widened
+
+
+def _floats(derivative: arb_mat) -> Floats:
+    return np.array([[float(midpoint(entry)) for entry in line] for line in derivative.tolist()])
 
 
 class _Frame:

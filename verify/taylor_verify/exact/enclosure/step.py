@@ -133,7 +133,7 @@ class Stepper:
 
     def _excess(self, series: Series, around: Tube) -> float:
         """The bits by which what is left out of the series exceeds some last bits of the state."""
-        rows, missed = series.rows[:3], around.truncation.entries()
+        rows, missed = series.rows, around.truncation.entries()
         excess = float("-inf")
         for span in self.system.spans:
             size = max(size_of(row, span) for row in rows)
@@ -258,7 +258,7 @@ class Stepper:
         factors = [float("inf")]
         for span in spans:
             # The size of the block, or of its first change.
-            sizes = (size_of(row, span) for row in rows[:3])
+            sizes = (size_of(row, span) for row in rows)
             size = next((size for size in sizes if size > float("-inf")), float("-inf"))
             factors.append(_growing(rows, span, size))
         return min(factors)

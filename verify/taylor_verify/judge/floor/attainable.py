@@ -16,7 +16,7 @@ such a run counts as 2k - 1 steps, so that k steps count as k^2 (judge.floor.rep
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -26,10 +26,11 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.conditioning.condition import DIGITS, Path, path, transition
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.judge.velocities import velocity_forms
@@ -103,10 +104,34 @@ class Floor:
 
         The motion ``at_nodes`` is in numbers of MPFR.
         """
-        nodes, scene = self.nodes, self.orbit.scene
-        elapsed = [scene.clock.elapsed[k] for k in nodes]
+        nodes = self.nodes
         ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            squares = self._squares(block, not invariant.is_conserved)
+            rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
+            injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
+        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
+        return larger_neighbour(drift, self.times[nodes], self.times)
+
+    def of_values(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
+        """Return the attainable error of the value of an invariant, over the ``scale`` of it.
+
+        The errors of the state reach it; the motion ``at_nodes`` is in numbers of MPFR.
+        """
+        times, squares = self.times[self.nodes], np.zeros(len(self.nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            carried = larger_neighbour(self.carried[block], self._path_times, times)
+            squares += (np.linalg.norm(relative, axis=1) * carried) ** 2
+        error: Floats = self.unit_roundoff * np.sqrt(squares)
+        return larger_neighbour(error, times, self.times)
+
+    def _relative(
+        self, invariant: Invariant, at_nodes: Motion, scale: Any
+    ) -> Iterator[tuple[str, Floats]]:
+        """Yield the gradient of an invariant at the nodes by each block in its unit, over the scale."""
+        scene = self.orbit.scene
+        elapsed = [scene.clock.elapsed[k] for k in self.nodes]
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
             gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
@@ -114,11 +139,7 @@ class Floor:
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before conversion to float: the square of a small motion would underflow.
                 relative = (gradient * unit / whole).astype(float)
-                rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
-                shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
-                injected += np.sum(shares * rounded, axis=1)
-        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
-        return larger_neighbour(drift, self.times[nodes], self.times)
+                yield block, relative.reshape(len(self.nodes), -1)
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
@@ -170,8 +191,11 @@ class Floor:
         )
         return max(1, round(float(np.max(both[single > 0] / single[single > 0], initial=1.0))))
 
-    def _squares(self, block: str) -> Floats:
-        """Return the sums of squared roundings of a block over the steps so far, by component."""
+    def _squares(self, block: str, has_arcs: bool) -> Floats:
+        """Return the sums of squared roundings of a block over the steps so far, by component.
+
+        With arcs a balance adds what the rounded samples at their beginnings make.
+        """
         first = 3 * self.orbit.blocks.index(block)
         rows = self.rounded[:, first : first + 3]
         factors = growths(self.orbit.scene, self.orbit.elapsed)
@@ -179,7 +203,8 @@ class Floor:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
         squares = self.steps_at[:, None] * rows**2
-        if block in self.orbit.flow.momenta and self.orbit.scene.body.loads is not None:
+        has_loads = self.orbit.scene.body.loads is not None
+        if has_arcs and has_loads and block in self.orbit.flow.momenta:
             squares = squares + self._by_arcs[:, first : first + 3]
         return np.cumsum(squares, axis=0)
 
@@ -228,19 +253,19 @@ def floor(
     With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
 
     The condition of the orbit is computed once for all rungs, from the scene ``asked``. Only if the
-    rounding of the data moves the orbit too much is it computed from the rounded scene.
+    rounding of the data moves the orbit too much, or where it comes with the exact motion, is it computed
+    from the rounded scene.
     """
     # Every row has at least one rounding.
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
-    for conditioned in (asked, given):
-        orbit = orbit_of(conditioned)
+    for orbit in _orbits(given, asked, bits):
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
-            times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+            times=np.array([abs(float(t)) for t in orbit.scene.clock.elapsed]),
             orbit=orbit,
             steps_at=steps_at,
             rounded=rounded,
@@ -253,18 +278,32 @@ def floor(
     return result
 
 
+def _orbits(given: Scene, asked: Scene, bits: int) -> Iterator[Path]:
+    yield orbit_of_run(given, asked, bits)
+    if given.body.loads is None:
+        yield orbit_of(given)
+
+
+def orbit_of_run(given: Scene, asked: Scene, bits: int) -> Path:
+    """Return the orbit of a run on a rung of ``bits`` bits, of the rounded scene ``given``.
+
+    Under written loads it comes with the exact motion of this scene. Elsewhere it is that of the scene
+    ``asked``, which all rungs share.
+    """
+    return orbit_of(asked) if given.body.loads is None else orbit_of(given, truth_digits(bits))
+
+
 @lru_cache(maxsize=32)
-def orbit_of(scene: Scene) -> Path:
+def orbit_of(scene: Scene, digits: int = DIGITS) -> Path:
     """Return the orbit of a scene and its condition, computed once for all that ask."""
-    return path(scene)
+    return path(scene, digits)
 
 
-def radians(scene: Scene) -> float:
+def radians(orbit: Path) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
-    orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
-    if scene.body.loads is not None and len(times) > 1:
+    if orbit.scene.body.loads is not None and len(times) > 1:
         # What the loads do to the momenta, over their largest size.
         size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
         pushed = np.linalg.norm(np.gradient(orbit.momentum, times, axis=0), axis=1) / size
@@ -272,10 +311,10 @@ def radians(scene: Scene) -> float:
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 
-def looked_at(scene: Scene) -> list[int]:
+def looked_at(orbit: Path) -> list[int]:
     """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
-    points = set(orbit_of(scene).elapsed)
-    return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
+    points = set(orbit.elapsed)
+    return [k for k, t in enumerate(orbit.scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)

@@ -100,15 +100,20 @@ class Along:
 
     def pieces(self) -> Iterator[Piece]:
         """Yield the loads piece by piece."""
+        for piece, places in self._groups:
+            inputs = {name: rows[places] for name, rows in self._inputs.items()}
+            values = _values(piece.steps, inputs, len(places))
+            yield Piece(places, piece.steps, piece.outputs, values)
+
+    @cached_property
+    def _groups(self) -> Sequence[tuple[Steps, list[int]]]:
+        """The pieces of time, each with the places of its times."""
         elapsed, groups = self.path.elapsed, dict[int, tuple[Steps, list[int]]]()
         is_later = elapsed[-1] >= 0
         for k, time in enumerate(elapsed):
             piece = self.loads.piece(time, is_later)
             groups.setdefault(id(piece), (piece, []))[1].append(k)
-        for piece, places in groups.values():
-            inputs = {name: rows[places] for name, rows in self._inputs.items()}
-            values = _values(piece.steps, inputs, len(places))
-            yield Piece(places, piece.steps, piece.outputs, values)
+        return list(groups.values())
 
     def forces(self, body: Body | None = None) -> Floats:
         """Return the loads at every time; those at another body's velocities with the same state."""
