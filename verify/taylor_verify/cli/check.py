@@ -111,7 +111,7 @@ def _asked(
     scene = attempt(read_scene, options.scene)
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
-    files = [attempt(lambda name: read(name, request(columns)), name) for name in names]
+    files = [attempt(lambda name: read(name, request(columns), scene), name) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
     return scene, files, steps
