@@ -95,9 +95,7 @@ def enclosed(scene: Scene) -> Solution:
         )
         return carried(TurningBody(turn), _spinning(scene, top), top.regime.value)
     start, back = _in_axes(scene, top)
-    return carried(
-        NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value
-    )
+    return carried(NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value)
 
 
 def closed_form(scene: Scene) -> Solution:
@@ -108,9 +106,7 @@ def closed_form(scene: Scene) -> Solution:
     if top.kind != _ELLIPTIC:
         raise NoClosedForm(f"in mpmath, the regime {top.regime}: its routes are arb and taylor")
     start, back = _in_axes(scene, top)
-    return carried(
-        NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value
-    )
+    return carried(NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value)
 
 
 def top_of(scene: Scene) -> Top:

@@ -61,9 +61,7 @@ class Nutation:
             F2=nu * dot(x, x),
             FG=nu * dot(x, y),
             y3=y3,
-            m1=body.r * (nu * dot(y, y) - y3**2)
-            - linear * z**2
-            - 2 * (screw * y3 - weight) * z,
+            m1=body.r * (nu * dot(y, y) - y3**2) - linear * z**2 - 2 * (screw * y3 - weight) * z,
             axes=axes,
             weight=weight,
         )
