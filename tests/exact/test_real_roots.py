@@ -74,15 +74,6 @@ def test_any_rational_roots_are_enclosed(roots: set[Fraction]) -> None:
         assert all(holds(*both) for both in zip(enclosed, sorted(roots), strict=True))
 
 
-def test_an_irrational_root_is_enclosed() -> None:
-    """x^4 - x^2 - 2 has the real roots of x^2 = 2 alone."""
-    with ctx.workprec(BITS):
-        low, high = real_roots(fmpq_poly([-2, 0, -1, 0, 1]))
-        for root in (-low, high):
-            assert root.overlaps(arb(2).sqrt())
-            assert root.rad() <= arb(2) ** (LOST_BITS - BITS)
-
-
 def turned(values: Sequence[Fraction]) -> Matrix:
     """A full symmetric matrix with these eigenvalues: Q diag Q^T with a rational rotation Q."""
     rows = (-5, 10, 10), (14, 5, 2), (-2, 10, -11)

@@ -24,11 +24,8 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.documents import document as document_of
-from taylor_verify_reports.studies.documents import documents
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import DIGITS, reference
-
-ROOT = Path(__file__).resolve().parents[2]
 
 # A second or less each; with attitude, centre and a full tensor among them.
 CHEAP = (
@@ -251,21 +248,6 @@ def test_the_verb_writes_the_folder(
     assert contents(folder)["euler-generic.csv"] == file("euler/generic", "csv").read_bytes()
 
 
-def test_a_scene_that_is_gone_loses_its_csv_without_its_json(tmp_path: Path) -> None:
-    """A clone has the CSV alone: the page says which of them are ours. Somebody's own stays."""
-    rest, removed = (
-        reference(load("euler/rest")),
-        {**reference(load("euler/rest")), "scene": "euler/x"},
-    )
-    for path in reference_files.write(tmp_path, [rest, removed]):
-        if path.suffix == ".json":
-            path.unlink()
-    mine = tmp_path / "reference" / "mine.csv"
-    mine.write_text("t\n", encoding="utf-8")
-    written = reference_files.write(tmp_path, [rest])
-    assert {*written, mine} == set((tmp_path / "reference").iterdir())
-
-
 @pytest.mark.parametrize(
     ("error", "text"),
     [(Unsettled("two evaluations do not agree"), r"euler/rest: two evaluations do not agree$"),
@@ -281,15 +263,6 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
         document_of(broken, "euler/rest")
 
 
-def test_documents_come_in_the_order_asked_for() -> None:
-    """Documents keep the order of the request, and each is reported once."""
-    asked, finished = ["euler/rest", "euler/nesc-brick", "euler/generic"], []
-    made = documents(reference, asked, finished.append)
-    assert [each["scene"] for each in made] == asked
-    assert sorted(finished) == sorted(asked)
-    assert made[2] == reference(load("euler/generic"))
-
-
 # Read.
 
 
@@ -300,7 +273,7 @@ def test_the_page_names_every_file() -> None:
     assert "{{" not in text
     links = set(re.findall(r"\]\(([^)]+)\)", text))
     committed = {path.name for path in folder().iterdir() if path.suffix != ".json"}
-    assert links == committed - {"README.md"} | {"../tables/accuracy.csv"}
+    assert links == committed - {"README.md"} | {"../tables/accuracy.md"}
     for name in reference_files.EXAMPLES:
         assert (folder() / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
 

@@ -41,8 +41,8 @@ def document(
     An entry has the digits that its own error bound proves, and is "0" where it proves none; ``absolute``
     bounds the entries of a quantity that are zero for that reason. ``radius`` bounds the error of every
     vector by its norm, the rounding of the printed digits included, except those that are zero throughout,
-    and that of an own state by the largest norm that it has had. The row at the start is the initial state itself. If some times are not reached, ``because``
-    says why, and ``rows`` has the other times.
+    and that of an own state by the largest norm that it has had. The row at the start is the initial state
+    itself. If some times are not reached, ``because`` says why, and ``rows`` has the other times.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None

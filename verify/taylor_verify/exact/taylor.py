@@ -64,7 +64,7 @@ class _Proven:
 
 
 @dataclass(frozen=True)
-class _Enclosing(Solution):
+class Enclosing(Solution):
     """Motions in balls, at whatever precision makes them narrow enough."""
 
     scene: Scene
@@ -211,7 +211,7 @@ class _Enclosing(Solution):
 
 @final
 @dataclass(frozen=True)
-class TaylorSolution(_Enclosing):
+class TaylorSolution(Enclosing):
     """The motion of any scene, free or loaded, in balls that are proven to contain it."""
 
     most_steps: int = MOST_STEPS
@@ -259,7 +259,7 @@ def arcs(
 
 @final
 @dataclass(frozen=True)
-class _Arcs(_Enclosing):
+class _Arcs(Enclosing):
     """Many short motions of one body, each from a state of its own, and by the clock from its time."""
 
     starts: tuple[State, ...]

@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.conditioning.loaded import truth
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.balances import clock_work
@@ -145,7 +145,7 @@ def gates_of(
     roundoff, velocities = rung.unit_roundoff, solver.carries_velocities
     with mp.workprec(bits), costs.of(CONDITION):
         base = floor(problem.given, problem.scene, roundoff, steps.counted, velocities)
-    answer, exact = run.trajectory.quantities, solution(problem.given)
+    answer, exact = run.trajectory.quantities, truth(problem.given, digits)
     compared = Comparison(problem.given, exact, answer, digits, bits)
     measured = compared.measured(base.nodes, costs)
     with mp.workprec(bits):
@@ -181,15 +181,18 @@ class _Gates:
         count, times = max(self.steps.counted, len(self.floor.times)), self.floor.times
         for invariant, errors in self.measured.drifts:
             (scale,) = errors.parts.values()
-            attainable, clock = (
-                self.floor.of_gradients(invariant, at_nodes, scale),
-                work.get(invariant.name),
-            )
+            if invariant.name in self.measured.worked:
+                attainable = self.floor.of_values(invariant, at_nodes, scale)
+                terms = self._terms(errors, attainable, Carried.WORK)
+                yield Gate(self.run, errors, attainable, terms)
+                continue
+            attainable = self.floor.of_gradients(invariant, at_nodes, scale)
+            clock = work.get(invariant.name)
             if clock is not None:
                 drift = clock.drift(roundoff, count, times, scale)
                 attainable = np.hypot(attainable, drift)
             terms = self._terms(errors, attainable, Carried.GRADIENT, clock is not None)
-            yield Gate(self.run, errors, attainable, terms)
+            yield Gate(self.run, errors, attainable, replace(terms, conserved=invariant.because))
 
     def unit_quaternion(self) -> Iterator[Gate]:
         """Yield the gate of quaternions that are not of unit length; none if they are, to roundoff.

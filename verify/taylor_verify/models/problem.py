@@ -14,10 +14,13 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
-from taylor_verify.models import manufactured, written
+from mpmath import mp
+
+from taylor_verify.models import manufactured, own, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
-from taylor_verify.models.form import Equations, Form
+from taylor_verify.models.evaluated import evaluated, wheels
+from taylor_verify.models.form import Equations, Form, Named
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
@@ -25,11 +28,12 @@ from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import Rung, floor_log2
+from taylor_verify.numbers.precision import Rung, exact_value, floor_log2, held_exactly
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
-from taylor_verify.scenes.loads.loads import Loads, Piece
+from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
+from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
@@ -53,7 +57,8 @@ class Problem:
     centre if they are tracked. ``replaced`` are coefficients of the body that the equations replace by
     others. ``because`` says which equations were chosen, and why. Under loads that a scene writes down the
     form is that of one piece of time, the first unless ``pieces`` made the problem; ``begin`` is where it
-    starts, elapsed and in ``units``.
+    starts, elapsed and in ``units``. ``held`` are the held values of the scene's own states before the
+    first instant, in the scene's units.
     """
 
     scene: Scene
@@ -67,6 +72,7 @@ class Problem:
     replaced: tuple[tuple[str, Fraction], ...] = ()
     because: tuple[str, ...] = ()
     begin: Fraction = Fraction(0)
+    held: Vector = ()
 
     @property
     def initial(self) -> NoReturn:
@@ -95,21 +101,54 @@ class Problem:
         loads = self.given.body.loads
         return () if loads is None else loads.switches
 
-    def loads(self, t: Any, state: Any) -> Any:
+    @property
+    def instants(self) -> Sequence[Fraction]:
+        """The elapsed times at which held states take their values, sorted, both ends included."""
+        return [instant.time for instant in self.takings]
+
+    @property
+    def held_names(self) -> tuple[str, ...]:
+        """The names in the form of all held values."""
+        loads = self.given.body.loads
+        return () if loads is None else tuple(own.HELD + name for name in loads.held_values)
+
+    @cached_property
+    def takings(self) -> Sequence[Instant]:
+        """The instants, each with what is taken there."""
+        loads, clock = self.given.body.loads, self.given.clock
+        return () if loads is None else loads.instants(clock.elapsed[-1])
+
+    def loads(self, t: Any, state: Any, held: Any = None) -> Any:
         """Return the loads that the scene writes down: the moment, or force and couple, body axes.
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
-        centre where a load reads them, all in the scene's units. Arrays may have more axes in front.
-        Raises ValueError where the scene writes no loads.
+        centre where they are tracked or a load reads them; then the scene's own continuous states. ``held``
+        are all held values. Both are in the scene's order and units. Arrays may have more axes in front.
+        Raises ValueError where the scene writes no loads, and for a state or held values too short.
         """
-        if self._acting is None:
-            raise ValueError("expected a scene that writes loads down, got constant ones or none")
-        return self._acting(t, state)
+        return self._acting.loads(t, state, held)
+
+    def rotor(self, t: Any, state: Any) -> Any:
+        """Return the momentum of the wheels that a text writes, body axes; arguments as in `loads`."""
+        return self._acting.rotor(t, state)
+
+    def rates(self, t: Any, state: Any, held: Any = None) -> Any:
+        """Return the rates of the scene's own continuous states; arguments as in `loads`."""
+        return self._acting.rates(t, state, held)
+
+    def taken(self, k: int, state: Any, held: Any) -> Any:
+        """Return all held values after instant k, of a state and the held values before it.
+
+        All that are taken at one instant read what was before it.
+        """
+        return self._acting.taken(self.takings[k], state, held)
 
     @cached_property
-    def _acting(self) -> Acting | None:
+    def _acting(self) -> Acting:
         loads = self.given.body.loads
-        return None if loads is None else Acting(self.given, loads)
+        if loads is None:
+            raise ValueError("expected a scene that writes loads down, got constant ones or none")
+        return Acting(self.given, loads)
 
     def with_equations(self, equations: Equations) -> Problem:
         """Return the same data with other equations in the same states, for the negative controls."""
@@ -126,7 +165,6 @@ def pose(scene: Scene, rung: Rung) -> Problem:
 
     Raises NotRepresentable if the rounded data are no valid body or sample times coincide.
     """
-    _check_states(scene)
     units = natural_units(scene)
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
@@ -155,12 +193,6 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     return _with_loads(posed, data, loads)
 
 
-def _check_states(scene: Scene) -> None:
-    loads = scene.body.loads
-    if loads is not None and (loads.states or loads.rotor):
-        raise NotRepresentable("no solver has states of a scene's own, or a rotor as text")
-
-
 def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
     """Return the loads that a scene writes down, every number of them rounded once to the rung."""
     if scene.body.loads is None:
@@ -182,12 +214,14 @@ def _framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
 
 def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
     """Return the problem under the loads of the first piece of time; all components are states."""
+    data = _with_own(data, loads, problem.units, problem.rung)
     # The loads need the general coefficients, even if the shorter equations do not.
     numbers = {**numbers_of(data.body, problem.units), **data.choice.numbers}
     names = tuple(name for name, value in numbers.items() if value and name not in data.states)
     return in_piece(
         replace(
             problem,
+            held=own.held_starts(loads),
             form=Form(data.choice.equations, data.states, names),
             parameters=tuple(numbers[name] for name in names),
             initial_momenta=tuple(numbers[name] for name in data.states),
@@ -198,16 +232,31 @@ def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
     )
 
 
+def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
+    """Return the same with the scene's own continuous states, and their wheels in the momentum H."""
+    names = tuple(own.in_form(name, loads) for name in loads.continuous)
+    starts = [start / unit for start, unit in zip(own.starts(loads), units.own, strict=True)]
+    numbers = {**data.choice.numbers, **dict(zip(names, starts, strict=True))}
+    if loads.rotor:
+        turning = wheels(loads, Fraction(0), own.starts(loads), rung.bits)
+        for i, h in enumerate(turning, start=1):
+            numbers[f"H{i}"] = _Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
+    return replace(
+        data, states=(*data.states, *names), choice=replace(data.choice, numbers=numbers)
+    )
+
+
 def in_piece(problem: Problem, piece: Piece) -> Problem:
     """Return the problem with the equations of a piece of time of its loads."""
+    loads = problem.given.body.loads
+    assert loads is not None
     equations = problem.form.equations
     body = equations.free if isinstance(equations, Written) else equations
     centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
-    steps = written.counted(piece, problem.units, centre)
-    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps.numbers)
-    loads = problem.given.body.loads
-    numbers |= {} if loads is None else written.drift(loads.current, problem.units)
-    form = Form(Written(body, steps.steps, steps.outputs), problem.form.states, tuple(numbers))
+    acting, steps = written.counted(body, loads, piece, problem.units, centre)
+    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps)
+    numbers |= written.drift(loads.current, problem.units) | _held(loads, problem.held)
+    form = Form(acting, problem.form.states, tuple(numbers))
     form = replace(form, parameters=form.entering())
     return replace(
         problem,
@@ -215,6 +264,57 @@ def in_piece(problem: Problem, piece: Piece) -> Problem:
         parameters=tuple(numbers[name] for name in form.parameters),
         replaced=tuple((n, v) for n, v in numbers.items() if n not in form.parameters),
     )
+
+
+def holding(problem: Problem, held: Vector) -> Problem:
+    """Return the problem with other held values."""
+    loads = problem.given.body.loads
+    assert loads is not None
+    named = _held(loads, held)
+    pairs = zip(problem.form.parameters, problem.parameters, strict=True)
+    return replace(
+        problem, held=held, parameters=tuple(named.get(name, value) for name, value in pairs)
+    )
+
+
+def taking(problem: Problem, instant: Instant, state: Vector) -> Vector:
+    """Return all held values after an instant: those that are taken there, each rounded once.
+
+    ``state`` is that of the form, in units. Raises ArithmeticError or ValueError where one has no value.
+    """
+    loads = problem.given.body.loads
+    assert loads is not None
+    piece, after = loads.piece(instant.time), list(problem.held)
+    with mp.workprec(problem.rung.bits + 64):
+        inputs = _InScene(problem, loads, state, instant.time)
+        values = evaluated(piece, [piece.values[k] for k in instant.places], inputs)
+        for k, value in zip(instant.places, values, strict=True):
+            after[k] = problem.rung.round(exact_value(value))
+    return tuple(after)
+
+
+class _InScene(dict[str, Any]):
+    """What texts read at a state and an elapsed time, in the scene's units."""
+
+    def __init__(self, problem: Problem, loads: Loads, state: Vector, elapsed: Fraction) -> None:
+        form, units = problem.form, problem.units
+        assert isinstance(form.equations, Written)
+        # Texts may read what the equations of a simple body do not have.
+        numbers = {**problem.parameter, **dict(zip(form.states, state, strict=True))}
+        numbers |= {**_held(loads, problem.held), "t": elapsed / units.time}
+        named = Named({name: held_exactly(value) for name, value in numbers.items()})
+        self._inputs, self._loads, self._units = form.equations.inputs(named), loads, units
+        self._centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
+
+    def __missing__(self, name: str) -> Any:
+        value = mp.mpf(self._inputs[own.in_form(name, self._loads)])
+        value *= held_exactly(written.unit_of(name, self._loads, self._units))
+        return value + held_exactly(self._centre[int(name[1]) - 1]) if name in CENTRE else value
+
+
+def _held(loads: Loads, held: Vector) -> dict[str, Fraction]:
+    names = [own.in_form(name, loads) for name in loads.held_values]
+    return dict(zip(names, held, strict=True))
 
 
 def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:

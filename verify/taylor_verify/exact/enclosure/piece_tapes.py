@@ -49,7 +49,7 @@ class PieceTapes:
         body = self._scene.body
         if self._wheels:
             carried = [z - h for z, h in zip(self._z, self._wheels, strict=True)]
-            spin = formed(exact(self._kind.state_matrix(body)), carried)
+            spin = formed(self._kind.state_matrix(body), carried)
             # Each is one node, which all uses of it share.
             return [self._shared(component) for component in spin], []
         equations = self._kind.equations(body)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from flint import arb, arb_mat, ctx
 
@@ -263,14 +263,17 @@ class Walk:
         instant = self._instants.pop()
         time = self._course.origin + self._now
         tape, places = self._system.taken(instant._replace(time=time))
-        values, slopes = self._image(tape, self._box, self._now)
+        exactly = None if self._now or self._course.has_values else self._system.exactly
+        values, slopes = self._image(tape, self._box, self._now, exactly)
         self._box = renewed(self._box, places, values, slopes)
         if self._since is not None:
             self._since.through(places, slopes)
 
-    def _image(self, tape: Tape, box: Box, time: Fraction) -> Functions:
+    def _image(
+        self, tape: Tape, box: Box, time: Fraction, exactly: Sequence[Any] | None = None
+    ) -> Functions:
         try:
-            return Image(tape, box, self._course.origin + time).outputs()
+            return Image(tape, box, self._course.origin + time, exactly).outputs()
         except OnJump:
             raise self._stuck(_ON_JUMP) from None
         except Domain as end:

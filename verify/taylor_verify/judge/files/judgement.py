@@ -38,13 +38,14 @@ from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
+from taylor_verify.judge.load_notes import load_notes
 from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
+from taylor_verify.records.quantities import COLUMNS, GROUPS, is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -55,10 +56,6 @@ from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 NO_CONVENTIONS: Final = (
     "conventions and shifts of time are not looked for: under the loads of this scene a motion at another "
     "time, or in other axes, is another motion"
-)
-NO_BALANCES: Final = (
-    "energy and momenta are not judged: the loads depend on more of the attitude or the centre than a "
-    "row of the file determines"
 )
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
@@ -155,9 +152,8 @@ def judge_file(
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
-    if scene.body.loads is not None and judged.record is not None:
-        has_balances = any(verdict.quantity == "T" for verdict in judged.verdicts)
-        notes += () if has_balances else (NO_BALANCES,)
+    if judged.record is not None:
+        notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions)
@@ -169,7 +165,7 @@ def _fits(judged: Judgement) -> bool:
 
     A tolerance that is nearly as large as the motion could let a wrong convention pass.
     """
-    states = [verdict for verdict in judged.verdicts if verdict.quantity in STATES]
+    states = [verdict for verdict in judged.verdicts if is_state(verdict.quantity)]
     return all(
         verdict.verdict is Status.PASS and (verdict.tolerance or 0.0) <= EXPLAINS
         for verdict in states

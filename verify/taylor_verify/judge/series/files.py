@@ -16,7 +16,7 @@ from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused, brief
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.quantities import INITIAL, states_among
 from taylor_verify.records.showing import counts, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import summary
@@ -220,7 +220,7 @@ def _notes(
         )
     known = {record.quantity: record.order for record in order if record.order is not None}
     # The body's own state comes first.
-    states = [name for name in STATES if name in known]
+    states = states_among(known)
     for name in states[1:]:
         first = states[0]
         if known[name] < known[first] - _LOWER:

@@ -118,7 +118,7 @@ def _angles(table: Table, count: int | None) -> _Angles | None:
         return None
     if count is None:
         number = table.number(units[0])
-        angles = None if number is None else (number,)
+        angles: Vector | None = None if number is None else (number,)
     else:
         angles = table.vector(units[0], length=count)
     if angles is None or any(abs(angle) > _MOST_ANGLE for angle in angles):
