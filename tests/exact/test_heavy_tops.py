@@ -8,11 +8,12 @@ from random import Random
 
 import pytest
 
+from taylor_verify.exact.elements import elements
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.models.problem import Problem
-from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.precision import exact_value, rung
 from taylor_verify.run import posed
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
@@ -221,3 +222,20 @@ def test_a_rounded_top_is_enclosed() -> None:
     given = posed(load("loads/lagrange-top"), Taylor(), rung("f32"))
     assert isinstance(given, Problem)
     assert solution(given.given).regime == "no closed form"
+
+
+@pytest.mark.parametrize("name", ["axis 3", "below the point", "a wheel", "a pendulum that swings"])
+def test_the_height_of_the_axis_recurs_after_a_period(name: str) -> None:
+    """r33 at a time and one period later, by the enclosure, agree to the digits of the period."""
+    _, scene = TOPS[name]
+    later = Fraction(1, 3) + exact_value(elements(scene, 20)["period"].value)
+    times = [("", Fraction(1, 3)), ("", later)]
+    now, then = document(scene, solution(scene, "taylor"), times, 15)["rows"]
+    heights = [Fraction(row["attitude"][2][2]) for row in (now, then)]
+    assert abs(heights[0] - heights[1]) <= Fraction(1, 10**13)
+
+
+@pytest.mark.parametrize("name", ["axis 3", "a wheel", "sleeping"])
+def test_the_stability_number_is_that_of_the_textbook(name: str) -> None:
+    """A is 4 I1 m g l less the square of the momentum along the axis, here 8 - 9, wheels included."""
+    assert elements(TOPS[name][1])["A"].value == 8 - 9
