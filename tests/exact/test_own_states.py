@@ -139,6 +139,14 @@ def test_a_rotor_may_depend_on_the_time_with_kinks() -> None:
         assert_near(got, "omega", row, [0, Fraction(1, 3) - h, 0])
 
 
+def test_damping_slows_the_body_and_not_its_wheels() -> None:
+    """w' = -1/3 - w/2 under h = t/3 and a damping of 1/2; a controller that reads q is not tracked."""
+    body = 'rotor = ["t/3", 0, 0]\ndamping = 0.5\nmoment = [0, 0, "0*q1"]'
+    scene = about_axes('f = { start = 0, rate = "q1" }', body)
+    with mp.workdps(2 * DIGITS):
+        assert_near(motion(scene, "2"), "omega", 0, [2 * (mp.exp(-1) - 1) / 3, 0, 0])
+
+
 def test_a_lag_is_an_exponential() -> None:
     """f' = 1 - f drives w' = f, also backwards in time."""
     scene = about_axes('f = { start = 0, rate = "1 - f" }', 'moment = ["f", 0, 0]')

@@ -49,7 +49,8 @@ class Loads:
     the momentum of the wheels where a text writes it, else empty.
 
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
-    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once. The stairs
+    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
+    follow from rounded numbers. The stairs
     of floor are known as far as the time ``reach``.
     """
 
