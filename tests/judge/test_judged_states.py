@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.turns import by_turns
 from builders.written_loads import End, Evaluated, end_of
 from mpmath import mp, mpf
 
@@ -118,7 +119,7 @@ def test_a_right_file_passes_by_the_arithmetic_alone(tmp_path: Path) -> None:
     assert all((v.bound or 1.0) < 1e-13 for v in answer.verdicts if v.is_compared)
 
 
-@pytest.mark.parametrize("twin", TWINS)
+@pytest.mark.parametrize("twin", by_turns([*TWINS]))
 def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
     """A wrong rate, a late sample and a wrong law differ in which of the rows they fail."""
     scene, failing, passing = TWINS[twin]
@@ -180,6 +181,7 @@ def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:
     assert {"m", "m law"}.isdisjoint(v.quantity for v in answer.verdicts)
 
 
+@pytest.mark.slow
 def test_an_untracked_state_is_computed_and_not_gated(tmp_path: Path) -> None:
     """The same motion without tracked own states passes without their columns."""
     scene = replace(RIGHT, states=frozenset())
