@@ -8,7 +8,7 @@ its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -193,7 +193,18 @@ IMPULSES: Final = tuple(column for name in MOMENTA["kirchhoff"] for column in CO
 
 def is_conserved(quantity: str) -> bool:
     """Return True for the name of a conserved quantity."""
-    return quantity not in (*STATES, INITIAL, COMPLETE)
+    return quantity in CONSERVED_QUANTITIES or quantity == UNIT_QUATERNION
+
+
+def is_state(quantity: str) -> bool:
+    """Return True for the name of a state quantity, one of a scene's own among them."""
+    return not is_conserved(quantity) and quantity not in (INITIAL, COMPLETE)
+
+
+def states_among(quantities: Iterable[str]) -> list[str]:
+    """Return the state quantities in reading order: those of the body, then those of a scene's own."""
+    names = [name for name in dict.fromkeys(quantities) if is_state(name)]
+    return [*(name for name in STATES if name in names), *(n for n in names if n not in STATES)]
 
 
 def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]:
