@@ -200,6 +200,7 @@ def from_scaled(
     omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
     """
     names = (*problem.form.states, *problem.held_names)
+    columns: dict[str, Sequence[Fraction]]
     columns = dict(zip(names, zip(*rows, strict=True), strict=True))
     columns |= _without_wheels(problem, columns, times or problem.times)
     units, given = problem.units, problem.given
@@ -236,15 +237,15 @@ def _own_states(
     loads = problem.given.body.loads
     if loads is None:
         return {}
-    found: dict[str, list[tuple[Fraction, ...]]] = {}
+    states: dict[str, list[tuple[Fraction, ...]]] = {}
     for state in loads.states:
         if state.name in problem.scene.states:
             parts = [
                 [v * unit_of(name, loads, problem.units) for v in columns[in_form(name, loads)]]
                 for name in state.components
             ]
-            found[state.name] = list(zip(*parts, strict=True))
-    return found
+            states[state.name] = list(zip(*parts, strict=True))
+    return states
 
 
 def _without_wheels(
