@@ -202,6 +202,13 @@ def test_a_value_exactly_on_its_jump_is_that_of_the_number() -> None:
     assert list(got["m"][0]) == [0, 1, 2]
 
 
+def test_a_value_of_the_time_alone_is_exact() -> None:
+    """|t - 1| is 7/10 at t = 3/10 and 17/10, which no ball about it shows."""
+    states = 'm = { every = "1/10", value = "1 if abs(t - 1) < 0.7 else 0" }'
+    got = motion(about_axes(states, 'moment = ["m", 0, 0]'), "2")
+    assert_near(got, "omega", 0, [Fraction(13, 10), 0, 0])
+
+
 def test_a_jump_that_is_not_decided_is_given_up_with_its_time() -> None:
     """w = t/3 comes to 1/3 at t = 1, where floor(3 w) jumps: the rows before it are proven."""
     scene = about_axes('m = { every = 1, value = "floor(3*w1)" }', 'moment = ["1/3", 0, "m"]')

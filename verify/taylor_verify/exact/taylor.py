@@ -294,7 +294,7 @@ class _Arcs(Enclosing):
             start, begin = self.starts[number], self.begins[number] if self.begins else Fraction(0)
             if len(whole.system.start) > len(start.moving):
                 # The frame is in the state, and counts from the start of its own arc.
-                system = posed(self._begun(number, begin + span))
+                system = posed(self._arc_scene(number, begin + span))
                 whole = Course.of(system, (), _place(self.scene, start, system), bits, most_bits)
                 state = system.start_balls(begin)
             else:
@@ -303,7 +303,7 @@ class _Arcs(Enclosing):
             arc = replace(whole, start=state, place=place, origin=begin, has_values=True)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
 
-    def _begun(self, number: int, end: Fraction) -> Scene:
+    def _arc_scene(self, number: int, end: Fraction) -> Scene:
         """The scene with the start of an arc, and stairs of floor as far as its end."""
         scene = replace(self.scene, initial=self.starts[number])
         if scene.body.loads is None:

@@ -30,7 +30,7 @@ from taylor_verify.exact.enclosure.operations import (
     Operation,
     State,
 )
-from taylor_verify.exact.enclosure.rationals import Rationals, rational_values
+from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 
@@ -72,17 +72,16 @@ class _Values:
 class Image:
     """The nodes of a tape over a box at one time. To be used at the precision of a course.
 
-    ``exactly`` is the state, where it is known in exact numbers: what is rational decides jumps as it is.
-    Raises OnJump, or Domain for a function that may have no value, where an output depends on it.
+    ``exactly`` is the state, where it is known in exact numbers. What is rational, as functions of the
+    time are, decides jumps as it is. Raises OnJump, or Domain for a function that may have no value, where
+    an output depends on it.
     """
 
     def __init__(
         self, tape: Tape, box: Box, time: Fraction, exactly: Sequence[Any] | None = None
     ) -> None:
         self._tape, self._apart = tape, box.apart.entries()
-        self._rational: Rationals = [None] * len(tape.operations)
-        if exactly is not None:
-            self._rational = rational_values(tape, exactly, time)
+        self._rational = rational_values(tape, exactly or [None] * tape.size, time)
         # Operations take these for a series.
         self._point: Any = _Values(tape, time)
         with ctx.workprec(BOUND_BITS):
