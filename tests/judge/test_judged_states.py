@@ -21,6 +21,7 @@ from taylor_verify import check, explain
 from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.loaded import times_of_run
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import read
@@ -171,6 +172,16 @@ def test_steps_over_the_instants_are_of_order_one(
     assert attitude.order == pytest.approx(order, abs=0.5)
     over = [note for note in answer.notes if "steps end at the instants of held states" in note]
     assert bool(over) is (order == 1)
+
+
+def test_a_law_has_a_tolerance_of_its_own() -> None:
+    """The quantities of a scene, for which a caller may ask a tolerance, name states and laws."""
+    asked = tolerances({"m law": 1e-3, "i": 1e-4, "omega": 1e-5}, [RIGHT])
+    assert asked.of("m law") == 1e-3
+    with pytest.raises(
+        ValueError, match=r"expected some of omega, attitude, i, m, m law, .*got i law"
+    ):
+        tolerances({"i law": 1e-3}, [RIGHT])
 
 
 def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:
