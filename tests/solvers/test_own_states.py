@@ -232,6 +232,13 @@ def test_arrays_of_states_have_the_same_values_as_single_ones(name: str) -> None
     np.testing.assert_allclose(answer(times, states), single, rtol=1e-14)
 
 
+def test_the_rotor_is_that_of_its_text() -> None:
+    """In body axes, of the time and the scene's own states; it reads no more of the state."""
+    problem = wheels('["clip(h1, -0.2, 0.3)", "h2 + t/8", "h3*h1"]')
+    state = [0.3, -0.5, 0.4, 1, 0, 0, 0, 0.5, 0.25, -2]
+    np.testing.assert_array_equal(problem.rotor(2, state), [0.3, 0.5, -1])
+
+
 def test_held_values_are_asked_for() -> None:
     """A load that reads them has no value without them."""
     with pytest.raises(ValueError, match="expected the held values d, got none"):

@@ -36,10 +36,10 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
     state = [float(value) for value in (*initial.moving, *place, *own.starts(loads))]
     held = [float(value) for value in own.held_starts(loads)]
     end = -span if clock.elapsed[-1] < 0 else span
-    looks = [float(clock.start + p * end) for p in _LOOKS]
+    times = [float(clock.start + p * end) for p in _LOOKS]
     with np.errstate(all="ignore"):
-        sizes = _largest(acting.loads(t, state, held) for t in looks)
-        rates = _largest(acting.rates(t, state, held) for t in looks)
+        sizes = _largest(acting.loads(t, state, held) for t in times)
+        rates = _largest(acting.rates(t, state, held) for t in times)
     if sizes is not None and sizes.any():
         units = _pushed(units, scene, float(span), sizes)
     if loads.rotor:
@@ -48,10 +48,10 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
     return replace(units, own=own.units_of(loads, given, units.time))
 
 
-def _largest(looks: Iterable[Any]) -> Any:
+def _largest(values: Iterable[Any]) -> Any:
     """Return the largest size of each component; None where one has no value."""
     with suppress(ArithmeticError, ValueError):
-        sizes = np.abs([np.concatenate(np.atleast_2d(look)) for look in looks]).max(axis=0)
+        sizes = np.abs([np.concatenate(np.atleast_2d(value)) for value in values]).max(axis=0)
         return sizes if np.isfinite(sizes).all() else None
     return None
 

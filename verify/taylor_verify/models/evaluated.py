@@ -56,7 +56,8 @@ def _mpf(value: Fraction) -> Any:
     return mp.mpf(value.numerator) / value.denominator
 
 
-def _real(found: Any) -> Any:
-    if isinstance(found, Exception):
-        raise found
-    return found
+def _real(value: Any) -> Any:
+    """Return a value; raise the error that stands in its place."""
+    if isinstance(value, Exception):
+        raise value
+    return value

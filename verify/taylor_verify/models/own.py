@@ -42,6 +42,12 @@ def held_starts(loads: Loads) -> Vector:
     )
 
 
+def numbers(loads: Loads, held: Vector) -> dict[str, Fraction]:
+    """Return the held components by their names in a form."""
+    names = [HELD + name for name in loads.held_values]
+    return dict(zip(names, held, strict=True))
+
+
 def units_of(loads: Loads, rates: Sequence[float], time: Fraction) -> Vector:
     """Return the unit of each continuous component: what its state is of size one in.
 

@@ -14,34 +14,29 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
-from mpmath import mp
-
 from taylor_verify.models import manufactured, own, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
-from taylor_verify.models.evaluated import evaluated, wheels
-from taylor_verify.models.form import Equations, Form, Named
+from taylor_verify.models.evaluated import wheels
+from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
+from taylor_verify.models.rounding import NotRepresentable as NotRepresentable
+from taylor_verify.models.rounding import Rounding
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import Rung, exact_value, floor_log2, held_exactly
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
-from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
+from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
-from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
-from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Clock, State
 from taylor_verify.scenes.scene import Scene
-
-
-class NotRepresentable(Exception):
-    """The error for a scene that the rung cannot represent; the text says why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,9 +164,9 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda k: start + times[k] * unit))
-    data = _rounded_data(scene, units, _Rounding(rung))
+    data = _rounded_data(scene, units, Rounding(rung))
     if scene.body.manufactured is not None:
-        data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
+        data = _with_clock(data, scene.body, scene.body.manufactured, units, Rounding(rung))
     loads = _rounded_loads(scene, rung)
     data = _with_frame(data, _framed(scene.track, loads), units, rung)
     choice = data.choice
@@ -199,7 +194,7 @@ def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
         return None
     try:
         loads = scene.body.loads.on_rung(rung)
-        return replace(loads, current=_Rounding(rung).each(loads.current))
+        return replace(loads, current=Rounding(rung).each(loads.current))
     except (OverflowError, ValueError) as error:
         raise NotRepresentable(str(error)) from error
 
@@ -240,7 +235,7 @@ def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
     if loads.rotor:
         turning = wheels(loads, Fraction(0), own.starts(loads), rung.bits)
         for i, h in enumerate(turning, start=1):
-            numbers[f"H{i}"] = _Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
+            numbers[f"H{i}"] = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
     return replace(
         data, states=(*data.states, *names), choice=replace(data.choice, numbers=numbers)
     )
@@ -255,7 +250,7 @@ def in_piece(problem: Problem, piece: Piece) -> Problem:
     centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
     acting, steps = written.counted(body, loads, piece, problem.units, centre)
     numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps)
-    numbers |= written.drift(loads.current, problem.units) | _held(loads, problem.held)
+    numbers |= written.drift(loads.current, problem.units) | own.numbers(loads, problem.held)
     form = Form(acting, problem.form.states, tuple(numbers))
     form = replace(form, parameters=form.entering())
     return replace(
@@ -264,57 +259,6 @@ def in_piece(problem: Problem, piece: Piece) -> Problem:
         parameters=tuple(numbers[name] for name in form.parameters),
         replaced=tuple((n, v) for n, v in numbers.items() if n not in form.parameters),
     )
-
-
-def holding(problem: Problem, held: Vector) -> Problem:
-    """Return the problem with other held values."""
-    loads = problem.given.body.loads
-    assert loads is not None
-    named = _held(loads, held)
-    pairs = zip(problem.form.parameters, problem.parameters, strict=True)
-    return replace(
-        problem, held=held, parameters=tuple(named.get(name, value) for name, value in pairs)
-    )
-
-
-def taking(problem: Problem, instant: Instant, state: Vector) -> Vector:
-    """Return all held values after an instant: those that are taken there, each rounded once.
-
-    ``state`` is that of the form, in units. Raises ArithmeticError or ValueError where one has no value.
-    """
-    loads = problem.given.body.loads
-    assert loads is not None
-    piece, after = loads.piece(instant.time), list(problem.held)
-    with mp.workprec(problem.rung.bits + 64):
-        inputs = _InScene(problem, loads, state, instant.time)
-        values = evaluated(piece, [piece.values[k] for k in instant.places], inputs)
-        for k, value in zip(instant.places, values, strict=True):
-            after[k] = problem.rung.round(exact_value(value))
-    return tuple(after)
-
-
-class _InScene(dict[str, Any]):
-    """What texts read at a state and an elapsed time, in the scene's units."""
-
-    def __init__(self, problem: Problem, loads: Loads, state: Vector, elapsed: Fraction) -> None:
-        form, units = problem.form, problem.units
-        assert isinstance(form.equations, Written)
-        # Texts may read what the equations of a simple body do not have.
-        numbers = {**problem.parameter, **dict(zip(form.states, state, strict=True))}
-        numbers |= {**_held(loads, problem.held), "t": elapsed / units.time}
-        named = Named({name: held_exactly(value) for name, value in numbers.items()})
-        self._inputs, self._loads, self._units = form.equations.inputs(named), loads, units
-        self._centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
-
-    def __missing__(self, name: str) -> Any:
-        value = mp.mpf(self._inputs[own.in_form(name, self._loads)])
-        value *= held_exactly(written.unit_of(name, self._loads, self._units))
-        return value + held_exactly(self._centre[int(name[1]) - 1]) if name in CENTRE else value
-
-
-def _held(loads: Loads, held: Vector) -> dict[str, Fraction]:
-    names = [own.in_form(name, loads) for name in loads.held_values]
-    return dict(zip(names, held, strict=True))
 
 
 def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
@@ -337,7 +281,7 @@ def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
     NotRepresentable if the rounded data are no valid body.
     """
     posed = pose(scene, rung)
-    body, initial = _stored(scene, _Rounding(rung))
+    body, initial = _stored(scene, Rounding(rung))
     return replace(posed, given=replace(posed.given, body=body, initial=initial))
 
 
@@ -360,7 +304,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     )
 
 
-def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
+def _stored(scene: Scene, rounded: Rounding) -> tuple[Body, State]:
     """Return body and initial state, with each number of the scene rounded once."""
     motion = scene.body.manufactured
     start = scene.initial.changed(rounded.part)
@@ -386,7 +330,7 @@ class _Data:
     initial: State
 
 
-def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
+def _rounded_data(scene: Scene, units: Units, rounded: Rounding) -> _Data:
     """Form coefficients, loads and momenta exactly and round each once; all else follows exactly."""
     body, start = scene.body, scene.initial
     kind = mechanics(body)
@@ -412,7 +356,7 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
 
 
 def _with_clock(
-    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: _Rounding
+    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: Rounding
 ) -> _Data:
     """Return the same under the loads of a manufactured motion, with their clock among the states.
 
@@ -454,44 +398,3 @@ def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -
         frame["s"] = 1 / units.path
     choice = replace(data.choice, numbers={**data.choice.numbers, **frame})
     return replace(data, states=states, choice=choice)
-
-
-@dataclass(frozen=True)
-class _Rounding:
-    """Rounds scalars, vectors and matrices onto one rung."""
-
-    rung: Rung
-
-    def __call__(self, value: Fraction, shift: int = 0) -> Fraction:
-        try:
-            return self.rung.round_scaled(value, shift)
-        except OverflowError as error:
-            raise NotRepresentable(str(error)) from error
-
-    def each(self, value: Value, shift: int = 0) -> Value:
-        """Round every number of a value times 2^shift, whatever its shape."""
-        return entrywise(lambda entry: self(entry, shift) if entry else entry, value)
-
-    def counted(self, part: Part, value: Value, units: Units) -> Value:
-        """Round a part of a state, counted in its unit."""
-        if part.shape is Shape.QUATERNION:
-            return self.quaternion(value)
-        return self.each(value, -units.exponent(part.dimension))
-
-    def part(self, part: Part, value: Value) -> Value:
-        """Round a part of a body or a state as it stands."""
-        return self.quaternion(value) if part.shape is Shape.QUATERNION else self.each(value)
-
-    def quaternion(self, quaternion: Quaternion) -> Quaternion:
-        """Round the components after an exact scaling to order one; the norm does not matter."""
-        if quaternion == IDENTITY:
-            return quaternion
-        shift = -max(floor_log2(entry) for entry in quaternion if entry)
-        e0, e1, e2, e3 = (self(entry, shift) for entry in quaternion)
-        return (e0, e1, e2, e3)
-
-    def waves(self, motion: Manufactured) -> tuple[Wave, ...]:
-        """Round frequencies and coefficients of a manufactured motion."""
-        return tuple(
-            Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
-        )

@@ -36,8 +36,24 @@ def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
     equations = form.equations
     if not isinstance(equations, Written):
         return ()
-    found = (_length(equations.steps, step) for step in equations.steps)
-    return tuple(sorted({length.parts for length in found if length is not None}))
+    every = (_length(equations.steps, step) for step in equations.steps)
+    return tuple(sorted({length.parts for length in every if length is not None}))
+
+
+def radicands(form: Form) -> tuple[int, ...]:
+    """Return the places of the steps of which a root is taken that is no length of known parts."""
+    equations = form.equations
+    if not isinstance(equations, Written):
+        return ()
+    steps = equations.steps
+    places = {step.operands[0] for step in steps if _is_root(step) and _length(steps, step) is None}
+    return tuple(sorted(places))
+
+
+def _is_root(step: Step) -> bool:
+    if step.operation == "power":
+        return step.number is not None and step.number > 0 and step.number.denominator != 1
+    return step.operation == "sqrt"
 
 
 def unsquared(form: Form, zeros: Collection[int] = ()) -> Form:

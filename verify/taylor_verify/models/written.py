@@ -128,13 +128,13 @@ def _alone(n: Named, wheels: Sequence[Any]) -> dict[str, Any]:
 
 def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
     """Return the places of the steps that those at some places are made of, in order."""
-    left, kept = list(places), set[int]()
+    left, reached = list(places), set[int]()
     while left:
         place = left.pop()
-        if place not in kept:
-            kept.add(place)
+        if place not in reached:
+            reached.add(place)
             left += steps[place].operands
-    return sorted(kept)
+    return sorted(reached)
 
 
 class Inputs:

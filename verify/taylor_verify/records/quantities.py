@@ -84,21 +84,8 @@ class Conserved:
 GROUPS: Final[Mapping[str, Group]] = {
     group.name: group
     for group in (
-        Group(
-            name="omega",
-            columns=("w1", "w2", "w3"),
-            quantity="omega",
-            noun="angular velocity",
-            dimension="rate",
-            start="omega",
-        ),
-        Group(
-            name="linear_velocity",
-            columns=("u1", "u2", "u3"),
-            quantity="velocity",
-            noun="linear velocity",
-            dimension="velocity",
-        ),
+        Group("omega", ("w1", "w2", "w3"), "omega", "angular velocity", "rate", start="omega"),
+        Group("linear_velocity", ("u1", "u2", "u3"), "velocity", "linear velocity", "velocity"),
         Group(
             name="linear_impulse",
             columns=("x1", "x2", "x3"),
@@ -132,15 +119,7 @@ GROUPS: Final[Mapping[str, Group]] = {
             dimension="number",
             moves_with="frame",
         ),
-        Group(
-            name="centre",
-            columns=("c1", "c2", "c3"),
-            quantity="centre",
-            noun="centre",
-            dimension="length",
-            moves_with="space",
-            start="centre",
-        ),
+        Group("centre", ("c1", "c2", "c3"), "centre", "centre", "length", "space", "centre"),
     )
 }
 # In reading order.
@@ -148,19 +127,8 @@ QUANTITIES: Final[Mapping[str, Quantity]] = {
     each.name: each
     for each in (
         Quantity("omega", "max|omega|", ("omega",), main_of="euler"),
-        Quantity(
-            "impulse",
-            "max|x|, max|y|",
-            ("linear_impulse", "angular_impulse"),
-            main_of="kirchhoff",
-        ),
-        Quantity(
-            "attitude",
-            "rad",
-            ("quaternion",),
-            tracked_by=("euler", "kirchhoff"),
-            measure=Measure.ANGLE,
-        ),
+        Quantity("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse"), "kirchhoff"),
+        Quantity("attitude", "rad", ("quaternion",), "", ("euler", "kirchhoff"), Measure.ANGLE),
         Quantity(
             "centre",
             "arc length",

@@ -11,7 +11,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from taylor_verify.models.problem import Problem, holding, in_piece, taking
+from taylor_verify.models.problem import Problem, in_piece
+from taylor_verify.models.stretch import holding, taking
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.solvers.solver import raised
@@ -127,16 +128,16 @@ def _stops(problem: Problem, loads: Loads) -> Iterator[tuple[Fraction, Fraction,
     """Yield the ends of all legs in units, exactly as elapsed times, and what is taken there."""
     unit, last = problem.units.time, problem.times[-1]
     sign = 1 if last > 0 else -1
-    found: dict[Fraction, tuple[Fraction, Instant | None]] = {}
+    stops: dict[Fraction, tuple[Fraction, Instant | None]] = {}
     for switch in loads.switches[::sign]:
-        found[problem.rung.round(switch / unit)] = switch, None
+        stops[problem.rung.round(switch / unit)] = switch, None
     for instant in problem.takings:
-        exactly, _ = found.get(instant.time / unit, (instant.time, None))
-        found[instant.time / unit] = max(exactly, instant.time), instant
-    found.setdefault(last, (last * unit, None))
-    for end in sorted(found, key=lambda time: sign * time):
+        exactly, _ = stops.get(instant.time / unit, (instant.time, None))
+        stops[instant.time / unit] = max(exactly, instant.time), instant
+    stops.setdefault(last, (last * unit, None))
+    for end in sorted(stops, key=lambda time: sign * time):
         if 0 < sign * end <= sign * last:
-            yield (end, *found[end])
+            yield (end, *stops[end])
 
 
 def _together(legs: list[Trajectory], last: Trajectory) -> Trajectory:

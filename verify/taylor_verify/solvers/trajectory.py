@@ -237,15 +237,15 @@ def _own_states(
     loads = problem.given.body.loads
     if loads is None:
         return {}
-    found: dict[str, list[tuple[Fraction, ...]]] = {}
+    states: dict[str, list[tuple[Fraction, ...]]] = {}
     for state in loads.states:
         if state.name in problem.scene.states:
             parts = [
                 [v * unit_of(name, loads, problem.units) for v in columns[in_form(name, loads)]]
                 for name in state.components
             ]
-            found[state.name] = list(zip(*parts, strict=True))
-    return found
+            states[state.name] = list(zip(*parts, strict=True))
+    return states
 
 
 def _without_wheels(

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import accumulate
 from math import ceil, inf, log10
 from typing import Any, Final
@@ -29,12 +29,12 @@ from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, times_of_run
 from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.path_times import few, many
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import float_text, floor_log2
-from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.scene import Scene
 
 Places = np.ndarray[Any, np.dtype[np.int64]]
@@ -58,14 +58,6 @@ _STEP_ERROR: Final = 1e-15
 _LITTLE_GROWTH: Final = 1e6
 # Differences that are smaller take minutes.
 _LARGEST_EXPONENT: Final = 500
-# On a regular orbit all errors grow alike, so this many samples represent all,
-_FEW: Final = 33
-# with this many times besides that share no period: samples may meet the orbit in one phase only.
-_BETWEEN: Final = 20
-_GOLDEN: Final = Fraction(0.6180339887498949)
-# Up to this many radians there is a point for each radian, later for each 64th part of the elapsed time.
-_RESOLVED: Final = 64
-_MOST_SAMPLES: Final = 401
 
 
 @dataclass(frozen=True)
@@ -196,7 +188,8 @@ class Path:
         own = sum(rows.shape[1] for rows in self.carried.own.values())
         body = sum(map(len, self._spans.values())) - own
         whole = self.momentum.shape[1] + 6
-        return np.r_[0:body, whole : whole + own]
+        places: Places = np.r_[0:body, whole : whole + own]
+        return places
 
     def _sizes(self, factors: Floats) -> dict[str, Floats]:
         """Return the norm of the rows of each block at each time, and those of omega."""
@@ -369,35 +362,3 @@ def _is_short(scene: Scene, flow: Flow) -> bool:
     )
     rate = float(flow.rate(counted)) / float(flow.time)
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
-
-
-# The choice of times, where not all samples are needed.
-
-
-def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Return evenly chosen samples, and times that are independent of them.
-
-    In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
-    which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.
-    """
-    samples = [Fraction(0), *chosen(elapsed, _FEW)]
-    parts = max(_BETWEEN, _FEW - len(elapsed))
-    between = [elapsed[-1] * share for share in _golden_shares(parts)]
-    first = next((t for t in samples if t), Fraction(0))
-    return sorted({*samples, *between, first * _GOLDEN**2, first * _GOLDEN}, key=abs)
-
-
-@lru_cache(maxsize=8)
-def _golden_shares(parts: int) -> tuple[Fraction, ...]:
-    """Return a number in each of so many equal parts between 0 and 1."""
-    return tuple((k + k * _GOLDEN % 1) / parts for k in range(parts))
-
-
-def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
-    """Radian by radian at first, later in proportion to the time so far; and the samples."""
-    end = float(elapsed[-1])
-    times, t = [], 0.0
-    while t < abs(end):
-        times.append(Fraction(t if end > 0 else -t))
-        t += max(1 / rate, t / _RESOLVED)
-    return sorted({*times, *chosen(elapsed, _MOST_SAMPLES)}, key=abs)

@@ -124,7 +124,7 @@ def _of_spin(derivation: Derivation) -> dict[str, Row]:
     body, kind = derivation.scene.body, kind_of(derivation.scene.body)
     assert isinstance(kind, Rotating)
     wheels = [Polynomial.number(h) for h in kind.rotor(body)]
-    H = [*map(add, mapped(body.inertia, derivation.state), wheels)]
+    H = [*map(add, mapped(kind.energy(body), derivation.state), wheels)]
     return {"H2": [product(H, H)], "H_space": derivation.turned(H), "H_axis": H}
 
 

@@ -62,7 +62,9 @@ def _is_along(name: str, axes: Sequence[Vector]) -> bool:
 
 def _more(scene: Scene, free: Sequence[Invariant], proven: Conservation) -> Iterator[Invariant]:
     by_name = {each.name: each for each in free}
-    if proven.potential is not None and (energy := _energy(scene, by_name[_ENERGY], proven.potential)):
+    if proven.potential is not None and (
+        energy := _energy(scene, by_name[_ENERGY], proven.potential)
+    ):
         yield energy
     for whole, name in _ALONG.items():
         if whole in proven.directions and whole in by_name:

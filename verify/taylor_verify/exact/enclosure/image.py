@@ -119,10 +119,10 @@ class Image:
             case State(component=component):
                 return box.point[component], {component: ONE}
             case Choice():
-                condition = self._rational[operation.condition]
-                if condition is None:
-                    condition = self._over_box(operation.condition)
-                chosen = operation.chosen(condition)
+                rational = self._rational[operation.condition]
+                chosen = operation.chosen(
+                    self._over_box(operation.condition) if rational is None else rational
+                )
                 self._require(chosen)
                 return self._point.forward[chosen][0], self._gradients[chosen]
         for a in operation.operands:

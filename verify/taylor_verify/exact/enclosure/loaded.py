@@ -82,13 +82,11 @@ class LoadedBody:
             start += state.start or (Fraction(0),) * len(state.components)
         return start
 
-    def _begin(self) -> list[arb]:
-        """The start in balls, with the momentum of the rotor."""
+    def _begin(self, time: Fraction) -> list[arb]:
+        """The start in balls, with the momentum of the rotor at an elapsed time."""
         start = balls(self.start)
         box = Box.about(start)
-        wheels = Image(
-            self._tapes_at(Fraction(0), is_later=True).wheels, box, Fraction(0)
-        ).outputs()
+        wheels = Image(self._tapes_at(time, is_later=True).wheels, box, time).outputs()
         added = over_box(box, *wheels)
         return [z + h for z, h in zip(start, added, strict=False)] + start[len(added) :]
 

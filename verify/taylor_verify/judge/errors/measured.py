@@ -38,7 +38,7 @@ from taylor_verify.judge.errors.state import (
 from taylor_verify.judge.errors.velocity import VelocityErrors, velocity_shift
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
-from taylor_verify.records.quantities import GROUPS, VELOCITIES, state_groups
+from taylor_verify.records.quantities import VELOCITIES, state_groups
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.motion import Clock, Motion
@@ -174,7 +174,7 @@ class Comparison:
         return {"attitude" if name == "quaternion" else name for name in self.quantities}
 
     def _has_quantity(self, quantity: str) -> bool:
-        groups = {**GROUPS, **{group.name: group for group in self.scene.groups}}
+        groups = self.scene.known_groups
         return any(groups[name].quantity == quantity for name in self._has)
 
     @property

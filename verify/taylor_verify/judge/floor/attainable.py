@@ -26,7 +26,8 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.condition import DIGITS, Path, path, transition
+from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.conditioning.loaded import DIGITS
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors

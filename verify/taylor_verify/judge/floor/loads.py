@@ -144,7 +144,7 @@ class Along:
 
     @property
     def own_starts(self) -> list[float]:
-        """Where the own states begin, by component, those with a rate first."""
+        """The starts of own states by component, those with a rate first."""
         starts = {s.name: s.start or [0] * len(s.components) for s in self.loads.states}
         return [float(value) for name in self.path.carried.own for value in starts[name]]
 
@@ -174,6 +174,15 @@ class Along:
     def sizes(self) -> Floats:
         """Return what the roundings inside the texts add up to by output, in units of roundoff."""
         return _placed(self, Piece.sizes)
+
+    def by_numbers(self) -> Floats:
+        """Return what a rounding of each number of the texts adds up to by output."""
+
+        def total(piece: Piece) -> Floats:
+            parts = [abs(by) for _, by in piece.numbers()]
+            return sum(parts, np.zeros((len(piece.places), len(piece.outputs))))
+
+        return _placed(self, total)
 
     @property
     def body(self) -> Body:
@@ -210,7 +219,8 @@ class Along:
             return 0.0
         _, rates, values, wheels = self.split(self.outputs())
         changes = np.hstack([rates, np.zeros_like(values)])
-        return np.cross(wheels, spin) - np.einsum("tij,tj->ti", self.wheels, changes)
+        moment: Floats = np.cross(wheels, spin) - np.einsum("tij,tj->ti", self.wheels, changes)
+        return moment
 
     @cached_property
     def _inputs(self) -> Mapping[str, Floats]:
@@ -228,10 +238,10 @@ class Along:
             rows = self.path.carried.own[state.name]
             inputs |= dict(zip(state.components, rows.T, strict=True))
         inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
-        return inputs | {f"q{i}": rows for i, rows in enumerate(self._quaternions.T)}
+        return inputs | {f"q{i}": rows for i, rows in enumerate(self.quaternions.T)}
 
     @cached_property
-    def _quaternions(self) -> Floats:
+    def quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
         rows, start = quaternions(self.attitude), self.path.scene.initial.attitude
         return rows if rows[0] @ np.array(start, dtype=float) >= 0 else -rows

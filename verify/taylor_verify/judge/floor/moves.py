@@ -47,6 +47,11 @@ class Moves:
         """The numbers of body, start and loads."""
         return len(self._responses)
 
+    def here(self, places: Sequence[int]) -> Motion:
+        """Return the motion itself at these times of the path."""
+        width = len(self._momentum) + 6 + self._own
+        return self.beside(places, np.zeros((len(places), width)))
+
     def motions(self, places: Sequence[int], roundoff: float) -> Iterator[Motion]:
         """Yield draws of all numbers changed at once, up or down at random, at these times of the path."""
         coin = random.Random(1)

@@ -28,6 +28,8 @@ Asked = TypeVar("Asked")
 
 # Orders of two states that differ by more than this belong to different methods.
 _LOWER: Final = 0.5
+# An order below this is that of steps which do not end where the equations change.
+_OVER_BREAKS: Final = 1.5
 # Steps with a smaller ratio show no order, because noise dominates the ratio of the errors.
 _ALIKE: Final = 1.01
 _HOW: Final = (
@@ -221,6 +223,12 @@ def _notes(
     known = {record.quantity: record.order for record in order if record.order is not None}
     # The body's own state comes first.
     states = states_among(known)
+    breaks = next((judgement.breaks for judgement in judged if judgement.breaks), "")
+    if breaks and states and known[states[0]] < _OVER_BREAKS:
+        yield (
+            f"{states[0]} is of order {known[states[0]]:.1f}: no method has a higher one than 1 unless its "
+            f"steps end at {breaks}"
+        )
     for name in states[1:]:
         first = states[0]
         if known[name] < known[first] - _LOWER:

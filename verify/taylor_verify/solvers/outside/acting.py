@@ -1,4 +1,4 @@
-"""What acts on the rigid body of a question: moment, loads, damping, wheels, and states of one's own.
+"""All that acts on the rigid body of a question: moment, loads, damping, wheels, and states of one's own.
 
 It needs the standard library alone, and may be copied beside a program of one's own. An engine that takes
 a moment goes from one instant to the next so:
@@ -100,7 +100,7 @@ def _prepared(step: Sequence[Any]) -> tuple[str, list[float], list[int]]:
 
 
 class Acting:
-    """What acts, from the start of a question on; ``state()`` is the present one of the engine.
+    """All that acts, from the start of a question on; ``state()`` is the present one of the engine.
 
     ``t`` is the time since the start.
     """

@@ -141,12 +141,21 @@ class FreeBody(Body):
         """Return the same in space axes, of omega in space axes, at the time of the last step."""
         return to_space(attitude, self.moment(to_body(attitude, omega), attitude))
 
+    def begin(self) -> None:
+        """Go back to the start with what acts."""
+        if self.push is not None:
+            self.push.begin()
+
+    def goes_on(self, steps: int, step: float) -> None:
+        """Go on with what acts, after so many steps of the engine; its row was read."""
+        if self.push is not None:
+            self.push.acting.move_to(self.question.sign * steps * step)
+
     def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
         """Return the engine; where anything acts, that goes on after each step."""
-        push = self.push
-        if push is None:
+        if self.push is None:
             return start()
-        push.begin()
+        self.begin()
         advance, row = start()
         done = 0
 
@@ -156,7 +165,7 @@ class FreeBody(Body):
                 advance(1)
                 row()
                 done += 1
-                push.acting.move_to(self.question.sign * done * step)
+                self.goes_on(done, step)
 
         return one_by_one, row
 

@@ -13,7 +13,7 @@ from mpmath import mp
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink, smooth, values
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.roots import lengths
+from taylor_verify.models.roots import lengths, radicands
 from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
 from taylor_verify.solvers.taylor.numbers import arithmetic
 
@@ -23,6 +23,8 @@ _ON_A_LINE = 1e-10
 _LITTLE = 12
 # The power of two, in roundings of a unit of time, that is nothing beside it.
 _NEAR = 10
+# The power of 1/2 that something has crossed which may be zero nearby.
+_SMALL = 40
 # A difference that is no matter of rounding on any rung, beside the largest step.
 _CLEAR = 1e-3
 
@@ -49,10 +51,14 @@ class _Choice:
 
 
 def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], rung: Rung) -> Any:
-    """Return the events of a smooth form's kinks; the parameters of their choices are its last."""
+    """Return the events of a smooth form's kinks; the parameters of their choices are its last.
+
+    The last ones end the way where something comes near zero of which a root is taken.
+    """
     import heyoka as hy
 
-    if not kinks:
+    near_zero = radicands(form)
+    if not kinks and not near_zero:
         return []
     steps = values(form, hy.make_vars(*form.states), coefficients, hy.time)
     numbers = arithmetic(rung)
@@ -66,6 +72,8 @@ def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], ru
             hy.t_event(steps[kink.place], callback=choice, fp_type=numbers.fp_type, cooldown=rest)
         )
         first += len(kink.names)
+    little = hy.expression(numbers.number(power_of_two(-_SMALL)))
+    events += [hy.t_event(steps[place] - little, fp_type=numbers.fp_type) for place in near_zero]
     return events
 
 

@@ -23,7 +23,7 @@ import numpy as np
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.roots import lengths, unsquared
+from taylor_verify.models.roots import lengths, radicands, unsquared
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.pieces import piece_by_piece
@@ -83,19 +83,20 @@ class Taylor(Solver):
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
         way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
-        way = way_of(problem, tolerance, self.is_optimised)
+        way, turned, kinks = way_of(problem, tolerance, self.is_optimised)
         ready = perf_counter()
         is_slow = arithmetic(problem.rung).is_software
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
         seconds = perf_counter() - ready
         if lengths(problem.form) and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
-            seen = Lengths(problem, rows)
-            if outcome is Outcome.NON_FINITE or seen.are_on_a_line():
-                form = unsquared(problem.form, seen.zeros)
+            vectors = Lengths(problem, rows)
+            if outcome is Outcome.NON_FINITE or vectors.are_on_a_line():
+                form = unsquared(problem.form, vectors.zeros)
                 if form != problem.form:
                     return self._solve(replace(problem, form=form))
                 return refused(f"{self.name} {_NO_LENGTH}")
-        turned, kinks = smoothed(problem)
+        if outcome is Outcome.INTERRUPTED and radicands(turned.form):
+            return refused(f"{self.name} {_NO_LENGTH}")
         if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
             return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
         if kinks and outcome is Outcome.STEP_LIMIT:
@@ -152,8 +153,8 @@ def compiled(
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
-    if kinks:
-        options["t_events"] = crossings(form, kinks, coefficients, rung)
+    if events := crossings(form, kinks, coefficients, rung):
+        options["t_events"] = events
     return stored(hy.taylor_adaptive, system, **options)
 
 
@@ -196,20 +197,22 @@ def _foreseen(problem: Problem) -> float:
     return Way(integrator, turned, scout).fastest()
 
 
-def _way(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> Way:
-    """Return the way of a problem; the tolerance is a quotient, which is found sooner than a Fraction."""
+def _way(
+    problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool
+) -> tuple[Way, Problem, tuple[Kink, ...]]:
+    """Return the way of a problem, the problem without kinks that it goes, and these kinks.
+
+    The tolerance is a quotient, which is looked up sooner than a Fraction.
+    """
     turned, kinks = smoothed(problem)
-    return Way(
-        compiled(
-            turned.form,
-            problem.rung,
-            None if tolerance is None else Fraction(*tolerance),
-            is_optimised or pays(turned.form, problem.rung, problem),
-            kinks=kinks,
-        ),
-        turned,
-        problem,
+    integrator = compiled(
+        turned.form,
+        problem.rung,
+        None if tolerance is None else Fraction(*tolerance),
+        is_optimised or pays(turned.form, problem.rung, problem),
+        kinks=kinks,
     )
+    return Way(integrator, turned, problem), turned, kinks
 
 
 _kept_way = lru_cache(maxsize=_MOST_WAYS)(_way)
