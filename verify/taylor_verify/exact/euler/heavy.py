@@ -104,7 +104,7 @@ def closed_form(scene: Scene) -> Solution:
 
     top = top_of(scene)
     if top.kind != _ELLIPTIC:
-        raise NoClosedForm.only_in_balls(f"the regime {top.regime}")
+        raise NoClosedForm(f"in mpmath, the regime {top.regime}: its routes are arb and taylor")
     start, back = _in_axes(scene, top)
     return carried(NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value)
 
