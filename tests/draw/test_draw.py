@@ -16,13 +16,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from taylor_verify.cli import main
 from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.components import series
 from taylor_verify.draw.course import motion
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import KINDS, pictures
 from taylor_verify.exact.rows import quaternions
 from taylor_verify.plotting.picture import plotting
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, read
 
 # One of each kind of body, and what it has.
 HAS = {
@@ -183,9 +184,41 @@ def test_a_page_needs_no_network() -> None:
     assert not re.search(r"https?://|src=|<link|@import", text)
     (data,) = re.findall(r'<script type="application/json" id="motion">(.*?)</script>', text)
     shown = json.loads(data)
-    columns = (shown["quaternions"], shown["rows"], shown["inset"]["course"])
+    (panel,) = shown["panels"]
+    columns = (shown["quaternions"], panel["rows"], shown["inset"]["course"])
     assert {len(column) for column in columns} == {len(shown["times"])}
     assert "exact, by closed form" in shown["caption"]
+
+
+SAMPLED = """
+title = "A sampled controller"
+model = "euler"
+[body]
+inertia = [1, 2, 3]
+moment = ["m - w1/4", "-i/8", "t"]
+[states]
+m = { every = "1/2", value = "-w1" }
+i = { start = 0, rate = "w2" }
+[initial]
+omega = [0.5, 0.25, 0.125]
+[time]
+end = 2
+samples = 5
+"""
+
+
+def test_loads_and_own_states_are_drawn_under_the_motion() -> None:
+    """Each load and each state is a panel: the moment is what the text makes of the drawn states."""
+    drawn = motion(read(SAMPLED, "sampled"), 40)
+    panels = {panel.name: panel for panel in series(drawn).panels}
+    moment, held = panels["moment, body axes"].rows, panels["state m"]
+    omega, times = np.array(drawn["course"]["omega"]), np.array(drawn["course"]["t"])
+    assert np.allclose(moment[:, 0], held.rows[:, 0] - omega[:, 0] / 4, atol=1e-8)
+    assert np.allclose(moment[:, 1], -panels["state i"].rows[:, 0] / 8, atol=1e-8)
+    assert np.allclose(moment[:, 2], times, atol=1e-8)
+    assert held.is_held
+    assert len(np.unique(held.rows)) == len(np.arange(0, 2.5, 0.5))
+    assert [each["heading"] for each in moving(drawn)["panels"]] == list(panels)
 
 
 # The verb

@@ -21,9 +21,10 @@ from builders.scenes import (
 )
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.condition import Path, many, path, sharp, transition
+from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
 from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.path_times import many
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers.tensors import (

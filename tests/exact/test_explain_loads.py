@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.written_loads import euler, kirchhoff
+from builders.written_loads import ABOUT_AXES, euler, kirchhoff
 
 from taylor_verify import explain
+from taylor_verify.cli import main
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.loads import conserved, operations, summands, terms
@@ -72,6 +74,18 @@ def test_what_is_conserved_is_said_with_its_potential() -> None:
     level = "x_space . n = constant, n = (-2, 1, 0) and (2/5, 4/5, 1)"
     assert list(conserved(HEAVY)) == [level]
     assert list(conserved(euler(["-w1/3", "0", "sin(t)"]))) == [NOTHING_CONSERVED]
+
+
+def test_the_verb_prints_the_terms(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The text has what is conserved, and each term with its size, its work and its operations."""
+    file = tmp_path / "top.toml"
+    moment = '["r32/3", "-r31/3", "sin(t)/8"]'
+    file.write_text(ABOUT_AXES.format(moment=moment, omega="[0, 0.5, 1]", end="1"), "utf-8")
+    assert main(["explain", str(file)]) == 0
+    text = capsys.readouterr().out
+    assert NOTHING_CONSERVED in " ".join(text.split())
+    for words in ("moment[0]  r32/3", "at most (t =", "work until the end", "1 functions"):
+        assert words in text
 
 
 @pytest.mark.parametrize(

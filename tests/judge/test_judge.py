@@ -285,7 +285,7 @@ def test_truth_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch
 
     with pytest.raises(Unsettled):
         Doubtful().motion([Fraction(1)], 20)
-    monkeypatch.setattr(gated, "solution", lambda scene: Doubtful())
+    monkeypatch.setattr(gated, "truth", lambda scene, digits: Doubtful())
     verdicts = run("euler/generic", "taylor", "f64").verdicts
     assert [v.verdict for v in verdicts] == [Status.UNDECIDED]
     assert exit_status(verdicts) == 3

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.integrators import step
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
 
@@ -83,20 +84,6 @@ def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
                 y = step(partial(rates, time), time, y, h)
             rows.append(y)
         return rows
-
-
-def step(rates: Callable[[Any, list[Any]], list[Any]], t: Any, y: list[Any], h: Any) -> list[Any]:
-    def moved(slope: list[Any], share: Any) -> list[Any]:
-        return [a + share * s for a, s in zip(y, slope, strict=True)]
-
-    first = rates(t, y)
-    second = rates(t + h / 2, moved(first, h / 2))
-    third = rates(t + h / 2, moved(second, h / 2))
-    fourth = rates(t + h, moved(third, h))
-    return [
-        a + h / 6 * (p + 2 * q + 2 * r + s)
-        for a, p, q, r, s in zip(y, first, second, third, fourth, strict=True)
-    ]
 
 
 def with_moment(scene: Scene, texts: Sequence[str]) -> Scene:

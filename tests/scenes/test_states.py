@@ -262,6 +262,23 @@ def test_instants_on_a_rung_are_rounded_once() -> None:
         close.on_rung(rung("f32")).instants(1 + Fraction(1, 10**9))
 
 
+def test_instants_switches_and_knots_at_one_time_stay_at_one_time() -> None:
+    """3/10 is no number of f64: whatever happens then happens at the number nearest to it."""
+    tables = """
+    [tables]
+    p = { times = [0, 0.3], values = [1, 2], kind = "hold" }
+    [states]
+    m = { every = "1/10", value = "p + step(t - 0.3)" }
+    """
+    loads = scene(tables).body.loads
+    assert loads is not None
+    rounded = loads.on_rung(rung("f64"))
+    time = rounded.instants(Fraction(1))[3].time
+    assert time in rounded.switches
+    piece = rounded.piece(time)
+    assert value(piece, piece.values[0], {}) == 3
+
+
 def test_floor_of_the_time_is_a_staircase() -> None:
     """It switches within the scene, its last stair is known, and none beyond it is guessed."""
     loads = states('h = { start = 0, rate = "floor(2*t - 1/2)" }')

@@ -125,6 +125,7 @@ def test_every_shipped_scene_has_its_files(scene: str) -> None:
         assert published[name] == [row[name] for row in rows]
     tracked = {"omega"} if asked.model == "euler" else {"linear_impulse", "angular_impulse"}
     expected = [n for q in VECTORS if q in tracked | asked.track for n in VECTORS[q]]
+    expected += [n for group in asked.groups if group.name in asked.states for n in group.columns]
     assert list(rows[0]) == ["t", *expected, "radius"]
 
 

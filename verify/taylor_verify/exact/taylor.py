@@ -27,6 +27,7 @@ from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.scene import Scene
@@ -86,6 +87,17 @@ class Enclosing(Solution):
     @cached_property
     def _system(self) -> System:
         return posed(self.scene)
+
+    def _system_until(self, time: Fraction) -> System:
+        """The system as far as an elapsed time; stairs of floor are listed so far."""
+        loads = self.scene.body.loads
+        if loads is None or (further := loads.reaching(time)) is loads:
+            return self._system
+        try:
+            _ = further.switches
+        except ValueError as fault:
+            raise Unreached(str(fault), time) from None
+        return posed(replace(self.scene, body=self.scene.body.with_loads(further)))
 
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
@@ -217,9 +229,9 @@ class TaylorSolution(Enclosing):
     most_steps: int = MOST_STEPS
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        start = self._system.start_balls()
-        place = _place(self.scene, self.scene.initial, self._system)
-        course = Course.of(self._system, start, place, bits, most_bits)
+        system = self._system_until(max(times.values(), key=abs))
+        start, place = system.start_balls(), _place(self.scene, self.scene.initial, system)
+        course = Course.of(system, start, place, bits, most_bits)
         course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
         places: dict[Fraction, list[int]] = {}
         for number, time in times.items():
@@ -241,20 +253,28 @@ def arcs(
     spans: Sequence[Fraction],
     digits: int,
     begins: Sequence[Fraction] = (),
+    own: Sequence[Mapping[str, Vector]] = (),
 ) -> Motion:
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
     Enclosed to ``digits``, as Solution.motion is, and raises Unsettled likewise. The loads of a
     manufactured motion change with time: there each arc has to say when it begins, ``begins`` since the
-    start of the scene. Elsewhere that changes nothing.
+    start of the scene. Elsewhere that changes nothing. A scene with states of its own needs these too:
+    ``own`` has them by name, those that are held as they are after an instant at the beginning of an arc.
     """
-    changes = scene.body.manufactured is not None or scene.body.loads is not None
+    body = scene.body
+    changes = body.manufactured is not None or body.loads is not None
     if changes and len(begins) != len(starts):
         raise ValueError(
             f"expected the times at which {len(starts)} arcs under loads that change with time begin, "
             f"got {len(begins)} @ {scene.name}"
         )
-    return _Arcs(scene, tuple(starts), tuple(begins)).motion(spans, digits)
+    if body.loads is not None and body.loads.states and len(own) != len(starts):
+        raise ValueError(
+            f"expected the scene's own states at the start of {len(starts)} arcs, "
+            f"got {len(own)} @ {scene.name}"
+        )
+    return _Arcs(scene, tuple(starts), tuple(begins), tuple(own)).motion(spans, digits)
 
 
 @final
@@ -264,30 +284,33 @@ class _Arcs(Enclosing):
 
     starts: tuple[State, ...]
     begins: tuple[Fraction, ...]
+    own: tuple[Mapping[str, Vector], ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         whole = Course.of(
             self._system, (), _place(self.scene, self.starts[0], self._system), bits, most_bits
         )
         for number, span in times.items():
-            start = self.starts[number]
+            start, begin = self.starts[number], self.begins[number] if self.begins else Fraction(0)
             if len(whole.system.start) > len(start.moving):
                 # The frame is in the state, and counts from the start of its own arc.
-                system = posed(replace(self.scene, initial=start))
-                place = _place(self.scene, start, system)
-                whole = Course.of(system, (), place, bits, most_bits)
-                state = system.start_balls()
+                system = posed(self._begun(number, begin + span))
+                whole = Course.of(system, (), _place(self.scene, start, system), bits, most_bits)
+                state = system.start_balls(begin)
             else:
                 state = balls(kind_of(self.scene.body).state(start))
-            begin = self.begins[number] if self.begins else Fraction(0)
-            arc = replace(
-                whole,
-                start=state,
-                place=_place(self.scene, start, whole.system),
-                origin=begin,
-                has_values=True,
-            )
+            place = _place(self.scene, start, whole.system)
+            arc = replace(whole, start=state, place=place, origin=begin, has_values=True)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
+
+    def _begun(self, number: int, end: Fraction) -> Scene:
+        """The scene with the start of an arc, and stairs of floor as far as its end."""
+        scene = replace(self.scene, initial=self.starts[number])
+        if scene.body.loads is None:
+            return scene
+        loads = scene.body.loads.reaching(end)
+        loads = loads.starting(self.own[number]) if self.own else loads
+        return replace(scene, body=scene.body.with_loads(loads))
 
 
 def _place(scene: Scene, initial: State, system: System) -> Place | None:

@@ -27,7 +27,7 @@ from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
-from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -64,7 +64,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "model": scene.model,
         "rung": rung,
         "bits": rung_named(rung).bits,
-        "track": sorted({MAIN[scene.model]} | scene.track),
+        "track": sorted(quantity.name for quantity in scene.tracked),
         "warnings": [*scene.warnings, *lacking],
         "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},

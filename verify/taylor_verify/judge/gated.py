@@ -15,10 +15,12 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.loaded import truth
+from taylor_verify.exact.conditioning.loaded import Linearised, truth
+from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.balances import clock_work
+from taylor_verify.judge.errors.laws import Laws
 from taylor_verify.judge.errors.measured import Comparison, Measured
 from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors, Floats
@@ -155,6 +157,7 @@ def gates_of(
             every += gates.conserved()
             every += gates.unit_quaternion()
         every += gates.velocities()
+        every += gates.laws(exact, digits, bits)
     return [gate.with_input(inputs, float(roundoff)) if inputs else gate for gate in every]
 
 
@@ -210,6 +213,20 @@ class _Gates:
             attainable = self.floor.of_velocity(one.group, one.errors, one.sizes)
             terms = Reason(floor=RoundoffFloor(_OF_VELOCITY[one.group]))
             yield Gate(self.run, one.errors, attainable, terms, one.shift)
+
+    def laws(self, exact: Solution, digits: int, bits: int) -> Iterator[Gate]:
+        """Yield the gates of held values against their laws, where truth and orbit come together."""
+        given, orbit = self.run.problem.given, self.floor.orbit
+        if not isinstance(exact, Linearised):
+            return
+        motion = exact.motion(given.clock.elapsed, digits)
+        roundoff = float(self.run.problem.rung.unit_roundoff)
+        answer = {
+            name: self.run.trajectory.quantities[name] for name in self.run.trajectory.quantities
+        }
+        for law in Laws(given, motion, orbit, answer, bits, roundoff):
+            terms = Reason(floor=RoundoffFloor(Carried.LAW))
+            yield Gate(self.run, law.errors, law.attainable, terms)
 
     def _terms(
         self, errors: Errors, attainable: Floats, carried: Carried, clock_work: bool = False

@@ -16,8 +16,24 @@ NO_BALANCES: Final = (
 NOTHING_CONSERVED: Final = (
     "no quantity was found that these loads conserve, so no conserved quantity is gated"
 )
+_HOLD: Final = "hold"
 # One quantity of each model that every balance comes with.
 _BALANCED: Final = ("H2", "F2")
+
+
+def breaks_of(scene: Scene) -> str:
+    """Return where the equations of a scene jump in time, in words; empty where they do not.
+
+    Of switches nothing is said where some of them are knots of a table without jumps.
+    """
+    loads, last = scene.body.loads, scene.clock.elapsed[-1]
+    if loads is None:
+        return ""
+    inside = any(0 < abs(switch) < abs(last) for switch in loads.switches)
+    jumps = all(table.kind == _HOLD for _, table in loads.tables)
+    parts = ["the switches of the loads"] * (inside and jumps)
+    parts += ["the instants of held states"] * bool(loads.instants(last))
+    return " and ".join(parts)
 
 
 def load_notes(scene: Scene, verdicts: Sequence[Verdict]) -> Iterator[str]:

@@ -8,7 +8,7 @@ its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -84,21 +84,8 @@ class Conserved:
 GROUPS: Final[Mapping[str, Group]] = {
     group.name: group
     for group in (
-        Group(
-            name="omega",
-            columns=("w1", "w2", "w3"),
-            quantity="omega",
-            noun="angular velocity",
-            dimension="rate",
-            start="omega",
-        ),
-        Group(
-            name="linear_velocity",
-            columns=("u1", "u2", "u3"),
-            quantity="velocity",
-            noun="linear velocity",
-            dimension="velocity",
-        ),
+        Group("omega", ("w1", "w2", "w3"), "omega", "angular velocity", "rate", start="omega"),
+        Group("linear_velocity", ("u1", "u2", "u3"), "velocity", "linear velocity", "velocity"),
         Group(
             name="linear_impulse",
             columns=("x1", "x2", "x3"),
@@ -132,15 +119,7 @@ GROUPS: Final[Mapping[str, Group]] = {
             dimension="number",
             moves_with="frame",
         ),
-        Group(
-            name="centre",
-            columns=("c1", "c2", "c3"),
-            quantity="centre",
-            noun="centre",
-            dimension="length",
-            moves_with="space",
-            start="centre",
-        ),
+        Group("centre", ("c1", "c2", "c3"), "centre", "centre", "length", "space", "centre"),
     )
 }
 # In reading order.
@@ -148,19 +127,8 @@ QUANTITIES: Final[Mapping[str, Quantity]] = {
     each.name: each
     for each in (
         Quantity("omega", "max|omega|", ("omega",), main_of="euler"),
-        Quantity(
-            "impulse",
-            "max|x|, max|y|",
-            ("linear_impulse", "angular_impulse"),
-            main_of="kirchhoff",
-        ),
-        Quantity(
-            "attitude",
-            "rad",
-            ("quaternion",),
-            tracked_by=("euler", "kirchhoff"),
-            measure=Measure.ANGLE,
-        ),
+        Quantity("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse"), "kirchhoff"),
+        Quantity("attitude", "rad", ("quaternion",), "", ("euler", "kirchhoff"), Measure.ANGLE),
         Quantity(
             "centre",
             "arc length",
@@ -225,7 +193,18 @@ IMPULSES: Final = tuple(column for name in MOMENTA["kirchhoff"] for column in CO
 
 def is_conserved(quantity: str) -> bool:
     """Return True for the name of a conserved quantity."""
-    return quantity not in (*STATES, INITIAL, COMPLETE)
+    return quantity in CONSERVED_QUANTITIES or quantity == UNIT_QUATERNION
+
+
+def is_state(quantity: str) -> bool:
+    """Return True for the name of a state quantity, one of a scene's own among them."""
+    return not is_conserved(quantity) and quantity not in (INITIAL, COMPLETE)
+
+
+def states_among(quantities: Iterable[str]) -> list[str]:
+    """Return the state quantities in reading order: those of the body, then those of a scene's own."""
+    names = [name for name in dict.fromkeys(quantities) if is_state(name)]
+    return [*(name for name in STATES if name in names), *(n for n in names if n not in STATES)]
 
 
 def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]:

@@ -45,6 +45,7 @@ class Carried(StrEnum):
     ORBIT = "transition matrix"
     GRADIENT = "gradient"
     WORK = "work"
+    LAW = "law"
     VELOCITY = "velocity of x and y"
     LINEAR_VELOCITY = "linear velocity of x and y"
     LENGTH = "length of the quaternion"
@@ -132,6 +133,10 @@ _MEANINGS: Final = {
     Carried.WORK: (
         "T of the exact motion, at the start and with the work of all loads since; attainable = |dT/dz| x "
         "the floor of the momenta z"
+    ),
+    Carried.LAW: (
+        "on the instants of this state, the value in the row against its law at the state of the same row; "
+        "a rounding of each number and step of the law, and of the row"
     ),
     Carried.VELOCITY: (
         "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from taylor_verify.records.quantities import (
@@ -51,6 +52,13 @@ class Scene:
         """The columns of a solver's states, in their order."""
         names = state_groups(self.model, self.track)
         return (*(GROUPS[name] for name in names), *(group for _, group in self._own))
+
+    @property
+    def known_groups(self) -> Mapping[str, Group]:
+        """All columns that a file may have, by their group; all states of the scene's own among them."""
+        loads = self.body.loads
+        states = () if loads is None else loads.states
+        return {**GROUPS, **{s.name: own_state(s.name, s.components)[1] for s in states}}
 
     @property
     def _own(self) -> list[tuple[Quantity, Group]]:

@@ -46,9 +46,12 @@ class Conservation:
 
 @lru_cache(maxsize=16)
 def conservation(scene: Scene) -> Conservation:
-    """Return what the written loads of a scene conserve, as far as it is found; nothing without loads."""
+    """Return what the written loads of a scene conserve, as far as it is found.
+
+    Nothing without loads, and under a rotor of texts, whose momentum changes that of the body.
+    """
     loads = scene.body.loads
-    if loads is None:
+    if loads is None or loads.rotor:
         return Conservation()
     pieces = list(_pieces(scene, loads))
     if len(pieces) > _MOST_PIECES:
@@ -121,7 +124,7 @@ def _of_spin(derivation: Derivation) -> dict[str, Row]:
     body, kind = derivation.scene.body, kind_of(derivation.scene.body)
     assert isinstance(kind, Rotating)
     wheels = [Polynomial.number(h) for h in kind.rotor(body)]
-    H = [*map(add, mapped(body.inertia, derivation.state), wheels)]
+    H = [*map(add, mapped(kind.energy(body), derivation.state), wheels)]
     return {"H2": [product(H, H)], "H_space": derivation.turned(H), "H_axis": H}
 
 

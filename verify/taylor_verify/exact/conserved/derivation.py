@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import repeat
 from operator import add, mul, sub
 from typing import Final
 
+from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, total
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
@@ -24,7 +25,7 @@ from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, Piece
 from taylor_verify.scenes.loads.steps import Step
 from taylor_verify.scenes.scene import Scene
 
-Row = Sequence[Polynomial]
+Row = list[Polynomial]
 
 # Powers up to this one are written out.
 _MOST_POWER: Final = 4
@@ -60,7 +61,7 @@ class Derivation:
         return symbols(self.names)
 
     @cached_property
-    def attitude(self) -> Sequence[Row]:
+    def attitude(self) -> list[Row]:
         """R of the unit quaternion."""
         q = symbols(QUATERNION)
         pairs = [[a * b for b in q] for a in q]
@@ -69,23 +70,23 @@ class Derivation:
             return total(pairs[i][j].times(Fraction(2 * sign)) for sign, i, j in terms)
 
         one = Polynomial.number(Fraction(1))
-        return (
-            (
+        return [
+            [
                 one + double((-1, 2, 2), (-1, 3, 3)),
                 double((1, 1, 2), (-1, 0, 3)),
                 double((1, 1, 3), (1, 0, 2)),
-            ),
-            (
+            ],
+            [
                 double((1, 1, 2), (1, 0, 3)),
                 one + double((-1, 1, 1), (-1, 3, 3)),
                 double((1, 2, 3), (-1, 0, 1)),
-            ),
-            (
+            ],
+            [
                 double((1, 1, 3), (-1, 0, 2)),
                 double((1, 2, 3), (1, 0, 1)),
                 one + double((-1, 1, 1), (-1, 2, 2)),
-            ),
-        )
+            ],
+        ]
 
     @cached_property
     def rates(self) -> Mapping[str, Polynomial]:
@@ -178,11 +179,8 @@ class Derivation:
             return _ARITHMETIC[step.operation](*operands)
         if step.operation == "/" and set(operands[1].terms) == {()}:
             return operands[0].times(1 / operands[1].terms[()])
-        power = step.number
-        if step.operation == "power" and power in range(2, _MOST_POWER + 1):
-            (base,) = operands
-            square = base * base
-            return {2: square, 3: square * base, 4: square * square}[int(power)]
+        if step.operation == "power" and step.number in range(2, _MOST_POWER + 1):
+            return reduce(mul, operands * int(step.number or 0))
         return None
 
     @cached_property
@@ -206,7 +204,7 @@ def sum_of(numbers: Vector, row: Row) -> Polynomial:
     return total(part.times(number) for number, part in zip(numbers, row, strict=True))
 
 
-def mapped(matrix: Matrix, row: Row) -> Row:
+def mapped(matrix: Matrix | Exact, row: Row) -> Row:
     """The product of a matrix and polynomials."""
     return [sum_of(numbers, row) for numbers in matrix]
 

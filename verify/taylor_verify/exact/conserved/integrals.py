@@ -22,6 +22,7 @@ from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
 
+_ENERGY: Final = "T"
 # Components of a momentum in space, by the name of the whole.
 _ALONG: Final = {"H_space": "H_along", "x_space": "x_along", "y_space": "y_along"}
 _AXES: Final = ("H_axis", "y_axis")
@@ -33,7 +34,10 @@ def under_loads(scene: Scene, free: Sequence[Invariant]) -> tuple[Invariant, ...
 
     What the tracked quantities do not determine is left out.
     """
-    proven = conservation(scene)
+    loads, proven = scene.body.loads, conservation(scene)
+    if loads is not None and loads.rotor:
+        # The momentum of the wheels is no part of those of the free body.
+        free = [each for each in free if each.name == _ENERGY]
     axes = tuple(axis for name in _AXES for axis in proven.directions.get(name, ()))
     steady = {each.name for each in free if _is_along(each.name, axes)} | proven.steady
     marked = [
@@ -58,7 +62,9 @@ def _is_along(name: str, axes: Sequence[Vector]) -> bool:
 
 def _more(scene: Scene, free: Sequence[Invariant], proven: Conservation) -> Iterator[Invariant]:
     by_name = {each.name: each for each in free}
-    if proven.potential is not None and (energy := _energy(scene, by_name["T"], proven.potential)):
+    if proven.potential is not None and (
+        energy := _energy(scene, by_name[_ENERGY], proven.potential)
+    ):
         yield energy
     for whole, name in _ALONG.items():
         if whole in proven.directions and whole in by_name:

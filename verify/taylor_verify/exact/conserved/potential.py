@@ -64,7 +64,8 @@ class Potential:
         R = motion["attitude"]
         slopes = np.stack([self._slope(motion, name) for name in ROTATION], axis=1)
         G = slopes.reshape(R.shape)
-        return np.sum([cross(R[:, :, j], G[:, :, j]) for j in range(3)], axis=0)
+        turns: Array = np.sum([cross(R[:, :, j], G[:, :, j]) for j in range(3)], axis=0)
+        return turns
 
     def by_centre(self, motion: Motion) -> Array:
         """The derivative by the centre (n, 3)."""
@@ -102,7 +103,7 @@ def potentials(derivation: Derivation, power: Polynomial) -> dict[Factors, Polyn
     entries = dict(zip(ROTATION, chain(*derivation.attitude), strict=True))
     if derivation.velocity:
         entries |= {name: Polynomial.symbol(name) for name in CENTRE}
-    products = {(name,): entry for name, entry in entries.items()}
+    products: dict[Factors, Polynomial] = {(name,): entry for name, entry in entries.items()}
     if _is_positional(derivation, power):
         for first, second in combinations_with_replacement(entries, 2):
             products[first, second] = entries[first] * entries[second]

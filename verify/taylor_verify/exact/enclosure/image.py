@@ -17,6 +17,7 @@ from typing import Any, Final, NamedTuple
 
 from flint import arb, arb_mat, ctx
 
+from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.functions import Angle
 from taylor_verify.exact.enclosure.jumps import Choice, Jump, OnJump
@@ -29,6 +30,7 @@ from taylor_verify.exact.enclosure.operations import (
     Operation,
     State,
 )
+from taylor_verify.exact.enclosure.rationals import Rationals, rational_values
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 
@@ -70,11 +72,17 @@ class _Values:
 class Image:
     """The nodes of a tape over a box at one time. To be used at the precision of a course.
 
+    ``exactly`` is the state, where it is known in exact numbers: what is rational decides jumps as it is.
     Raises OnJump, or Domain for a function that may have no value, where an output depends on it.
     """
 
-    def __init__(self, tape: Tape, box: Box, time: Fraction) -> None:
+    def __init__(
+        self, tape: Tape, box: Box, time: Fraction, exactly: Sequence[Any] | None = None
+    ) -> None:
         self._tape, self._apart = tape, box.apart.entries()
+        self._rational: Rationals = [None] * len(tape.operations)
+        if exactly is not None:
+            self._rational = rational_values(tape, exactly, time)
         # Operations take these for a series.
         self._point: Any = _Values(tape, time)
         with ctx.workprec(BOUND_BITS):
@@ -111,12 +119,17 @@ class Image:
             case State(component=component):
                 return box.point[component], {component: ONE}
             case Choice():
-                chosen = operation.decided(self._over_box(operation.condition))
+                rational = self._rational[operation.condition]
+                chosen = operation.chosen(
+                    self._over_box(operation.condition) if rational is None else rational
+                )
                 self._require(chosen)
                 return self._point.forward[chosen][0], self._gradients[chosen]
         for a in operation.operands:
             self._require(a)
         match operation:
+            case Jump() if (rational := self._rational[i]) is not None:
+                return ball(rational), {}
             case Jump():
                 return operation.decided(self._over_box(operation.a)), {}
             case Absolute():

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Self
 
 from flint import arb
@@ -18,7 +19,7 @@ class OnJump(ArithmeticError):
     """A box that may lie on both sides of a jump."""
 
 
-def is_positive(value: arb) -> bool:
+def is_positive(value: arb | Fraction) -> bool:
     """True for a value that is not negative. Raises OnJump where that is not known."""
     if value >= 0:
         return True
@@ -32,6 +33,14 @@ class Jump(OfOne):
     """sign, step or floor of the node ``a``, by its ``name``."""
 
     name: str
+
+    def of(self, value: Fraction) -> Fraction:
+        """The value at a rational number."""
+        if self.name == "floor":
+            return Fraction(value // 1)
+        if self.name == "step":
+            return Fraction(int(value >= 0))
+        return Fraction((value > 0) - (value < 0))
 
     def decided(self, value: arb) -> arb:
         """The one value over a ball. Raises OnJump where there are two."""
@@ -69,6 +78,6 @@ class Choice(Operation):
             second_choice=places[self.second_choice],
         )
 
-    def decided(self, condition: arb) -> int:
-        """The node that is chosen over a ball of the condition. Raises OnJump where both may be."""
+    def chosen(self, condition: arb | Fraction) -> int:
+        """The node that is chosen over a condition. Raises OnJump for a ball over which both may be."""
         return self.first_choice if is_positive(condition) else self.second_choice

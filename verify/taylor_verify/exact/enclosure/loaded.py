@@ -24,6 +24,7 @@ from taylor_verify.exact.enclosure.box import Box, over_box
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.layout import Layout
 from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
+from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.system import Piece, System, Taken
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import Vector
@@ -60,6 +61,7 @@ class LoadedBody:
             velocity=velocity,
             current=loads.current if any(loads.current) else (),
             begin=self._begin if loads.rotor else None,
+            exactly=self._exactly() if loads.held_values else None,
             own=self._layout.own,
             instants=loads.instants if loads.held_values else None,
             taken=self._taken,
@@ -80,15 +82,23 @@ class LoadedBody:
             start += state.start or (Fraction(0),) * len(state.components)
         return start
 
-    def _begin(self) -> list[arb]:
-        """The start in balls, with the momentum of the rotor."""
+    def _begin(self, time: Fraction) -> list[arb]:
+        """The start in balls, with the momentum of the rotor at an elapsed time."""
         start = balls(self.start)
         box = Box.about(start)
-        wheels = Image(
-            self._tapes_at(Fraction(0), is_later=True).wheels, box, Fraction(0)
-        ).outputs()
+        wheels = Image(self._tapes_at(time, is_later=True).wheels, box, time).outputs()
         added = over_box(box, *wheels)
         return [z + h for z, h in zip(start, added, strict=False)] + start[len(added) :]
+
+    def _exactly(self) -> list[Any]:
+        """The start in exact numbers; None for a component of H that is not rational."""
+        start: list[Any] = list(self.start)
+        if self._loads.rotor:
+            tape = self._tapes_at(Fraction(0), is_later=True).wheels
+            values = rational_values(tape, start, Fraction(0))
+            wheels = [values[place] for place in tape.outputs]
+            start[:3] = [None if h is None else z + h for z, h in zip(start, wheels, strict=False)]
+        return start
 
     def _widened(self, form: Exact) -> Exact:
         more = len(self.start) - self._layout.size

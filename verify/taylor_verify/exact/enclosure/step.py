@@ -107,9 +107,9 @@ class Stepper:
             if around is not None and excess <= 0:
                 way = self._leg(series, frame, around, moving, box)
                 terms, is_flat = bounds.terms(), bool(series.flat)
-                seen = reach if is_flat else self._reach(series)
+                radius = reach if is_flat else self._reach(series)
                 state, step = series.rows, series.step
-                return Step(step, state, around, moving, way, terms, is_flat, seen, image)
+                return Step(step, state, around, moving, way, terms, is_flat, radius, image)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
             frame = scaled(frame, ball(share))
@@ -136,9 +136,10 @@ class Stepper:
         rows, missed = series.rows, around.truncation.entries()
         excess = float("-inf")
         for span in self.system.spans:
-            size = max(size_of(row, span) for row in rows)
+            size = _moved_by(rows, span)
             lost = size_of(missed, span)
-            if lost > float("-inf"):
+            # A block that is zero throughout has no last bits.
+            if min(lost, size) > float("-inf"):
                 excess = max(excess, lost - size + ctx.prec - SPARE_BITS)
         return excess
 
@@ -247,10 +248,7 @@ class Stepper:
 
         An own state is as large as it moves by, too: a number passes through zero alone.
         """
-        own = [
-            _growing(rows, span, max(size_of(row, span) for row in rows[:3]))
-            for span in self.system.own.values()
-        ]
+        own = [_growing(rows, span, _moved_by(rows, span)) for span in self.system.own.values()]
         return min([self.root_test(rows, self.system.others), *own])
 
     def root_test(self, rows: Rows, spans: Sequence[range]) -> float:
@@ -258,10 +256,20 @@ class Stepper:
         factors = [float("inf")]
         for span in spans:
             # The size of the block, or of its first change.
-            sizes = (size_of(row, span) for row in rows)
-            size = next((size for size in sizes if size > float("-inf")), float("-inf"))
-            factors.append(_growing(rows, span, size))
+            factors.append(_growing(rows, span, _first_size(rows, span)))
         return min(factors)
+
+
+def _first_size(rows: Rows, span: range) -> float:
+    """log2 of the size of a block, or of its first change; -inf where it is zero throughout."""
+    sizes = (size_of(row, span) for row in rows)
+    return next((size for size in sizes if size > float("-inf")), float("-inf"))
+
+
+def _moved_by(rows: Rows, span: range) -> float:
+    """log2 of the size of a block and of its first two orders, or of its first change."""
+    largest = max(size_of(row, span) for row in rows[:3])
+    return largest if largest > float("-inf") else _first_size(rows, span)
 
 
 def _growing(rows: Rows, span: range, size: float) -> float:

@@ -1,4 +1,4 @@
-"""When a course stops: with more bits, or for good."""
+"""Limits of a course: it stops for more bits, or for good."""
 
 from __future__ import annotations
 

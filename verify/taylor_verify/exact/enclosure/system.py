@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -50,7 +50,8 @@ class System:
     of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y. The centre drifts with the
     ``current`` of the fluid, if there is one.
 
-    ``begin`` makes balls of the start, where that is no exact one. ``own`` are the places of the scene's
+    ``begin`` makes balls of the start at a time, where that is no exact one. If values are taken there,
+    ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's
     own states, behind all others. ``instants`` up to an elapsed time are those at which values are
     ``taken``; None where no value is held.
     """
@@ -61,14 +62,15 @@ class System:
     spin: Exact
     velocity: Exact
     current: Vector = ()
-    begin: Callable[[], list[arb]] | None = None
+    begin: Callable[[Fraction], list[arb]] | None = None
+    exactly: Sequence[Any] | None = None
     own: Mapping[str, range] = field(default_factory=dict)
     instants: Callable[[Fraction], Sequence[Instant]] | None = None
     taken: Callable[[Instant], Taken] | None = None
 
-    def start_balls(self) -> list[arb]:
-        """The start in balls at the ambient precision."""
-        return balls(self.start) if self.begin is None else self.begin()
+    def start_balls(self, time: Fraction = Fraction(0)) -> list[arb]:
+        """The start in balls at the ambient precision, for a motion that begins at an elapsed time."""
+        return balls(self.start) if self.begin is None else self.begin(time)
 
     @property
     def is_framed(self) -> bool:

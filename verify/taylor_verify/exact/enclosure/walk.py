@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from flint import arb, arb_mat, ctx
 
@@ -169,7 +169,7 @@ class Walk:
             state = within(self._box, step.state, step.tube, step.flow, share)
             row = self._complete(state, _framed(place), time)
         else:
-            row = self._seen(self._carried(step, share), step.image, time)
+            row = self._imaged(self._carried(step, share), step.image, time)
         since = None if self._since is None else self._since.at_row(step.flow, share)
         return replace(row, since=since)
 
@@ -179,14 +179,13 @@ class Walk:
         if image is None:
             row = self._complete(self._box.balls(), _framed(self._place), self._now)
         else:
-            row = self._seen(self._box, image, self._now)
+            row = self._imaged(self._box, image, self._now)
         since = None if self._since is None else self._since.at_row(None, _ONE)
         return replace(row, since=since)
 
-    def _seen(self, box: Box, image: Tape, time: Fraction) -> Row:
+    def _imaged(self, box: Box, image: Tape, time: Fraction) -> Row:
         """The row over a box, with omega and R by an image of it."""
-        seen = self._image(image, box, time)
-        outputs = over_box(box, seen.values, seen.slopes)
+        outputs = over_box(box, *self._image(image, box, time))
         return self._complete([*outputs[:3], *box.balls()[3:]], (outputs[3:], None), time)
 
     def _complete(
@@ -263,14 +262,17 @@ class Walk:
         instant = self._instants.pop()
         time = self._course.origin + self._now
         tape, places = self._system.taken(instant._replace(time=time))
-        values, slopes = self._image(tape, self._box, self._now)
+        exactly = None if self._now or self._course.has_values else self._system.exactly
+        values, slopes = self._image(tape, self._box, self._now, exactly)
         self._box = renewed(self._box, places, values, slopes)
         if self._since is not None:
             self._since.through(places, slopes)
 
-    def _image(self, tape: Tape, box: Box, time: Fraction) -> Functions:
+    def _image(
+        self, tape: Tape, box: Box, time: Fraction, exactly: Sequence[Any] | None = None
+    ) -> Functions:
         try:
-            return Image(tape, box, self._course.origin + time).outputs()
+            return Image(tape, box, self._course.origin + time, exactly).outputs()
         except OnJump:
             raise self._stuck(_ON_JUMP) from None
         except Domain as end:

@@ -38,7 +38,7 @@ from taylor_verify.judge.errors.state import (
 from taylor_verify.judge.errors.velocity import VelocityErrors, velocity_shift
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
-from taylor_verify.records.quantities import GROUPS, VELOCITIES, state_groups
+from taylor_verify.records.quantities import VELOCITIES, state_groups
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.motion import Clock, Motion
@@ -174,7 +174,8 @@ class Comparison:
         return {"attitude" if name == "quaternion" else name for name in self.quantities}
 
     def _has_quantity(self, quantity: str) -> bool:
-        return any(GROUPS[name].quantity == quantity for name in self._has)
+        groups = self.scene.known_groups
+        return any(groups[name].quantity == quantity for name in self._has)
 
     @property
     def _arc_scene(self) -> Scene:
@@ -214,9 +215,10 @@ class Comparison:
     def _has_arcs(self, loads: Loads) -> bool:
         """Return True if an arc can begin at a row: where loads read the frame, it needs all of the frame.
 
-        Loads that read the quaternion itself read its sign, which a row does not determine.
+        Loads that read the quaternion itself read its sign, which a row does not determine. Nor do rows
+        determine states of the scene's own that are in flight.
         """
-        if not loads.inputs.isdisjoint(QUATERNION):
+        if loads.states or loads.rotor or not loads.inputs.isdisjoint(QUATERNION):
             return False
         frame = {"quaternion"} if loads.reads_attitude else set()
         frame |= {"centre"} if loads.reads_centre else set()

@@ -38,14 +38,14 @@ from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
-from taylor_verify.judge.load_notes import load_notes
+from taylor_verify.judge.load_notes import breaks_of, load_notes
 from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead, LikelyCause
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
+from taylor_verify.records.quantities import is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -66,11 +66,13 @@ class FileJudgement(Judgement):
     """The verdicts on a file, its conventions and notes.
 
     ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected.
+    ``breaks`` says where the equations of the scene are not smooth in time; empty where they are.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
+    breaks: str = ""
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -79,7 +81,7 @@ class FileJudgement(Judgement):
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
-        columns = (column for group in self.file.groups for column in COLUMNS[group])
+        columns = (column for group in self.file.groups for column in self.file.columns[group])
         file = FileRead(self.file.name, len(self.file.times), ("t", *columns), self.notes)
         conventions = [
             Convention(
@@ -122,8 +124,8 @@ def judge_file(
     groups = comparable(file, scene)
     asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
-    tracked = with_needs({GROUPS[name].quantity for name in groups})
-    scene = replace(scene, track=scene.track & tracked)
+    tracked = with_needs({scene.known_groups[name].quantity for name in groups})
+    scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
     known = Conventions((), World(scene), {})
     answer = FileRows.of(compared, rung, known)
     try:
@@ -156,7 +158,7 @@ def judge_file(
         notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, known.findings, accept_conventions)
+    of_file = (file, known.findings, accept_conventions, breaks_of(scene))
     return FileJudgement(verdicts, judged.record, *of_file, causes=causes, notes=notes)
 
 
@@ -165,7 +167,7 @@ def _fits(judged: Judgement) -> bool:
 
     A tolerance that is nearly as large as the motion could let a wrong convention pass.
     """
-    states = [verdict for verdict in judged.verdicts if verdict.quantity in STATES]
+    states = [verdict for verdict in judged.verdicts if is_state(verdict.quantity)]
     return all(
         verdict.verdict is Status.PASS and (verdict.tolerance or 0.0) <= EXPLAINS
         for verdict in states

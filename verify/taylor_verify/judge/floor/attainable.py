@@ -26,7 +26,8 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.condition import DIGITS, Path, path, transition
+from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.conditioning.loaded import DIGITS
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
@@ -37,6 +38,7 @@ from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
+from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -78,7 +80,7 @@ class Floor:
             for part, scale in errors.parts.items()
         ]
         attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return larger_neighbour(attainable, self._path_times, self.times)
+        return larger_neighbour(attainable, self._path_times, self.times) / errors.sizes
 
     def of_velocity(self, group: str, errors: Errors, sizes: Floats) -> Floats:
         """Return the error of a velocity that the rounding of x and y, and of the velocity itself, leaves.
@@ -196,8 +198,8 @@ class Floor:
 
         With arcs a balance adds what the rounded samples at their beginnings make.
         """
-        first = 3 * self.orbit.blocks.index(block)
-        rows = self.rounded[:, first : first + 3]
+        span = self.orbit.span(block)
+        rows = self.rounded[:, span]
         factors = growths(self.orbit.scene, self.orbit.elapsed)
         if factors is not None and block in self.orbit.flow.momenta:
             # With damping, conserved quantities use e^{ct} times the momenta.
@@ -205,7 +207,7 @@ class Floor:
         squares = self.steps_at[:, None] * rows**2
         has_loads = self.orbit.scene.body.loads is not None
         if has_arcs and has_loads and block in self.orbit.flow.momenta:
-            squares = squares + self._by_arcs[:, first : first + 3]
+            squares = squares + self._by_arcs[:, span]
         return np.cumsum(squares, axis=0)
 
     @cached_property
@@ -214,11 +216,12 @@ class Floor:
 
         The arc of a balance begins at a sample, and written loads act along the arc as its errors say.
         """
-        orbit, size = self.orbit, 3 * len(self.orbit.blocks)
+        orbit, size = self.orbit, len(self.orbit.places)
         d, samples = orbit.momentum.shape[1], set(orbit.scene.clock.elapsed)
+        among = np.ix_(orbit.places, orbit.places)
         squares, begin, arc = np.zeros((len(orbit.elapsed), size)), 0, np.eye(size)
         for k, step in enumerate(orbit.carried.steps, start=1):
-            arc = step[:size, :size] @ arc
+            arc = step[among] @ arc
             if orbit.elapsed[k] in samples:
                 moved = arc[:d] * self.single[begin]
                 squares[k, :d] = np.sum(moved**2, axis=1)
@@ -263,6 +266,7 @@ def floor(
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
+        rounded = _at_instants(rounded, orbit, steps_at)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
             times=np.array([abs(float(t)) for t in orbit.scene.clock.elapsed]),
@@ -321,6 +325,24 @@ def looked_at(orbit: Path) -> list[int]:
 def condition(scene: Scene) -> Path:
     """Return the transition matrices along the scene's orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
+
+
+def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
+    """Return the roundings with those of held values at their instants alone, and not in each step."""
+    loads = orbit.scene.body.loads
+    if loads is None or not loads.held_values:
+        return rounded
+    result, times = rounded.copy(), [abs(float(t)) for t in orbit.elapsed]
+    counts = {state.name: np.zeros(len(times)) for state in loads.states}
+    for instant in loads.instants(orbit.elapsed[-1]):
+        place = min(int(np.searchsorted(times, float(instant.time))), len(times) - 1)
+        for name in instant.names:
+            counts[name][place] += 1
+    for state in loads.states:
+        if isinstance(state, Held):
+            taken = np.sqrt(counts[state.name] / steps_at)
+            result[:, orbit.span(state.name)] *= taken[:, None]
+    return result
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:

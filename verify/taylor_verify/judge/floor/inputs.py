@@ -111,7 +111,7 @@ def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
     changes = [partial(_with_one, given, place) for place in _numbers(given)]
     with mp.workprec(working_bits(rung.bits)):
         moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
-        here = moves.beside(rows, np.zeros((len(rows), path.momentum.shape[1] + 6)))
+        here = moves.here(rows)
         draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
         words = f"each of the {moves.count} numbers of body, loads and start that are not zero"

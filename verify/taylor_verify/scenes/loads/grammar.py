@@ -58,19 +58,19 @@ class Unread(Exception):
 class Grammar:
     """Reads texts into steps.
 
-    ``named`` gives the step of a name. It raises NoStep for one that is unknown. ``after`` says whether a
-    switch is past: it belongs to the later piece; ``on_stairs`` gives floor(slope t + value). With
-    ``may_jump`` a text may jump with the state. ``faults`` are those of the texts read so far.
+    ``named`` gives the step of a name. It raises NoStep for one that is unknown. ``is_past`` says whether
+    slope t + value is not negative: a switch belongs to the later piece; ``on_stairs`` gives its floor.
+    With ``may_jump`` a text may jump with the state. ``faults`` are those of the texts read so far.
     """
 
     def __init__(
         self,
         steps: Steps,
         named: Callable[[str], int],
-        after: Callable[[Fraction], bool],
+        is_past: Callable[[Fraction, Fraction], bool],
         on_stairs: Callable[[Fraction, Fraction], int],
     ) -> None:
-        self.steps, self._named, self._after, self._on_stairs = steps, named, after, on_stairs
+        self.steps, self._named, self._is_past, self._on_stairs = steps, named, is_past, on_stairs
         self.may_jump = False
         self.faults: list[Fault] = []
         self._source = Source.of("0", "")
@@ -234,11 +234,6 @@ class Grammar:
             "a condition that is linear in t alone, with rational numbers, outside held values",
             "another one: the load would jump with the state",
         )
-
-    def _is_past(self, slope: Fraction, value: Fraction) -> bool:
-        """Return True if slope t + value, which is not constant, is not negative in this piece of time."""
-        past = self._after(-value / slope)
-        return past if slope > 0 else not past
 
     def _choice(self, test: ast.expr, body: ast.expr, other: ast.expr, depth: int) -> int | None:
         """The branch that the piece of time asks for; both are read, so that all faults are noted."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -49,7 +49,8 @@ class Loads:
     the momentum of the wheels where a text writes it, else empty.
 
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
-    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once. The stairs
+    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
+    follow from rounded numbers. The stairs
     of floor are known as far as the time ``reach``.
     """
 
@@ -77,7 +78,7 @@ class Loads:
     def reaching(self, elapsed: Fraction) -> Loads:
         """Return these loads with the stairs of floor as far as a time, if they reached less far."""
         is_known = min(self.reach, Fraction(0)) <= elapsed <= max(self.reach, Fraction(0))
-        return self if is_known else replace(self, reach=elapsed)
+        return self if is_known or not self._scan.known else replace(self, reach=elapsed)
 
     def on_rung(self, rung: Rung) -> Loads:
         """The loads that a solver on a rung receives.
@@ -164,6 +165,13 @@ class Loads:
     @property
     def _held_states(self) -> tuple[Held, ...]:
         return tuple(state for state in self.states if isinstance(state, Held))
+
+    def starting(self, own: Mapping[str, Vector]) -> Loads:
+        """Return the same loads with other starts of the states, by their names."""
+        states = tuple(
+            state.starting(own[state.name]) if state.name in own else state for state in self.states
+        )
+        return replace(self, states=states)
 
     def instants(self, until: Fraction) -> tuple[Instant, ...]:
         """The elapsed times at which held states take their values, up to one, both ends included.

@@ -63,7 +63,7 @@ class PieceReader:
         self.jumps = False
         # The times between which each staircase has all of its switches.
         self.known: list[tuple[Fraction, Fraction]] = []
-        self._grammar = Grammar(self.steps, self._named, self._is_after, self._on_stairs)
+        self._grammar = Grammar(self.steps, self._named, self._is_past, self._on_stairs)
         self._definitions, self._tables = dict(loads.definitions), dict(loads.tables)
         self._space = {f"{n}{i + 1}": (n, i) for n, _ in loads.space for i in range(3)}
         self._vectors = dict(loads.space)
@@ -211,14 +211,22 @@ class PieceReader:
 
     def _since_start(self, table: Table) -> Table:
         loads = self._loads
-        times = [time - loads.origin for time in table.times]
-        if loads.rung is not None:
-            times = [loads.rung.round(time) for time in times]
-            if any(a >= b for a, b in pairwise(times)):
-                raise NoStep(
-                    "knots of a table that differ", f"two that {loads.rung.name} makes one"
-                )
+        times = [self._on_rung(time - loads.origin) for time in table.times]
+        if loads.rung is not None and any(a >= b for a, b in pairwise(times)):
+            raise NoStep("knots of a table that differ", f"two that {loads.rung.name} makes one")
         return replace(table, times=tuple(times))
+
+    def _on_rung(self, number: Fraction) -> Fraction:
+        """A number, rounded once to the rung if there is one."""
+        return number if self._loads.rung is None else self._loads.rung.round(number)
+
+    def _is_past(self, slope: Fraction, value: Fraction) -> bool:
+        """Return True if slope t + value, which is not constant, is not negative in this piece of time."""
+        slope, value = self._on_rung(slope), self._on_rung(value)
+        if not slope:
+            return value >= 0
+        is_after = self._is_after(-value / slope)
+        return is_after if slope > 0 else not is_after
 
     def _is_after(self, switch: Fraction) -> bool:
         self.jumps = True
@@ -234,7 +242,8 @@ class PieceReader:
         on both sides, beyond which nothing is known.
         """
         self.jumps = True
-        if self._is_scan:
+        slope, value = self._on_rung(slope), self._on_rung(value)
+        if self._is_scan and slope:
             ends = [slope * time + value for time in (Fraction(0), self._loads.reach)]
             first, last = ceil(min(ends)) - 1, floor(max(ends)) + 1
             self._check_switches(len(self.switches) + last - first + 1)

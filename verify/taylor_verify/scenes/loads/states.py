@@ -34,10 +34,12 @@ class State:
 
     def on_rung(self, rung: Rung) -> Self:
         """The state with its start rounded once; instants are rounded where they are formed."""
-        if self.start is None:
-            return self
-        rounded: Self = replace(cast("Any", self), start=tuple(map(rung.round, self.start)))
-        return rounded
+        return self if self.start is None else self.starting(tuple(map(rung.round, self.start)))
+
+    def starting(self, start: Vector) -> Self:
+        """The same state with another start."""
+        changed: Self = replace(cast("Any", self), start=start)
+        return changed
 
 
 @dataclass(frozen=True)

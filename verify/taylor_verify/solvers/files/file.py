@@ -11,7 +11,7 @@ from __future__ import annotations
 import operator
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
@@ -61,7 +61,8 @@ class TrajectoryFile:
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at.
     ``digits`` is the largest number of significant decimals that any value is written with, None where
     one is binary or a fraction. ``notes`` say how the format was read, which columns were taken for
-    which, and which were ignored. ``step`` is the integrator's step, where the file states it.
+    which, and which were ignored. ``step`` is the integrator's step, where the file states it. ``columns``
+    are the names of the columns of each group, states of the scene's own among them.
     """
 
     name: str
@@ -70,6 +71,7 @@ class TrajectoryFile:
     digits: int | None = None
     notes: tuple[str, ...] = ()
     step: FileStep | None = None
+    columns: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: COLUMNS)
 
     @cached_property
     def is_single_precision(self) -> bool:
@@ -153,7 +155,8 @@ def from_columns(
     if clock and (factor := taken["t"].factor) != 1:
         times = tuple(t * factor for t in times)
     digits = written_digits(read.values())
-    return TrajectoryFile(place, times, groups, digits, (*notes, *selection.notes))
+    said = (*notes, *selection.notes)
+    return TrajectoryFile(place, times, groups, digits, said, columns={**COLUMNS, **own})
 
 
 def _apart(

@@ -44,14 +44,15 @@ def reference(scene: Scene) -> dict[str, Any]:
         **_manufactured(scene.body.manufactured),
         **_written(scene),
         "initial": _initial(scene),
-        "columns": _columns(printed["rows"]),
+        "columns": _columns(scene, printed["rows"]),
     }
 
 
-def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
+def _columns(scene: Scene, rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
     """Return the columns of the rows by name: the time, each component, the radius."""
     columns = {"t": [row["t"] for row in rows]}
-    for quantity, names in COLUMNS.items():
+    own = {group.name: group.columns for group in scene.groups}
+    for quantity, names in {**COLUMNS, **own}.items():
         if quantity in rows[0]:
             entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
             columns |= dict(zip(names, entries.tolist(), strict=True))
