@@ -13,8 +13,9 @@ from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import repeat
 from operator import add, mul, sub
-from typing import Final
+from typing import Any, Final
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, total
 from taylor_verify.exact.equations import Equations
@@ -61,32 +62,13 @@ class Derivation:
         return symbols(self.names)
 
     @cached_property
+    def _quaternion(self) -> list[Any]:
+        return symbols(QUATERNION)
+
+    @cached_property
     def attitude(self) -> list[Row]:
         """R of the unit quaternion."""
-        q = symbols(QUATERNION)
-        pairs = [[a * b for b in q] for a in q]
-
-        def double(*terms: tuple[int, int, int]) -> Polynomial:
-            return total(pairs[i][j].times(Fraction(2 * sign)) for sign, i, j in terms)
-
-        one = Polynomial.number(Fraction(1))
-        return [
-            [
-                one + double((-1, 2, 2), (-1, 3, 3)),
-                double((1, 1, 2), (-1, 0, 3)),
-                double((1, 1, 3), (1, 0, 2)),
-            ],
-            [
-                double((1, 1, 2), (1, 0, 3)),
-                one + double((-1, 1, 1), (-1, 3, 3)),
-                double((1, 2, 3), (-1, 0, 1)),
-            ],
-            [
-                double((1, 1, 3), (-1, 0, 2)),
-                double((1, 2, 3), (1, 0, 1)),
-                one + double((-1, 1, 1), (-1, 2, 2)),
-            ],
-        ]
+        return rotation.rotation_rows(self._quaternion)
 
     @cached_property
     def rates(self) -> Mapping[str, Polynomial]:
@@ -121,14 +103,7 @@ class Derivation:
 
     def _of_attitude(self) -> Row:
         """q' = q Omega/2."""
-        a, b, c, d = symbols(QUATERNION)
-        x, y, z = self.spin
-        doubled = (
-            _NOTHING - b * x - c * y - d * z,
-            a * x + c * z - d * y,
-            a * y + d * x - b * z,
-            a * z + b * y - c * x,
-        )
+        doubled = rotation.product(self._quaternion, [_NOTHING, *self.spin])
         return [rate.times(Fraction(1, 2)) for rate in doubled]
 
     def _of_centre(self) -> Row:
