@@ -148,7 +148,7 @@ class Lengths:
     """The vectors whose lengths the loads of a problem take, at its start and at the rows of its way."""
 
     def __init__(self, problem: Problem, rows: np.ndarray[Any, Any]) -> None:
-        self._parts = lengths(problem.form)
+        self._parts, self._changing = lengths(problem.form), changing(problem.form)
         start = [float(value) for value in problem.initial_momenta]
         states = np.vstack([start, *rows.astype(float)])
         times = np.array([float(t) for t in (problem.begin, *problem.times)][: len(states)])
@@ -166,6 +166,9 @@ class Lengths:
     def are_on_a_line(self) -> bool:
         """Return True where a vector stays on one line: it may go through zero there."""
         for places in self._parts:
+            if any(place not in self._changing and self._steps[place].all() for place in places):
+                # A part that keeps a value is never zero.
+                continue
             vectors = np.array([self._steps[place] for place in places])
             sizes = np.linalg.svd(vectors, compute_uv=False)
             if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:
