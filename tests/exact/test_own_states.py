@@ -209,6 +209,17 @@ def test_a_value_of_the_time_alone_is_exact() -> None:
     assert_near(got, "omega", 0, [Fraction(13, 10), 0, 0])
 
 
+def test_a_counter_is_exact() -> None:
+    """Ten tenths are one; a state without a rate stays what it is."""
+    states = (
+        'n = { every = "1/10", start = 0, value = "n + 0.1" }\n'
+        'k = { start = "1/3", rate = 0 }\n'
+        'm = { every = "1/10", value = "floor(3*k) + (1 if n >= 1 else 0)" }'
+    )
+    got = motion(about_axes(states, 'moment = ["m", 0, 0]'), "9/10", "1")
+    assert [row[0] for row in got["m"]] == [1, 2]
+
+
 def test_a_jump_that_is_not_decided_is_given_up_with_its_time() -> None:
     """w = t/3 comes to 1/3 at t = 1, where floor(3 w) jumps: the rows before it are proven."""
     scene = about_axes('m = { every = 1, value = "floor(3*w1)" }', 'moment = ["1/3", 0, "m"]')

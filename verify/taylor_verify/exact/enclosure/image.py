@@ -100,6 +100,10 @@ class Image:
                 slopes[row, component] = slope
         return Functions([self._point.forward[place][0] for place in places], slopes)
 
+    def rational_outputs(self) -> list[Fraction | None]:
+        """The outputs that are known to be rational numbers; None for others."""
+        return [self._rational[place] for place in self._tape.outputs]
+
     def _add(self, i: int, operation: Operation, box: Box) -> None:
         """Add a node; one that has no value stops those alone that need it."""
         try:

@@ -19,7 +19,7 @@ from taylor_verify.exact.enclosure.flow import Flow, flow
 from taylor_verify.exact.enclosure.kinks import Kink
 from taylor_verify.exact.enclosure.placing import Leg, leg
 from taylor_verify.exact.enclosure.series import Series
-from taylor_verify.exact.enclosure.system import Forms, System
+from taylor_verify.exact.enclosure.system import Forms, Piece, System
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong, Tube, tube
 from taylor_verify.numbers.precision import floor_log2, power_of_two
@@ -45,7 +45,7 @@ class Step:
 
     ``terms`` are the sizes of the rates at its beginning if none of their terms cancelled; a step that
     ``is_flat`` goes across a kink. ``reach`` is log2 of the radius of convergence as far as it is seen, and
-    ``image`` the tape of its piece of time.
+    ``piece`` is that of its time.
     """
 
     length: Fraction
@@ -56,7 +56,7 @@ class Step:
     terms: list[arb]
     is_flat: bool
     reach: float | None
-    image: Tape | None
+    piece: Piece
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,8 @@ class Stepper:
         ``reach`` is that of a step before. Raises StepTooLong where none closes, Touched at a kink that may
         not be crossed, and Domain where a function has no value.
         """
-        tape, end, image = self.system.pieces(now, left > 0)
+        piece = self.system.pieces(now, left > 0)
+        tape, end, _ = piece
         if end is not None and abs(end - now) < abs(left):
             left = end - now
         series, frame = self._fitted(tape, box, now, guess, left, self._enough(reach, guess, left))
@@ -109,7 +110,7 @@ class Stepper:
                 terms, is_flat = bounds.terms(), bool(series.flat)
                 radius = reach if is_flat else self._reach(series)
                 state, step = series.rows, series.step
-                return Step(step, state, around, moving, way, terms, is_flat, radius, image)
+                return Step(step, state, around, moving, way, terms, is_flat, radius, piece)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
             frame = scaled(frame, ball(share))

@@ -178,8 +178,12 @@ class Tape:
     @cached_property
     def moving(self) -> int:
         """The number of components up to the last one whose rate is not zero throughout."""
-        still = [self.operations[rate] == _ZERO for rate in self.rates]
-        return next((k + 1 for k in reversed(range(len(still))) if not still[k]), 0)
+        return next((k + 1 for k in reversed(range(self.size)) if not self.still[k]), 0)
+
+    @cached_property
+    def still(self) -> list[bool]:
+        """True for each component whose rate is zero throughout."""
+        return [self.operations[rate] == _ZERO for rate in self.rates]
 
     @cached_property
     def degrees(self) -> list[int | None]:

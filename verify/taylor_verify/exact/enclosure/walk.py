@@ -109,6 +109,9 @@ class Walk:
         self._peaks = dict.fromkeys(self._system.own, arb(0))
         self._since = _Since(self._system.size) if course.differentiates else None
         self._instants = self._coming()
+        # What is known in exact numbers: the start, and what values and rates of zero make of it.
+        known = None if course.has_values else self._system.exactly
+        self._exact: list[Any] = list(known or [None] * self._system.size)
         self._take()
         self._grow()
 
@@ -165,11 +168,11 @@ class Walk:
         place = None
         if self._place is not None and step.leg is not None:
             place = step.leg.place(self._place, share)
-        if step.image is None:
+        if step.piece.image is None:
             state = within(self._box, step.state, step.tube, step.flow, share)
             row = self._complete(state, _framed(place), time)
         else:
-            row = self._imaged(self._carried(step, share), step.image, time)
+            row = self._imaged(self._carried(step, share), step.piece.image, time)
         since = None if self._since is None else self._since.at_row(step.flow, share)
         return replace(row, since=since)
 
@@ -185,7 +188,7 @@ class Walk:
 
     def _imaged(self, box: Box, image: Tape, time: Fraction) -> Row:
         """The row over a box, with omega and R by an image of it."""
-        outputs = over_box(box, *self._image(image, box, time))
+        outputs = over_box(box, *self._outputs(Image(image, box, self._course.origin + time)))
         return self._complete([*outputs[:3], *box.balls()[3:]], (outputs[3:], None), time)
 
     def _complete(
@@ -238,6 +241,8 @@ class Walk:
         if self._place is not None and step.leg is not None:
             self._place = step.leg.carried(self._place)
         self._now, self._reach = self._now + step.length, step.reach
+        pairs = zip(self._exact, step.piece.tape.still, strict=True)
+        self._exact = [number if is_still else None for number, is_still in pairs]
         is_cut = bool(self._instants) and self._instants[-1].time == self._now
         self._guess = max(
             2 * (self._usual if step.is_flat else step.length),
@@ -262,17 +267,17 @@ class Walk:
         instant = self._instants.pop()
         time = self._course.origin + self._now
         tape, places = self._system.taken(instant._replace(time=time))
-        exactly = None if self._now or self._course.has_values else self._system.exactly
-        values, slopes = self._image(tape, self._box, self._now, exactly)
+        image = Image(tape, self._box, time, self._exact)
+        values, slopes = self._outputs(image)
+        for place, number in zip(places, image.rational_outputs(), strict=True):
+            self._exact[place] = number
         self._box = renewed(self._box, places, values, slopes)
         if self._since is not None:
             self._since.through(places, slopes)
 
-    def _image(
-        self, tape: Tape, box: Box, time: Fraction, exactly: Sequence[Any] | None = None
-    ) -> Functions:
+    def _outputs(self, image: Image) -> Functions:
         try:
-            return Image(tape, box, self._course.origin + time, exactly).outputs()
+            return image.outputs()
         except OnJump:
             raise self._stuck(_ON_JUMP) from None
         except Domain as end:
