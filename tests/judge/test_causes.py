@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -198,18 +198,17 @@ def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str) -> None:
 
 
 def test_the_sentence_has_the_number() -> None:
-    """The constant of a damping and the difference of a body are those that the simulator had."""
+    """The constant of a damping and the entries of a body are those that the simulator had."""
     (sentence,) = causes(load(FREE), simulated(load(FREE), damped)).values()
-    assert "with c = 0.01;" in sentence
-    (sentence,) = causes(load(FULL), simulated(load(FULL), change=stiffer)).values()
-    assert "differs by 3e-07 (relative), its axes turned by" in sentence
+    assert sentence.startswith("damping = 0.01; leaves ")
+    (sentence,) = causes(load(LOADED), simulated(load(LOADED), change=heavier)).values()
+    assert "M_11 = " in sentence and "(+1 %), the other entries agree to" in sentence
 
 
-def stiffer(n: Numbers) -> None:
-    """A change of 3e-7 of the tensor's size, at right angles to the tensor: its scale does not show."""
-    change = np.diag([1.0, -2.0, 0.5])
-    change -= n.tensor * np.sum(change * n.tensor) / np.sum(n.tensor**2)
-    n.tensor = n.tensor + 3e-7 * change * np.linalg.norm(n.tensor) / np.linalg.norm(change)
+def heavier(n: Numbers) -> None:
+    mass = np.linalg.inv(n.tensor)
+    mass[0, 0] *= 1.01
+    n.tensor = np.linalg.inv(mass)
 
 
 def test_a_moment_in_space_axes_is_named() -> None:
@@ -247,11 +246,11 @@ def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     ("spoil", "expected"),
     by_turns(
         [
-            (in_space_axes, {"omega in space axes"}),
-            (conjugate, {"transposed attitude"}),
-            (scalar_last, {"scalar last"}),
-            (lambda c: conjugate(in_space_axes(c)), {"omega in space axes", "transposed attitude"}),
-            (lambda c: scalar_last(conjugate(c)), {"scalar last and transposed attitude"}),
+            (in_space_axes, {"omega is in space axes"}),
+            (conjugate, {"attitude is transposed"}),
+            (scalar_last, {"attitude is scalar last"}),
+            (lambda c: conjugate(in_space_axes(c)), {"omega is in space axes", "attitude is transposed"}),
+            (lambda c: scalar_last(conjugate(c)), {"attitude is scalar last and transposed"}),
         ]
     ),
 )
@@ -271,7 +270,7 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
     )
     columns = in_space_axes(simulated(scene, back))
     found = set(causes(scene, columns))
-    assert found == {"omega in space axes", "gyroscopic term with the other sign"}
+    assert found == {"omega is in space axes", "gyroscopic term with the other sign"}
 
 
 # Rows.
@@ -292,61 +291,16 @@ def test_one_row_off_is_named(
     """Rows that hold the state of the next or of the last row are told apart."""
     scene = load(FREE)
     causes = judged(tmp_path, FREE, spoil(columns_at(scene, scene.clock.instants))).causes
-    assert {cause.name for cause in causes} == {"one row off"}
+    assert {cause.name for cause in causes} == {"rows shifted"}
     assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
 
 
-@pytest.mark.parametrize(("early", "expected"), [(100, {"first row stepped already"}), (77, set())])
-def test_a_first_step_too_many_is_named(early: int, expected: set[str], tmp_path: Path) -> None:
-    """A state that is a step early is one if whole steps make a row; rows are 1/2 apart here."""
+def test_an_early_clock_is_named(tmp_path: Path) -> None:
+    """One shift of time for all quantities is named, with its number."""
     scene = load(FREE)
-    columns = columns_at(scene, [t + Fraction(1, early) for t in scene.clock.instants])
+    columns = columns_at(scene, [t + Fraction(1, 100) for t in scene.clock.instants])
     columns["t"] = [float(t) for t in scene.clock.instants]
-    assert names(tmp_path, FREE, columns) == expected
-
-
-# Numbers.
-
-
-def as_float32(columns: Columns) -> Columns:
-    return {
-        name: values if name == "t" else np.float32(values).astype(float).tolist()
-        for name, values in columns.items()
-    }
-
-
-@pytest.mark.parametrize("every", [1, pytest.param(5, marks=pytest.mark.slow)])
-def test_a_state_in_float32_is_named(every: int, tmp_path: Path) -> None:
-    """Rounding every step to 24 bits is named; rounding every row that is written is none of it."""
-    inside = runge_kutta(load(FREE), 0.02, every, single=True)
-    assert names(tmp_path, FREE, inside) == {"float32 inside"}
-    stored = as_float32(runge_kutta(load(FREE), 0.02, every))
-    assert names(tmp_path, FREE, stored) == set()
-
-
-@pytest.mark.parametrize("tolerance", by_turns([1e-4, 1e-6, 1e-8]))
-def test_a_coarse_method_stored_in_float32_is_not_float32_inside(
-    tolerance: float, tmp_path: Path
-) -> None:
-    """The truncation errors of an adaptive method are no roundings, though its rows are float32 numbers."""
-    times = np.linspace(0, 20, 401)
-    columns = simulated(load(FREE), times=times, method="RK45", tolerance=tolerance)
-    assert names(tmp_path, FREE, as_float32(columns)) == set()
-
-
-# Another scene.
-
-
-def test_another_scene_is_named(tmp_path: Path) -> None:
-    """A file of another scene is told by its start, and by its rows."""
-    scene = load(FULL)
-    columns = columns_at(scene, scene.clock.instants[:30])
-    (cause,) = judged(tmp_path, FREE, columns).causes
-    assert cause.name == "another scene"
-    assert "the rows fit euler/full-tensor better (omega within" in cause.sentence
-    wrong = simulated(scene, back, times=np.linspace(0, 20, 41))
-    sentence = causes(load(FREE), wrong)["another scene"]
-    assert "the row at the start is that of euler/full-tensor" in sentence
+    assert names(tmp_path, FREE, columns) == {"the clock is early by 0.01"}
 
 
 # Answers that have no cause.
@@ -364,6 +318,11 @@ def turned_body(scene: Scene, seed: int, spread: float) -> Scene:
     return replace(scene, body=body, initial=Spin(omega, q))
 
 
+def false_words(names: Iterable[str]) -> list[str]:
+    """The names of causes that say more of a sound method than its steps."""
+    return [name for name in names if not name.startswith("truncation of order")]
+
+
 SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
 
 
@@ -378,9 +337,9 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
             columns = simulated(
                 other, method=method, tolerance=tolerance, times=np.linspace(0, 15, 61)
             )
-            assert causes(other, columns) == {}
+            assert not false_words(causes(other, columns))
         for h, every in ((0.1, 1), (0.02, 10)):
-            assert causes(other, runge_kutta(other, h, every)) == {}
+            assert not false_words(causes(other, runge_kutta(other, h, every)))
 
 
 @pytest.mark.parametrize("scene", [FLUID, LOADED, "kirchhoff/whole-motion"])
@@ -388,7 +347,7 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
 def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, tolerance: float) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""
     columns = simulated(load(scene), method=method, tolerance=tolerance)
-    assert causes(load(scene), columns) == {}
+    assert not false_words(causes(load(scene), columns))
 
 
 @pytest.mark.parametrize("name", ["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
@@ -396,7 +355,7 @@ def test_a_geometric_method_has_no_cause(name: str) -> None:
     """A method that conserves much, and whose error is all along the orbit, is given no other body."""
     judgement = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
     assert not judgement.passed
-    assert judgement.causes == ()
+    assert not false_words(cause.name for cause in judgement.causes)
 
 
 def test_what_passes_has_no_cause(tmp_path: Path) -> None:
@@ -453,4 +412,4 @@ def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path
     solver = f"process:{sys.executable} {program}"
     assert main(["run", "euler/generic", "--solver", solver]) == 1
     printed = capsys.readouterr().out
-    assert "likely cause: no gyroscopic term: " in printed
+    assert "likely cause: no gyroscopic term; " in printed

@@ -43,7 +43,8 @@ def with_numbers(
     """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
     values = [float(number) for number in numbers]
     if labels:
-        return f"{name}: {_changes(labels, [float(number) for number in right], values)}"
+        changes = _changes(labels, [float(number) for number in right], values)
+        return changes if [*labels] == [name] else f"{name}: {changes}"
     largest = max(map(abs, values)) or 1.0
     cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
     return f"{name} = {' '.join(f'{value:.6g}' for value in cut)}"

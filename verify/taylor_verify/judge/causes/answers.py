@@ -164,18 +164,25 @@ def material(
     truth = _truth(given, exact.evaluate([given.clock.elapsed[k] for k in rows], _DIGITS), has_momenta)
     closed = exact.route != "taylor"
     start = _truth(given, exact.evaluate([Fraction(0)], _DIGITS), has_momenta=False)
+    compared = file.at(rows)
     answer = Answer(
         right,
         start,
         elapsed[rows],
-        file.at(rows),
+        compared,
         truth,
-        noise,
+        (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
         Budget(_BUDGET if closed else _BUDGET_WITHOUT_CLOSED_FORM),
         decimals,
     )
     return answer
+
+
+def _noise(noise: Floats, v: Floats, truth: Floats) -> Floats:
+    """Return the noise of v; numbers that stand still while the truth moves by a unit were not rounded."""
+    is_exact = (np.ptp(v, axis=0) == 0) & (np.ptp(truth, axis=0) > 2 * noise)
+    return np.where(is_exact, 0.0, noise)
 
 
 def _rows(elapsed: Floats, file: Motion) -> list[int]:

@@ -21,7 +21,7 @@ from taylor_verify.judge.causes.bodies import (
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, of_body
-from taylor_verify.judge.causes.fit import Family, gauss_newton
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replays import replays
@@ -90,8 +90,11 @@ class _Dynamics:
         if not any(self._is_exact(candidate) for candidate in candidates):
             stride = min(self.stride, 8) if self.few is self.answer else 1
             candidates += replays(self.answer, stride)
-        linear = self._linear()
-        candidates += self._families(linear, candidates)
+        linear: list[_Linear] = []
+        for group in self._groups(candidates):
+            of_group = self._linear(group)
+            linear += of_group
+            candidates += self._families(of_group, candidates)
         cause = self._settled(candidates, LEAVES)
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
@@ -124,17 +127,24 @@ class _Dynamics:
             if left < _FAULT * self.arcs.size:
                 yield self._candidate(fault.name, fault.kind, left, fault.changes)
 
-    def _linear(self) -> list[_Linear]:
-        """Return all families, those with few numbers and a good linear fit first."""
+    def _groups(self, candidates: list[Candidate]) -> Iterator[list[Family]]:
+        """Yield the families of one number, of few and of many, while no candidate is exact."""
         sizes, right = Sizes.of(self.answer), self.few.right
         families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
-        sets = [changes for family in families for changes in family.around(family.right)]
-        defects, first, found = self.arcs.defects(sets, self.arcs.few_steps), 0, []
+        for least, most in ((1, 1), (2, 3), (4, len(right.mass) ** 2)):
+            if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
+                yield [family for family in families if least <= family.count <= most]
+
+    def _linear(self, families: Sequence[Family]) -> list[_Linear]:
+        """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
+        sets = [changes for family in families for changes in family.ahead]
+        defects, first, found = self.arcs.defects([{}, *sets], self.arcs.few_steps), 1, []
         for family in families:
-            slopes = family.slopes(defects[first : first + 2 * family.count])
-            first += 2 * family.count
+            change = defects[first : first + family.count] - defects[0]
+            first += family.count
+            slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
             if np.all(np.isfinite(slopes)) and np.any(slopes):
-                basis = _basis(slopes * family.scale, 1e-7)
+                basis = _basis(slopes * family.scale, 1e-6)
                 rest = self._across(basis, self.arcs.of_right.ravel())
                 found.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
         return sorted(found, key=lambda each: (each.family.count, each.left))
@@ -152,7 +162,7 @@ class _Dynamics:
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
-            fit = gauss_newton(self.arcs, family, slopes=each.slopes)
+            fit = gauss_newton(self.arcs, family)
             if family.kind == "clock" and not fit.size < _CAPS[1] * self.arcs.size:
                 fit = self._clock(family, fit)
             if np.isfinite(fit.size):
@@ -325,7 +335,9 @@ def _simplest(candidate: Candidate) -> tuple[int, float]:
 
 
 def _is_nothing(candidate: Candidate) -> bool:
-    """Return True for a factor that prints as 1: no cause."""
+    """Return True for a factor that prints as 1, and for a step back in time: no causes."""
+    if candidate.kind == "damping step" and candidate.numbers is not None:
+        return not candidate.numbers[0] > 0
     is_factor = candidate.kind == "clock" or candidate.name.startswith("factor")
     return is_factor and candidate.numbers is not None and f"{candidate.numbers[0]:.6g}" == "1"
 

@@ -50,6 +50,11 @@ class Family:
         shifts = DIFFERENCE * np.diag(self.scale)
         return [self.changes(numbers + sign * shift) for sign in (1, -1) for shift in shifts]
 
+    @property
+    def ahead(self) -> list[Changes]:
+        """The changes of a forward difference from the right numbers, in every number."""
+        return [self.changes(self.right + shift) for shift in DIFFERENCE * np.diag(self.scale)]
+
     def slopes(self, ends: Floats) -> Floats:
         """Return the derivatives (entries, numbers) from the values at ``around``."""
         flat = ends.reshape(2, self.count, -1)
@@ -64,9 +69,7 @@ class Fitted:
     size: float
 
 
-def gauss_newton(
-    arcs: Arcs, family: Family, begin: Floats | None = None, slopes: Floats | None = None
-) -> Fitted:
+def gauss_newton(arcs: Arcs, family: Family, begin: Floats | None = None) -> Fitted:
     """Return the best numbers of a family; of infinite size where they cannot be computed."""
     numbers = family.right if begin is None else begin
     first = size = np.inf
@@ -75,13 +78,12 @@ def gauss_newton(
         defects = arcs.defects([family.changes(numbers)], steps)[0].ravel()
         size = float(np.linalg.norm(defects))
         first = first if count else size
-        if slopes is None:
-            slopes = family.slopes(arcs.defects(family.around(numbers), arcs.few_steps))
+        slopes = family.slopes(arcs.defects(family.around(numbers), arcs.few_steps))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
         trials = _trial_steps(slopes, defects, family.scale)
         sizes = _sizes(arcs.defects([family.changes(numbers + step) for step in trials], steps))
-        best, slopes = int(np.argmin(sizes)), None
+        best = int(np.argmin(sizes))
         if not sizes[best] < size:
             break
         numbers, before, size = numbers + trials[best], size, float(sizes[best])

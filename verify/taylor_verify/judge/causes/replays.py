@@ -25,7 +25,7 @@ _ASYMPTOTIC: Final = 0.05
 _ALONG: Final = 0.8
 _SEARCHES: Final = 3
 _MOST: Final = 200
-_MOST_IMPLICIT: Final = 40
+_MOST_IMPLICIT: Final = 64
 # Evaluations of an implicit step, about.
 _EVALUATIONS: Final = 12
 # Words that programs look for.

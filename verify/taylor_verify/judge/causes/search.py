@@ -47,7 +47,7 @@ def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
     moving = [name for name in left if name in answer.groups]
     if moving and _is_attitude_right(answer, by_group) and _contradicts(answer, moving):
         words = "omega contradicts the file's own attitude, which is right"
-        return [*causes, Cause(words, "omega against attitude", {"omega": 1.0})]
+        return [*causes, Cause(words, "omega against attitude", {})]
     of_motion = _of_motion(answer, moving, "attitude" in left, more)
     if not of_motion and not causes:
         return _in_space(answer, more)

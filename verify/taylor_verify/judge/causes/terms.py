@@ -267,7 +267,8 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
     """Yield damping by a factor f once in each step h, after the motion of the step or before it.
 
     With f = e^(-c' h) such an engine solves P' = k (terms of second order) - c' P exactly, where
-    k = c' h/(1 - f) for a factor after the motion, and f times that for one before it.
+    k = c' h/(1 - f) for a factor after the motion, and f times that for one before it. The attitude turns
+    by k omega.
     """
     if np.any(right.load) or np.any(right.rotor) or right.acting is not None:
         return
@@ -279,7 +280,8 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
             f = factor(right.damping * step)
             damping = -np.log(f) / step if f > 0 else np.nan
             k = damping * step / (1 - f) * (1.0 if place == "after" else f)
-            return {**of_coriolis(k * right.mass), "damping": damping}
+            turns = np.array([0.0, k])
+            return {**of_coriolis(k * right.mass), "damping": damping, "turns": turns}
 
         title = f"{name}: the momentum times {words} {place} the motion of each step, with h"
         yield Family(title, "damping step", h, h, changes)
