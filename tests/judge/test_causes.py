@@ -202,7 +202,8 @@ def test_the_sentence_has_the_number() -> None:
     (sentence,) = causes(load(FREE), simulated(load(FREE), damped)).values()
     assert sentence.startswith("damping = 0.01; leaves ")
     (sentence,) = causes(load(LOADED), simulated(load(LOADED), change=heavier)).values()
-    assert "M_11 = " in sentence and "(+1 %), the other entries agree to" in sentence
+    assert "M_11 = " in sentence
+    assert "(+1 %), the other entries agree to" in sentence
 
 
 def heavier(n: Numbers) -> None:
@@ -249,7 +250,10 @@ def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
             (in_space_axes, {"omega is in space axes"}),
             (conjugate, {"attitude is transposed"}),
             (scalar_last, {"attitude is scalar last"}),
-            (lambda c: conjugate(in_space_axes(c)), {"omega is in space axes", "attitude is transposed"}),
+            (
+                lambda c: conjugate(in_space_axes(c)),
+                {"omega is in space axes", "attitude is transposed"},
+            ),
             (lambda c: scalar_last(conjugate(c)), {"attitude is scalar last and transposed"}),
         ]
     ),

@@ -88,13 +88,12 @@ def test_a_moment_is_no_gyroscopic_term(tmp_path: Path) -> None:
 
 def test_omega_in_space_axes_is_taken_to_the_body_first(tmp_path: Path) -> None:
     """The engine's own attitude takes omega to body axes, so that its errors do not hide the cause."""
-    convention, cause, *_ = causes(
+    cause, *_ = causes(
         tmp_path,
         "euler/with-attitude",
         in_space_axes(engine("euler/with-attitude", explicit, 0.01, 201)),
     )
-    assert convention == "omega is in space axes"
-    assert cause.startswith("with that: explicit gyroscopic step: ")
+    assert cause.startswith("explicit gyroscopic step: ")
 
 
 def late(sound: Columns) -> Columns:
@@ -117,7 +116,7 @@ def sound_as_it_is(sound: Columns) -> Columns:
 @pytest.mark.parametrize(
     ("spoil", "words"),
     [
-        (late, ["the clock is late by 0.005; leaves 2.2e-16 of 0.0067 of omega"]),
+        (late, []),
         (scaled, ["omega has factors "]),
         (noisy, ["omega contradicts the file's own attitude"]),
         (sound_as_it_is, []),
@@ -136,7 +135,7 @@ def test_the_other_sign_is_named(tmp_path: Path) -> None:
     """The motion back in time is the one that a gyroscopic term of the other sign makes."""
     sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
     back = columns_at(load("euler/with-attitude"), [-Fraction(t) for t in sound["t"]])
-    turned = {name: back.get(name, sound[name]) for name in ("t", *OMEGA)}
+    turned = {"t": sound["t"], **{name: back[name] for name in OMEGA}}
     (cause,) = causes(tmp_path, "euler/with-attitude", turned)
     assert cause.startswith("gyroscopic term with the other sign; ")
 

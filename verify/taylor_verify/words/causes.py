@@ -54,8 +54,7 @@ def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> 
     """Return the entries that changed, each with its relative change, and how well the others agree."""
     largest = max(map(abs, right)) or 1.0
     parts = [
-        abs(value - old) / (abs(old) or largest)
-        for old, value in zip(right, values, strict=True)
+        abs(value - old) / (abs(old) or largest) for old, value in zip(right, values, strict=True)
     ]
     most = max(parts)
     changed = [k for k, part in enumerate(parts) if part > _AGREES * most]

@@ -1,4 +1,4 @@
-"""An answer as material for the search: float64 rows in the scene's conventions, and the truth beside them."""
+"""An answer as material: float64 rows in the scene's conventions, and the truth beside them."""
 
 from __future__ import annotations
 
@@ -118,7 +118,9 @@ class Answer:
     @cached_property
     def roundings(self) -> dict[str, float]:
         """The error of a row by the rounding of the file alone."""
-        own = {name: VECTOR * float(np.max(self.rounding[part])) for name, part in self.groups.items()}
+        own = {
+            name: VECTOR * float(np.max(self.rounding[part])) for name, part in self.groups.items()
+        }
         return {
             **own,
             "attitude": ATTITUDE * max(self.noise[1], 1e-15),
@@ -189,7 +191,7 @@ class Answer:
 
     @cached_property
     def keeps_momenta(self) -> bool:
-        """True if the first row has the momenta of the scene, whatever the body; else the velocities count."""
+        """True if the first row has the momenta of the scene; else the velocities are those at the start."""
         own = np.abs(self.file.v[0] - self.right.mass @ self.start.v[0]) / self.sizes
         return self.right.has_momenta and bool(np.all(own <= _SAME_START * self.rounding))
 

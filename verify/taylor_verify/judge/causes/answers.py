@@ -49,7 +49,8 @@ _DIGITS: Final = 20
 _MOST_ROWS: Final = 4096
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
-_BUDGET: Final = 350_000.0
+# Work for each component of v.
+_BUDGET: Final = 120_000.0
 _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 
@@ -106,7 +107,7 @@ def explained(answer: Answer) -> Explained:
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:
-    group = max(cause.leaves, key=lambda name: answer.worst.get(name, 0.0), default="omega")
+    group = next(iter(cause.leaves), "omega")
     changed = changed_scene(answer.right, cause.changes)
     words = sentence(cause.title, cause.leaves, answer.worst, cause.alike, changed)
     leaves = max(cause.leaves.values(), default=1.0)
@@ -150,7 +151,7 @@ def material(
     verdicts: Iterable[Verdict],
     decimals: int | None = None,
 ) -> Answer | None:
-    """Return an answer to a rounded scene as material; None if nothing failed or nothing can be compared."""
+    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable."""
     failed = tuple(v.quantity for v in verdicts if v.verdict is Status.FAIL)
     right = equations_of(given, has_momenta)
     elapsed = np.array([float(t) for t in given.clock.elapsed])
@@ -161,7 +162,9 @@ def material(
     track = {"attitude"} | ({"centre"} if needs_centre else set())
     tracked = replace(given, track=frozenset(track))
     exact = solution(tracked)
-    truth = _truth(given, exact.evaluate([given.clock.elapsed[k] for k in rows], _DIGITS), has_momenta)
+    truth = _truth(
+        given, exact.evaluate([given.clock.elapsed[k] for k in rows], _DIGITS), has_momenta
+    )
     closed = exact.route != "taylor"
     start = _truth(given, exact.evaluate([Fraction(0)], _DIGITS), has_momenta=False)
     compared = file.at(rows)
@@ -173,7 +176,7 @@ def material(
         truth,
         (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
-        Budget(_BUDGET if closed else _BUDGET_WITHOUT_CLOSED_FORM),
+        Budget(_BUDGET * right.size if closed else _BUDGET_WITHOUT_CLOSED_FORM),
         decimals,
     )
     return answer
@@ -263,7 +266,11 @@ def _of_trajectory(
     q = steady_signs(_doubles(rows["quaternion"])) if "quaternion" in rows else None
     c = _doubles(rows["centre"]) if "centre" in rows else None
     unit = 8 * float(problem.rung.unit_roundoff)
-    noise = (unit * np.max(np.abs(v), axis=0), unit, unit if c is None else unit * float(np.max(np.abs(c))))
+    noise = (
+        unit * np.max(np.abs(v), axis=0),
+        unit,
+        unit if c is None else unit * float(np.max(np.abs(c))),
+    )
     return material(given, Motion(v, q, c), given.model == "kirchhoff", noise, verdicts)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -55,7 +56,7 @@ def _parted(since: Floats, spans: Floats, switches: Floats) -> list[tuple[Floats
         edges[:, k] = np.sort([low[k], *own, *[high[k]] * (most + 1 - len(own))])
     backward = spans < 0
     edges[:, backward] = edges[::-1, backward]
-    return [(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return [(a, b - a) for a, b in itertools.pairwise(edges)]
 
 
 def _within(equations: Equations, since: Floats, spans: Floats):  # type: ignore[no-untyped-def]

@@ -256,9 +256,10 @@ def _masses(right: Equations, sizes: Sizes) -> Iterator[Family]:
 def _arm(mass: Floats) -> Floats:
     """Return m r, the antisymmetric part of the coupling."""
     block = mass[3:, :3]
-    return np.array(
-        [block[2, 1] - block[1, 2], block[0, 2] - block[2, 0], block[1, 0] - block[0, 1]]
-    ) / 2
+    return (
+        np.array([block[2, 1] - block[1, 2], block[0, 2] - block[2, 0], block[1, 0] - block[0, 1]])
+        / 2
+    )
 
 
 def _with_arm(mass: Floats, arm: Floats) -> Floats:
@@ -312,7 +313,7 @@ def structure(right: Floats, changes: Changes) -> str:
     own, other = np.diag(right)[:3], np.diag(changes["turn"])
     if np.ptp(own) < _SAME * np.max(own):
         return ""
-    (factor, offset), rest, *_ = np.polyfit(own, other, 1, full=True)
+    (factor, offset), _rest, *_ = np.polyfit(own, other, 1, full=True)
     if np.any(np.abs(other - factor * own - offset) > _NEAR * np.max(own)):
         return ""
     nice = {0.0: "lack the added mass", 2.0: "have the added mass twice"}

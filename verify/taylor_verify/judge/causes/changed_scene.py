@@ -31,7 +31,9 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         lines.append(f"damping = {number(float(other.damping))}")
     texts = _loads(other)
     if texts != _loads(right):
-        for key, part in zip(("moment",) if n == 3 else ("force", "couple"), (texts[:3], texts[3:])):
+        for key, part in zip(
+            ("moment",) if n == 3 else ("force", "couple"), (texts[:3], texts[3:]), strict=False
+        ):
             lines.append(f"{key} = {_list(part)}")
     return "; ".join(lines)
 
@@ -93,11 +95,13 @@ def _quadratic(other: Equations) -> list[list[tuple[float, str]]]:
 
     def extra(nu: Floats) -> Floats:
         z = nu[None, :, None]
-        return ((own.mass @ (own.rates(zero, z) - plain.rates(zero, z)))[0, :, 0])
+        return (own.mass @ (own.rates(zero, z) - plain.rates(zero, z)))[0, :, 0]
 
     unit, names, terms = np.eye(n), _names(n), [[] for _ in range(n)]  # type: ignore[var-annotated]
     for j, k in combinations_with_replacement(range(n), 2):
-        of_pair = extra(unit[j]) if j == k else extra(unit[j] + unit[k]) - extra(unit[j]) - extra(unit[k])
+        of_pair = (
+            extra(unit[j]) if j == k else extra(unit[j] + unit[k]) - extra(unit[j]) - extra(unit[k])
+        )
         for i in range(n):
             terms[i].append((float(of_pair[i]), f"{names[j]}*{names[k]}"))
     return terms
@@ -107,4 +111,8 @@ def _text(terms: Sequence[tuple[float, str]], largest: float) -> str:
     seen = [(value, word) for value, word in terms if abs(value) > _NOTHING * largest]
     if not any(word for _, word in seen):
         return number(seen[0][0]) if seen else "0.0"
-    return '"' + " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in seen) + '"'
+    return (
+        '"'
+        + " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in seen)
+        + '"'
+    )

@@ -1,4 +1,4 @@
-"""Causes in the equations of motion: evidence from arcs, fewest numbers first, proof on the whole answer."""
+"""Causes in the equations of motion: evidence from arcs, fewest numbers first, and the proof."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs, telling_arcs
+from taylor_verify.judge.causes.arcs import telling_arcs
 from taylor_verify.judge.causes.bodies import (
     entries,
     families_of_bodies,
@@ -34,6 +34,9 @@ ROUNDINGS: Final = 3.0
 DEFECT_ROUNDINGS: Final = 30.0
 # Never more than this, with no number and with any.
 _CAPS: Final = (0.1, 0.01)
+# Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
+_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
+_STRICTEST: Final = 1e-4
 # Two families at once leave at most this, and defects of so many roundings are needed to look for them.
 _PAIR: Final = 1e-4
 _PAIR_ROUNDINGS: Final = 100.0
@@ -107,7 +110,9 @@ class _Dynamics:
 
     # Evidence.
 
-    def _candidate(self, name: str, kind: str, left: float, changes: Changes, **more: Any) -> Candidate:
+    def _candidate(
+        self, name: str, kind: str, left: float, changes: Changes, **more: Any
+    ) -> Candidate:
         answer = self.answer
         return Candidate(
             name,
@@ -153,7 +158,9 @@ class _Dynamics:
     def _across(basis: Floats, vector: Floats) -> Floats:
         return np.asarray(vector - basis @ (basis.T @ vector))
 
-    def _families(self, linear: Sequence[_Linear], simple: Sequence[Candidate]) -> Iterator[Candidate]:
+    def _families(
+        self, linear: Sequence[_Linear], simple: Sequence[Candidate]
+    ) -> Iterator[Candidate]:
         """Yield fitted families; with more numbers than one that reached the rounding, none is tried."""
         counts = [c.count for c in simple if self._is_exact(c)]
         for each in linear:
@@ -245,7 +252,9 @@ class _Dynamics:
 
     def _is_near(self, candidate: Candidate) -> bool:
         """Return True if the defects that are left allow a proof."""
-        is_loose = self.answer.file.q is None and bool({"space", "arm", "in_space"} & set(candidate.changes))
+        is_loose = self.answer.file.q is None and bool(
+            {"space", "arm", "in_space"} & set(candidate.changes)
+        )
         most = _LOOSE if is_loose else max(LEAVES, DEFECT_ROUNDINGS * self.floor)
         if candidate.kind == "method":
             most = 0.02
@@ -271,7 +280,8 @@ class _Dynamics:
             better = self._refitted(candidate)
             if better is not None and max(better.leaves[name] for name in moving) < worst:
                 candidate, leaves, worst = better.candidate, better.leaves, better.worst
-        allowed = max(most, ROUNDINGS * answer.floor(moving))
+        part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
+        allowed = max(most * part, ROUNDINGS * answer.floor(moving))
         if worst > min(allowed, _CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
             return None
         return _Proven(candidate, leaves, worst)
@@ -279,7 +289,8 @@ class _Dynamics:
     def _refitted(self, candidate: Candidate) -> _Proven | None:
         """Return a candidate whose numbers are fitted once more, on the whole answer."""
         family, numbers, few = candidate.family, candidate.numbers, self.few
-        assert family is not None and numbers is not None
+        assert family is not None
+        assert numbers is not None
         last = np.inf
         for _ in range(5):
             base = whole(few, few.right.changed(family.changes(numbers)), has_frame=False)

@@ -29,7 +29,9 @@ Changes = Mapping[str, Any]
 # The number of axes that a parameter has without an axis of parameter sets.
 _AXES: Final = {
     **dict.fromkeys(("mass", "turn", "gyro", "munk"), 2),
-    **dict.fromkeys(("rotor", "load", "weights", "space", "arm", "linear", "quadratic", "turns"), 1),
+    **dict.fromkeys(
+        ("rotor", "load", "weights", "space", "arm", "linear", "quadratic", "turns"), 1
+    ),
     **dict.fromkeys(("damping", "clock", "ahead", "late", "in_space"), 0),
 }
 
@@ -105,7 +107,10 @@ class Equations:
     @cached_property
     def _has(self) -> frozenset[str]:
         """The names of the parameters that have an effect."""
-        plain = {"clock": 1.0, **dict.fromkeys(("damping", "ahead", "rotor", "load", "in_space"), 0.0)}
+        plain = {
+            "clock": 1.0,
+            **dict.fromkeys(("damping", "ahead", "rotor", "load", "in_space"), 0.0),
+        }
         return frozenset(n for n, v in plain.items() if np.any(np.asarray(getattr(self, n)) != v))
 
     def changed(self, changes: Changes) -> Equations:
@@ -118,7 +123,8 @@ class Equations:
         for name in {name for changes in sets for name in changes}:
             values = [changes.get(name, getattr(self, name)) for changes in sets]
             shape = np.shape(next(value for value in values if value is not None))
-            empty = np.ones(shape) if name == "weights" else np.zeros(shape)
+            plain = {"weights": np.ones(shape), "turns": np.array([0.0, 1.0])}
+            empty = plain.get(name, np.zeros(shape))
             filled = [empty if value is None else value for value in values]
             stacked[name] = np.array(filled, dtype=float)
         return replace(self, **stacked)
@@ -141,7 +147,9 @@ class Equations:
                 out[:, n + i] = component
         if count > n + 4:
             for i, component in enumerate(centre_rate(_parts(z[:, n : n + 4]), _parts(nu[:, :3]))):
-                out[:, n + 4 + i] = component if self.current is None else component + self.current[i]
+                out[:, n + 4 + i] = (
+                    component if self.current is None else component + self.current[i]
+                )
         return out * _number(self.clock) if "clock" in self._has else out
 
     @cached_property

@@ -24,7 +24,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Sizes:
-    """Natural sizes of an answer: of each velocity, of the roots of inertia, of loads, and the pace of turn."""
+    """Natural sizes of an answer: velocities, roots of inertia, loads, and the pace of turn."""
 
     nu: Floats
     inertia: Floats

@@ -1,4 +1,4 @@
-"""Causes in the attitude, given the moving part: wrong sides, factors, and updates replayed from row to row."""
+"""Causes in the attitude, given the moving part: wrong sides, factors, and replayed updates."""
 
 from __future__ import annotations
 
@@ -144,11 +144,27 @@ def _wrong(
 def _fits(
     answer: Answer, right: Equations, arcs: Arcs, ends: Floats, size: float
 ) -> Iterator[_Tried]:
-    pace = float(np.max(np.linalg.norm(answer.truth.v[:, -3:], axis=1))) if not right.has_momenta else 1.0
+    pace = (
+        float(np.max(np.linalg.norm(answer.truth.v[:, -3:], axis=1)))
+        if not right.has_momenta
+        else 1.0
+    )
     one = np.ones(1)
     families = (
-        Family("attitude by the rate of another moment", "late rate", 0 * one, one * 0.1 / pace, lambda p: {"ahead": p[0]}),
-        Family("attitude turns by a factor", "kinematics", one, one, lambda p: {"turns": np.array([0.0, p[0]])}),
+        Family(
+            "attitude by the rate of another moment",
+            "late rate",
+            0 * one,
+            one * 0.1 / pace,
+            lambda p: {"ahead": p[0]},
+        ),
+        Family(
+            "attitude turns by a factor",
+            "kinematics",
+            one,
+            one,
+            lambda p: {"turns": np.array([0.0, p[0]])},
+        ),
     )
     for family in families:
         numbers = family.right.copy()
@@ -164,8 +180,11 @@ def _fits(
         if f"{numbers[0]:.6g}" == "1":
             continue
         yield _Tried(
-            family.name, family.kind, left,
-            lambda answer, changed=changed: _weighted(answer, changed), numbers,
+            family.name,
+            family.kind,
+            left,
+            lambda answer, changed=changed: _weighted(answer, changed),
+            numbers,
         )
 
 
@@ -184,10 +203,15 @@ def _replays(
     for name, (order, update) in UPDATES.items():
 
         def left(steps: int, update: Any = update) -> float:
-            return _apart(ends, _updated(answer, right, update, begin, arcs, steps, method)[0]) / size
+            return (
+                _apart(ends, _updated(answer, right, update, begin, arcs, steps, method)[0]) / size
+            )
 
         def error(steps: int, update: Any = update) -> float:
-            return _apart(exact / np.linalg.norm(exact, axis=0), _updated(answer, right, update, begin, arcs, steps, method)[0])
+            return _apart(
+                exact / np.linalg.norm(exact, axis=0),
+                _updated(answer, right, update, begin, arcs, steps, method)[0],
+            )
 
         steps = method[1] if method else _steps(order, error, size)
         tried = {k: left(k) for k in ({steps} if method else {max(1, steps - 1), steps, steps + 1})}
@@ -216,7 +240,13 @@ def _steps(order: int, error: Callable[[int], float], size: float) -> int:
 
 
 def _updated(
-    answer: Answer, right: Equations, update: Any, begin: Floats, arcs: Arcs, steps: int, method: Any
+    answer: Answer,
+    right: Equations,
+    update: Any,
+    begin: Floats,
+    arcs: Arcs,
+    steps: int,
+    method: Any,
 ) -> Floats:
     """Return q, not of unit length, after the arcs in so many updates."""
     n, h = answer.n, arcs.spans / steps

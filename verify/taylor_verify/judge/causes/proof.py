@@ -1,7 +1,8 @@
 """Proof on the whole answer: the motion of a candidate from the scene's start at all rows.
 
-Multiple shooting from the file's own rows Z_k: with F_k = flow(Z_k) and A_k = dF_k/dZ_k the corrections obey
-delta_0 = 0, delta_k+1 = A_k delta_k + F_k - Z_k+1. All arcs are integrated at once, and two rounds are usual.
+Multiple shooting from the file's own rows Z_k: with F_k = flow(Z_k) and A_k = dF_k/dZ_k the corrections
+obey delta_0 = 0, delta_k+1 = A_k delta_k + F_k - Z_k+1. All arcs are integrated at once, and two rounds
+are usual.
 """
 
 from __future__ import annotations

@@ -100,7 +100,8 @@ def _left(answer: Answer, name: str, rows: Floats) -> float:
 def _group(answer: Answer, name: str) -> tuple[Floats, Floats, float]:
     """Return the file's rows of a group of vectors, the truth, and the size of an error of 1."""
     if name == "centre":
-        assert answer.file.c is not None and answer.truth.c is not None
+        assert answer.file.c is not None
+        assert answer.truth.c is not None
         return answer.file.c, answer.truth.c, 1.0
     part = answer.groups[name]
     return answer.file.v[:, part], answer.truth.v[:, part], float(answer.sizes[part][0])
@@ -149,9 +150,7 @@ def _signs(P: Floats) -> str:
     return f"has other axes: {axes(P)}"
 
 
-def _fitted(
-    answer: Answer, name: str, file: Floats, truth: Floats, R: Floats
-) -> Iterator[Reading]:
+def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -> Iterator[Reading]:
     is_centre, unit = name == "centre", np.eye(3)
     factor = np.sum(file * truth) / max(float(np.sum(truth * truth)), 1e-300)
     yield Reading(f"has the factor {factor:.8g}", 1, factor * truth)
@@ -168,7 +167,11 @@ def _fitted(
         yield Reading(f"has factors {numbers(p)} on its axes", 3, rows)
     if is_centre or name == "velocity":
         p, rows = _best(file - truth, [R[:, :, i] if is_centre else R[:, i, :] for i in range(3)])
-        words = "is the path of the body's point" if is_centre else "is relative to a moving frame, with the velocity"
+        words = (
+            "is the path of the body's point"
+            if is_centre
+            else "is relative to a moving frame, with the velocity"
+        )
         yield Reading(f"{words} {numbers(p)}", 3, truth + rows)
         p, rows = _best(file - truth, [axis * answer.times[:, None] for axis in unit])
         yield Reading(f"drifts with the constant velocity {numbers(p)}", 3, truth + rows)
@@ -208,7 +211,8 @@ def _best(rows: Floats, columns: list[Floats]) -> tuple[Floats, Floats]:
 
 def _attitudes(answer: Answer) -> Iterator[Reading]:
     q, truth = answer.file.q, answer.truth.q
-    assert q is not None and truth is not None
+    assert q is not None
+    assert truth is not None
     yield Reading("is the conjugate: it takes space to body axes", 0, conjugate(truth))
     yield Reading("has the scalar last", 0, np.roll(truth, -1, axis=1))
     yield Reading("has the scalar last, read as first", 0, np.roll(truth, 1, axis=1))
@@ -257,7 +261,9 @@ def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
         frame = np.hstack([np.cos(angle / 2), np.sin(angle / 2) * turn / angle])
         turned = times(frame, truth)
         rest = _small_turns(times(q, conjugate(turned)))
-        rate = rate + np.sum(rest * elapsed[:, None], axis=0) / max(float(np.sum(elapsed**2)), 1e-300)
+        rate = rate + np.sum(rest * elapsed[:, None], axis=0) / max(
+            float(np.sum(elapsed**2)), 1e-300
+        )
     return Reading(f"is relative to a space frame that turns at {numbers(rate)}", 3, turned)
 
 

@@ -37,7 +37,13 @@ _WORDS: Final = {
 
 
 def replay(
-    answer: Answer, method: Method, equations: Equations, v: Floats, since: Floats, spans: Floats, steps: int
+    answer: Answer,
+    method: Method,
+    equations: Equations,
+    v: Floats,
+    since: Floats,
+    spans: Floats,
+    steps: int,
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
     h = spans / steps
@@ -89,7 +95,9 @@ def _steps_of(arcs: Arcs, method: Method, stride: int) -> tuple[int, float]:
 
     def ends(steps: int) -> Floats:
         begin = arcs.begin(answer.n)
-        return replay(answer, method, answer.right, begin, arcs.since, arcs.spans, steps * stride)[0]
+        return replay(answer, method, answer.right, begin, arcs.since, arcs.spans, steps * stride)[
+            0
+        ]
 
     steps, error = 1, (ends(1) - exact) / scale
     limit = _MOST_IMPLICIT if method.is_implicit else _MOST

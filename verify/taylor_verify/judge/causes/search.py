@@ -60,9 +60,7 @@ def _is_attitude_right(answer: Answer, by_group: dict[str, Cause]) -> bool:
 
 def _contradicts(answer: Answer, moving: list[str]) -> bool:
     attitude = answer.worst["attitude"]
-    return (
-        answer.n == 3 and "omega" in moving and attitude < _CONTRADICTED * answer.worst["omega"]
-    )
+    return answer.n == 3 and "omega" in moving and attitude < _CONTRADICTED * answer.worst["omega"]
 
 
 def _of_motion(
@@ -125,7 +123,7 @@ def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
 def _attitude_undone(
     answer: Answer, by_group: dict[str, Cause], more: tuple[Fault, ...]
 ) -> list[Cause]:
-    """Return a convention of the attitude that its first row shows, with the causes of what is left by it."""
+    """Return a convention of the attitude that its first row shows, with the causes of what is left."""
     q, start = answer.file.q, answer.start.q
     if q is None or start is None or "attitude" in by_group or not answer.is_from_start:
         return []

@@ -26,7 +26,11 @@ def other_times(answer: Answer) -> Cause | None:
     if answer.count < _FEWEST or answer.right.reads or answer.right.acting is not None:
         return None
     late, left = _offsets(answer)
-    errors = [answer.error[name] / (2 if name == "attitude" else 1) for name in answer.error if name != "centre"]
+    errors = [
+        answer.error[name] / (2 if name == "attitude" else 1)
+        for name in answer.error
+        if name != "centre"
+    ]
     largest = float(np.max(errors))
     noise = max(answer.roundings[name] for name in answer.error if name != "centre")
     remains = float(np.max(left))
@@ -42,12 +46,13 @@ def other_times(answer: Answer) -> Cause | None:
 
 def _offsets(answer: Answer) -> tuple[Floats, Floats]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
-    right, truth, n = answer.right, answer.truth, answer.n
+    right, truth, _n = answer.right, answer.truth, answer.n
     has_q = answer.file.q is not None and truth.q is not None
     z, rows = truth.v.T, answer.file.v.T
     scale = answer.sizes[:, None]
     if has_q:
-        assert answer.file.q is not None and truth.q is not None
+        assert answer.file.q is not None
+        assert truth.q is not None
         signs = np.sign(np.sum(answer.file.q * truth.q, axis=1))
         z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, answer.file.q.T * signs])
         scale = np.vstack([scale, np.ones((4, 1))])
@@ -58,7 +63,11 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats]:
         apart = (rows - at[0]) / scale
         square = np.sum(slopes**2, axis=0)
         step = np.sum(slopes * apart, axis=0) / np.where(square > 0, square, np.inf)
-        late = np.clip(late + np.clip(step, -2 * spacing, 2 * spacing), -_MOST_ROWS * spacing, _MOST_ROWS * spacing)
+        late = np.clip(
+            late + np.clip(step, -2 * spacing, 2 * spacing),
+            -_MOST_ROWS * spacing,
+            _MOST_ROWS * spacing,
+        )
         answer.budget.spend(4000 + 0.5 * z.size)
         at = flow(right.rates, z[None], answer.times, late, 4)
     return late, np.linalg.norm((rows - at[0]) / scale, axis=0)
@@ -75,7 +84,9 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
         rows = mean / spacing
         if abs(rows - round(rows)) < _PATTERN and round(rows):
             return f"rows shifted: row k holds the state of row k{round(rows):+d}"
-        return f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
+        return (
+            f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
+        )
     return (
         _decimals(answer, size)
         or _single_precision(times, times + late, size)

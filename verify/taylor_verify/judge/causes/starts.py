@@ -40,9 +40,10 @@ def roundings(answer: Answer) -> Floats:
 def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
     """Return the cause of an answer that is the exact motion from its own first row, or between jumps."""
     bad = np.flatnonzero(defects > max(_JUMP, _PART * float(np.max(defects))))
-    is_off = any(
-        answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving
-    ) and answer.is_from_start
+    is_off = (
+        any(answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
+        and answer.is_from_start
+    )
     if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
         return None
     first = 1 if len(bad) and bad[0] == 0 else 0
@@ -93,7 +94,9 @@ def _from_a_row(answer: Answer, first: int, is_off: bool) -> Cause | None:
     if first:
         begin, end = answer.times[0] + answer.right.start, answer.times[1] + answer.right.start
         sizes = [np.linalg.norm(answer.file.v[k, -3:]) for k in (0, 1)]
-        of_rate = "" if answer.right.has_momenta else f" (|omega| is {sizes[0]:.4g}, then {sizes[1]:.4g})"
+        of_rate = (
+            "" if answer.right.has_momenta else f" (|omega| is {sizes[0]:.4g}, then {sizes[1]:.4g})"
+        )
         name = (
             f"all of the error arises between the first two rows, from t = {begin:.6g} to {end:.6g}"
             f"{of_rate}: from the second row on the motion is exact"

@@ -23,7 +23,9 @@ def faults_of_terms(right: Equations) -> Iterator[Fault]:
         changes = {**of_coriolis(factor * right.mass), "rotor": factor * right.rotor}
         yield Fault(name, "gyroscopic term", changes)
     if np.any(right.rotor):
-        yield Fault("gyroscopic term of the wheels alone", "gyroscopic term", {"gyro": 0 * right.gyro})
+        yield Fault(
+            "gyroscopic term of the wheels alone", "gyroscopic term", {"gyro": 0 * right.gyro}
+        )
         yield Fault("wheels left out", "wheels", {"rotor": nothing})
         yield Fault("wheels with the other sign", "wheels", {"rotor": -right.rotor})
         yield from _single_wheels(right)
@@ -57,7 +59,8 @@ def _faults_of_loads(right: Equations) -> Iterator[Fault]:
     yield Fault(f"{noun} in space axes", "load", {"in_space": 1.0})
     if n == 6:
         for (name, part), (words, factor) in product(
-            (("force", np.s_[:3]), ("couple", np.s_[3:])), (("left out", 0.0), ("with the other sign", -1.0))
+            (("force", np.s_[:3]), ("couple", np.s_[3:])),
+            (("left out", 0.0), ("with the other sign", -1.0)),
         ):
             weights = np.ones(6)
             weights[part] = factor
@@ -132,7 +135,9 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
 
 def _wheels(right: Equations) -> Iterator[Family]:
     scale, one = np.full(3, np.linalg.norm(right.rotor)), np.ones(1)
-    yield Family("factor of the wheels", "wheels", one, one, lambda p: {"rotor": p[0] * right.rotor})
+    yield Family(
+        "factor of the wheels", "wheels", one, one, lambda p: {"rotor": p[0] * right.rotor}
+    )
     for i in range(3):
         unit = np.eye(3)[i]
         yield Family(
@@ -188,7 +193,10 @@ def _loads(right: Equations, sizes: Sizes) -> Iterator[Family]:
         lambda p: {"arm": p[0] * axis},
     )
     yield Family(
-        "couple r x R^T e3 (weight and buoyancy)", "restoring couple", np.zeros(3), arms,
+        "couple r x R^T e3 (weight and buoyancy)",
+        "restoring couple",
+        np.zeros(3),
+        arms,
         lambda p: {"arm": p},
     )
     if n == 6:
@@ -238,9 +246,7 @@ def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
                 lambda p, name=name, part=part: {name: _placed(np.zeros(n), part, p)},
             )
         if n == 6:
-            yield Family(
-                f"{name} drag", kind, np.zeros(6), scale, lambda p, name=name: {name: p}
-            )
+            yield Family(f"{name} drag", kind, np.zeros(6), scale, lambda p, name=name: {name: p})
 
 
 def _factors_in_fluid(right: Equations) -> Iterator[Family]:
@@ -284,4 +290,4 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
             return {**of_coriolis(k * right.mass), "damping": damping, "turns": turns}
 
         title = f"{name}: the momentum times {words} {place} the motion of each step, with h"
-        yield Family(title, "damping step", h, h, changes)
+        yield Family(title, "damping step", 1e-3 * h, h, changes)
