@@ -191,7 +191,7 @@ class Answer:
 
     @cached_property
     def keeps_momenta(self) -> bool:
-        """True if the first row has the momenta of the scene; else the velocities are those at the start."""
+        """True if the first row has the momenta of the scene; else its velocities are the scene's."""
         own = np.abs(self.file.v[0] - self.right.mass @ self.start.v[0]) / self.sizes
         return self.right.has_momenta and bool(np.all(own <= _SAME_START * self.rounding))
 
@@ -199,7 +199,7 @@ class Answer:
         """Return the first v of a body with this mass matrix, (..., n)."""
         nu = self.start.v[0]
         if not self.right.has_momenta:
-            return nu
+            return np.asarray(nu)
         return np.asarray((self.right.mass if self.keeps_momenta else mass) @ nu)
 
     @cached_property
@@ -246,7 +246,7 @@ def product(p: Floats, q: Floats) -> Floats:
 
 
 def conjugate(q: Floats) -> Floats:
-    return q * np.array([1.0, -1.0, -1.0, -1.0])
+    return np.asarray(q * np.array([1.0, -1.0, -1.0, -1.0]))
 
 
 def matrices(q: Floats) -> Floats:
@@ -258,7 +258,7 @@ def _vectors(q: Floats) -> Floats:
     """Return the rotation vectors of rows of quaternions."""
     sine = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
     angle = 2 * np.arctan2(sine, np.abs(q[:, :1]))
-    return np.sign(q[:, :1]) * q[:, 1:] * angle / np.where(sine > 0, sine, 1.0)
+    return np.asarray(np.sign(q[:, :1]) * q[:, 1:] * angle / np.where(sine > 0, sine, 1.0))
 
 
 def _quaternions(turns: Floats) -> Floats:
@@ -273,7 +273,8 @@ def steady_signs(q: Floats) -> Floats:
     """Return unit quaternions whose signs do not jump from row to row."""
     unit = q / np.linalg.norm(q, axis=1, keepdims=True)
     signs = np.sign(np.sum(unit[1:] * unit[:-1], axis=1))
-    return unit * np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))[:, None]
+    steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
+    return np.asarray(unit * steady[:, None])
 
 
 Numbers = Mapping[str, float]

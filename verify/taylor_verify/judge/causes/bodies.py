@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import combinations, permutations
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -18,8 +18,6 @@ _SAME: Final = 1e-9
 # Entries whose ratios differ by less than this are unchanged together.
 _UNCHANGED: Final = 1e-3
 _NEAR: Final = 1e-6
-_ARM: Final = ("m r_1", "m r_2", "m r_3")
-_DIAGONAL: Final = tuple(f"M_{i}{i}" for i in range(1, 7))
 
 
 def faults_of_bodies(right: Equations) -> Iterator[Fault]:
@@ -36,7 +34,7 @@ def faults_of_bodies(right: Equations) -> Iterator[Fault]:
         yield from _coupling_in_one(right.mass)
 
 
-def _misread_tensors(right: Equations) -> Iterator[tuple[str, Floats]]:
+def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
     inertia, inverse = right.mass, right.inverse
     diagonal = np.diag(np.diag(inertia))
     yield "products of inertia left out", diagonal
@@ -65,7 +63,7 @@ def _misread_tensors(right: Equations) -> Iterator[tuple[str, Floats]]:
     yield "inertia in float32", inertia.astype(np.float32).astype(float)
 
 
-def _misread_masses(right: Equations) -> Iterator[tuple[str, Floats]]:
+def _misread_masses(right: Equations) -> Iterator[tuple[str, Any]]:
     mass, energy = right.mass, right.inverse
     for words, factor in (("left out", 0.0), ("with the other sign", -1.0)):
         yield f"coupling B of the energy {words}", np.linalg.inv(_coupled(energy, factor))
@@ -113,166 +111,114 @@ def faults_of_added_mass(mass: Floats, added: Floats) -> Iterator[Fault]:
 
 
 def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    """Yield the families of mass matrices, one number first."""
-    yield from _factor_of_inertia(right)
-    yield from _entries(right, sizes)
-    yield from _tensors(right, sizes) if right.size == 3 else _masses(right, sizes)
+    """Yield the families of mass matrices: a factor, entries, diagonals, another centre of mass, all."""
+    n, mass = right.size, right.mass
+    if not is_up_to_a_factor(right):
+        one = np.ones(1)
+        name = "factor of the inertia" if n == 3 else "factor of the mass matrix"
+        yield Family(name, "body", one, one, lambda p: of_body(p[0] * mass))
+    scale = np.outer(sizes.inertia, sizes.inertia)
+    upper = [(i, k) for i in range(n) for k in range(i, n)]
+    for place in upper:
+        if n == 3 or place[0] == place[1] or mass[place]:
+            yield from _both(_label(n, *place), mass, _of_entries(mass, scale, [place]))
+    # A free motion does not show a common factor.
+    lacks = 1 if is_up_to_a_factor(right) and not right.damping else 0
+    diagonal = [(i, i) for i in range(n)]
+    if n == 3:
+        numbers = _of_entries(mass, scale, diagonal[: 3 - lacks])
+        yield _of_mass("moments of inertia", "body", mass, numbers, of_body)
+        numbers = _of_entries(mass, scale, upper[: 6 - lacks])
+        yield _of_mass("inertia tensor", "body", mass, numbers, of_body)
+        for name, places in (("moments of inertia", diagonal), ("tensor", upper)):
+            numbers, title = (
+                _of_entries(mass, scale, places),
+                f"{name} in the gyroscopic term alone",
+            )
+            yield _of_mass(title, "Coriolis matrix", mass, numbers, of_coriolis)
+        yield Family(
+            "another centre of mass: I + m (c.c 1 - c c^T), with c sqrt(m)",
+            "body",
+            np.zeros(3),
+            np.full(3, sizes.inertia[2]),
+            lambda p: of_body(mass + p @ p * np.eye(3) - np.outer(p, p)),
+        )
+        return
+    masses, moments = (_of_entries(mass, scale, places) for places in (diagonal[:3], diagonal[3:]))
+    arm = _of_arm(mass, scale[0, 3])
+    for name, numbers in (
+        ("three masses", masses),
+        ("three moments of inertia", moments),
+        ("six diagonal masses", masses + moments),
+        ("coupling by the centre of mass (m r)", arm),
+        ("another centre of mass (m r and three moments of inertia)", arm + moments),
+        ("masses, m r and moments of inertia", masses + arm + moments),
+    ):
+        yield from _both(name, mass, numbers)
+    name = "three masses in the Munk moment alone"
+    yield _of_mass(name, "Coriolis matrix", mass, masses, lambda other: {"munk": other[:3]})
+    numbers = _of_entries(mass, scale, upper[: 21 - lacks])
+    yield _of_mass("mass matrix", "body", mass, numbers, of_body)
+    numbers = _of_entries(mass, scale, upper)
+    name = "mass matrix of the Coriolis terms alone"
+    yield _of_mass(name, "Coriolis matrix", mass, numbers, of_coriolis)
+
+
+class _Number(NamedTuple):
+    """A number of a mass matrix: its label, value and scale, and the matrix that it multiplies."""
+
+    label: str
+    value: float
+    scale: float
+    along: Floats
+
+
+def _both(name: str, mass: Floats, numbers: list[_Number]) -> Iterator[Family]:
+    """Yield the family of another body, and that of other Coriolis terms alone."""
+    term = "gyroscopic term" if len(mass) == 3 else "Coriolis terms"
+    yield _of_mass(name, "body", mass, numbers, of_body)
+    yield _of_mass(f"{name} in the {term} alone", "Coriolis matrix", mass, numbers, of_coriolis)
+
+
+def _of_mass(name: str, kind: str, mass: Floats, numbers: list[_Number], put: _Put) -> Family:
+    right = np.array([number.value for number in numbers])
+    along = np.array([number.along for number in numbers])
+    scale = np.array([number.scale for number in numbers])
+
+    def changes(p: Floats) -> Changes:
+        return put(mass + np.tensordot(p - right, along, axes=1))
+
+    return Family(name, kind, right, scale, changes, tuple(number.label for number in numbers))
+
+
+def _label(n: int, i: int, k: int) -> str:
+    return f"{'I' if n == 3 else 'M'}_{i + 1}{k + 1}"
+
+
+def _of_entries(mass: Floats, scale: Floats, places: list[tuple[int, int]]) -> list[_Number]:
+    numbers = []
+    for i, k in places:
+        along = np.zeros_like(mass)
+        along[i, k] = along[k, i] = 1.0
+        numbers.append(_Number(_label(len(mass), i, k), mass[i, k], scale[i, k], along))
+    return numbers
+
+
+def _of_arm(mass: Floats, scale: float) -> list[_Number]:
+    """Return m r, the antisymmetric part of the coupling."""
+    numbers = []
+    for i, axis in enumerate(np.eye(3)):
+        along, cross = np.zeros((6, 6)), np.cross(np.eye(3), axis)
+        along[3:, :3], along[:3, 3:] = cross, cross.T
+        value = float(np.sum(along * mass)) / 4
+        numbers.append(_Number(f"m r_{i + 1}", value, scale, along))
+    return numbers
 
 
 def is_up_to_a_factor(right: Equations) -> bool:
     """Return True if a motion does not show a common factor of the mass matrix."""
     loads = right.acting is not None or np.any(right.load) or np.any(right.rotor)
     return not (loads or right.has_momenta)
-
-
-def _factor_of_inertia(right: Equations) -> Iterator[Family]:
-    if is_up_to_a_factor(right):
-        return
-    one = np.ones(1)
-    name = "factor of the inertia" if right.size == 3 else "factor of the mass matrix"
-    yield Family(name, "body", one, one, lambda p: of_body(p[0] * right.mass))
-
-
-def _entries(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    n, mass = right.size, right.mass
-    for i, k in zip(*np.triu_indices(n), strict=True):
-        if n == 6 and i != k and not mass[i, k]:
-            continue
-        unit = np.zeros((n, n))
-        unit[i, k] = unit[k, i] = 1.0
-        scale = np.array([sizes.inertia[i] * sizes.inertia[k]])
-        name = f"I_{i + 1}{k + 1}" if n == 3 else f"M_{i + 1}{k + 1}"
-        for kind, words, put in (
-            ("body", name, of_body),
-            ("Coriolis matrix", f"{name} in the {_term(n)} alone", of_coriolis),
-        ):
-            yield Family(
-                words,
-                kind,
-                mass[[i], [k]],
-                scale,
-                lambda p, put=put, unit=unit, i=i, k=k: put(mass + (p[0] - mass[i, k]) * unit),
-                (name,),
-            )
-
-
-def _term(n: int) -> str:
-    return "gyroscopic term" if n == 3 else "Coriolis terms"
-
-
-def _tensors(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    inertia, scale = right.mass, np.outer(sizes.inertia, sizes.inertia)
-    lacks = 1 if is_up_to_a_factor(right) and not right.damping else 0
-    moments = [(0, 0), (1, 1), (2, 2)][: 3 - lacks]
-    upper = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)][: 6 - lacks]
-    for places, name in ((moments, "moments of inertia"), (upper, "inertia tensor")):
-        yield _symmetric(name, "body", inertia, scale, places, of_body)
-    for places, name in (
-        ([(0, 0), (1, 1), (2, 2)], "moments of inertia in the gyroscopic term alone"),
-        ([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)], "tensor in the gyroscopic term alone"),
-    ):
-        yield _symmetric(name, "Coriolis matrix", inertia, scale, places, of_coriolis)
-    yield Family(
-        "another centre of mass: I + m (c.c 1 - c c^T), with c sqrt(m)",
-        "body",
-        np.zeros(3),
-        np.full(3, sizes.inertia[2]),
-        lambda p: of_body(inertia + p @ p * np.eye(3) - np.outer(p, p)),
-    )
-
-
-def _symmetric(
-    name: str, kind: str, mass: Floats, scale: Floats, places: list[tuple[int, int]], put: _Put
-) -> Family:
-    rows, columns = np.transpose(places)
-
-    def changes(p: Floats) -> Changes:
-        other = mass.copy()
-        other[rows, columns] = other[columns, rows] = p
-        return put(other)
-
-    letter = "I" if len(mass) == 3 else "M"
-    labels = tuple(f"{letter}_{i + 1}{k + 1}" for i, k in places)
-    return Family(name, kind, mass[rows, columns], scale[rows, columns], changes, labels)
-
-
-def _masses(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    mass, scale = right.mass, np.outer(sizes.inertia, sizes.inertia)
-    lacks = 1 if is_up_to_a_factor(right) and not right.damping else 0
-    three, moments = [(i, i) for i in range(3)], [(i, i) for i in range(3, 6)]
-    upper = list(zip(*(index.tolist() for index in np.triu_indices(6)), strict=True))
-    for name, places in (
-        ("three masses", three),
-        ("three moments of inertia", moments),
-        ("six diagonal masses", three + moments),
-    ):
-        yield _symmetric(name, "body", mass, scale, places, of_body)
-        words = f"{name} in the Coriolis terms alone"
-        yield _symmetric(words, "Coriolis matrix", mass, scale, places, of_coriolis)
-    arm, unit = _arm(mass), np.full(3, scale[0, 3])
-    for name, kind, put in (
-        ("", "body", of_body),
-        (" in the Coriolis terms alone", "Coriolis matrix", of_coriolis),
-    ):
-        yield Family(
-            f"coupling by the centre of mass (m r){name}",
-            kind,
-            arm,
-            unit,
-            lambda p, put=put: put(_with_arm(mass, p)),
-            _ARM,
-        )
-        yield Family(
-            f"another centre of mass (m r and three moments of inertia){name}",
-            kind,
-            np.concatenate([arm, np.diag(mass)[3:]]),
-            np.concatenate([unit, np.diag(mass)[3:]]),
-            lambda p, put=put: put(_with_diagonal(_with_arm(mass, p[:3]), slice(3, 6), p[3:])),
-            (*_ARM, *_DIAGONAL[3:]),
-        )
-        yield Family(
-            f"masses, m r and moments of inertia{name}",
-            kind,
-            np.concatenate([np.diag(mass)[:3], arm, np.diag(mass)[3:]]),
-            np.concatenate([np.diag(mass)[:3], unit, np.diag(mass)[3:]]),
-            lambda p, put=put: put(
-                _with_diagonal(_with_arm(mass, p[3:6]), slice(0, 6), np.r_[p[:3], p[6:]])
-            ),
-            (*_DIAGONAL[:3], *_ARM, *_DIAGONAL[3:]),
-        )
-    yield Family(
-        "three masses in the Munk moment alone",
-        "Coriolis matrix",
-        np.diag(mass)[:3],
-        np.diag(mass)[:3],
-        lambda p: {"munk": _with_diagonal(mass, slice(0, 3), p)[:3]},
-        _DIAGONAL[:3],
-    )
-    yield _symmetric("mass matrix", "body", mass, scale, upper[: 21 - lacks], of_body)
-    name = "mass matrix of the Coriolis terms alone"
-    yield _symmetric(name, "Coriolis matrix", mass, scale, upper, of_coriolis)
-
-
-def _arm(mass: Floats) -> Floats:
-    """Return m r, the antisymmetric part of the coupling."""
-    block = mass[3:, :3]
-    return (
-        np.array([block[2, 1] - block[1, 2], block[0, 2] - block[2, 0], block[1, 0] - block[0, 1]])
-        / 2
-    )
-
-
-def _with_arm(mass: Floats, arm: Floats) -> Floats:
-    other, change = mass.copy(), np.cross(np.eye(3), arm - _arm(mass))
-    other[3:, :3] += change
-    other[:3, 3:] += change.T
-    return other
-
-
-def _with_diagonal(mass: Floats, part: slice, values: Any) -> Floats:
-    other, places = mass.copy(), range(6)[part]
-    other[places, places] = values
-    return other
 
 
 # Words for a body that was fitted.

@@ -28,6 +28,8 @@ from taylor_verify.judge.causes.replays import replays
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.words.causes import with_numbers
 
+# Error of float64 over a whole answer.
+_FLOAT64: Final = 5e-13
 # What a cause leaves: of the error on the whole answer or of the defects, or so many roundings of the file.
 LEAVES: Final = 1e-3
 ROUNDINGS: Final = 3.0
@@ -107,6 +109,13 @@ class _Dynamics:
     def _is_exact(self, candidate: Candidate) -> bool:
         """Return True if a candidate leaves no more than the rounding of the file."""
         return candidate.defects < 3 * self.floor + _NOTHING
+
+    @property
+    def _floor(self) -> float:
+        """What the roundings of the file and of the search leave, as a part of the error."""
+        answer = self.answer
+        least = min(answer.worst[name] for name in answer.moving)
+        return max(ROUNDINGS * answer.floor(answer.moving), _FLOAT64 / least)
 
     # Evidence.
 
@@ -241,8 +250,7 @@ class _Dynamics:
                 continue
             if proven and candidate.count > max(1, proven[0].candidate.count):
                 before = proven[0].worst
-                floor = ROUNDINGS * self.answer.floor(self.answer.moving)
-                if not before > max(_BETTER * proof.worst, floor):
+                if not before > max(_BETTER * proof.worst, self._floor):
                     continue
                 proven = []
             proven.append(proof)
@@ -281,7 +289,7 @@ class _Dynamics:
             if better is not None and max(better.leaves[name] for name in moving) < worst:
                 candidate, leaves, worst = better.candidate, better.leaves, better.worst
         part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
-        allowed = max(most * part, ROUNDINGS * answer.floor(moving))
+        allowed = max(most * part, self._floor)
         if worst > min(allowed, _CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
             return None
         return _Proven(candidate, leaves, worst)

@@ -50,7 +50,7 @@ def _largest(rows: Floats, least: float) -> Floats:
     """Return the largest size of each component, at least this part of its vector's."""
     vectors = np.linalg.norm(rows.reshape(len(rows), -1, 3), axis=2).max(axis=0)
     vectors = np.maximum(np.repeat(vectors, 3), 1e-300)
-    return np.maximum(np.max(np.abs(rows), axis=0), least * vectors)
+    return np.asarray(np.maximum(np.max(np.abs(rows), axis=0), least * vectors))
 
 
 def of_body(mass: Floats) -> dict[str, Any]:

@@ -58,7 +58,7 @@ class Family:
     def slopes(self, ends: Floats) -> Floats:
         """Return the derivatives (entries, numbers) from the values at ``around``."""
         flat = ends.reshape(2, self.count, -1)
-        return ((flat[0] - flat[1]) / (2 * DIFFERENCE * self.scale[:, None])).T
+        return np.asarray(((flat[0] - flat[1]) / (2 * DIFFERENCE * self.scale[:, None])).T)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -116,7 +117,7 @@ def _turned(answer: Answer, right: Equations, arcs: Arcs, method: Any) -> Floats
     return np.asarray(ends[0, answer.n : answer.n + 4])
 
 
-def _weighted(answer: Answer, changed: Equations) -> Floats:
+def _weighted(changed: Equations, answer: Answer) -> Floats:
     """Return the maps of q from each row to the next by equations of the attitude."""
     every = _all_arcs(answer)
     v = every.begin(changed.coupled)[0, : answer.n]
@@ -138,7 +139,7 @@ def _wrong(
         changed = right.changed({"turns": np.array(weights)})
         left = _apart(ends, _turned(answer, changed, arcs, None)) / size
         kind = "kinematics"
-        yield _Tried(name, kind, left, lambda answer, changed=changed: _weighted(answer, changed))
+        yield _Tried(name, kind, left, partial(_weighted, changed))
 
 
 def _fits(
@@ -183,7 +184,7 @@ def _fits(
             family.name,
             family.kind,
             left,
-            lambda answer, changed=changed: _weighted(answer, changed),
+            partial(_weighted, changed),
             numbers,
         )
 
@@ -222,7 +223,7 @@ def _replays(
             words,
             "attitude step",
             tried[best],
-            lambda answer, update=update, best=best: _maps(answer, right, update, best, method),
+            partial(_maps, right, update, best, method),
         )
 
 
@@ -267,7 +268,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
     return (right.inverse @ v if right.has_momenta else v)[:, -3:]
 
 
-def _maps(answer: Answer, right: Equations, update: Any, steps: int, method: Any) -> Floats:
+def _maps(right: Equations, update: Any, steps: int, method: Any, answer: Answer) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
     every = _all_arcs(answer)
     v = every.begin(answer.n)

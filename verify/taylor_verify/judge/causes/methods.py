@@ -114,9 +114,8 @@ def _rotated(vectors: Floats, omega: Floats, h: Floats) -> Floats:
     size = np.linalg.norm(omega, axis=1, keepdims=True)
     axis, angle = omega / np.where(size > 0, size, 1.0), h * size
     along = np.sum(axis * vectors, axis=1, keepdims=True) * axis
-    return (
-        along + (vectors - along) * np.cos(angle) + np.cross(axis, vectors, axis=1) * np.sin(angle)
-    )
+    across = np.cross(axis, vectors, axis=1)
+    return np.asarray(along + (vectors - along) * np.cos(angle) + across * np.sin(angle))
 
 
 def _of_fixed_size(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:

@@ -8,13 +8,12 @@ are usual.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs, moved
+from taylor_verify.judge.causes.arcs import moved
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.scenes.instants import evenly
@@ -59,7 +58,9 @@ def whole(
     q, c = (rows[:, n : n + 4] if count > n else None), None
     if q is None and has_frame and (answer.file.q is not None or n == 6) and stepper is None:
         q = _attitudes(answer, equations, rows, since, spans, steps)
-    if n == 6 and q is not None and answer.file.c is not None:
+    if count > n + 4:
+        c = rows[:, n + 4 :]
+    elif n == 6 and q is not None and answer.file.c is not None:
         c = _centres(answer, equations, rows[:, :6], q, since, spans, steps)
     unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
     motion = Motion(rows[:, :n], unit, c)
@@ -155,9 +156,5 @@ def _centres(
     assert answer.start.c is not None
     first = answer.start.c[0]
     frame = np.concatenate([v[:-1].T, q[:-1].T, np.zeros((3, len(spans)))])[None]
-    own = equations if equations.reads < 7 else replace(equations, acting=None)
-    ends = moved(answer, own, frame, since, spans, steps)[0, 10:].T
-    return first + np.concatenate([np.zeros((1, 3)), np.cumsum(ends, axis=0)])
-
-
-__all__ = ["Arcs", "Stepper", "chained", "whole"]
+    ends = moved(answer, equations, frame, since, spans, steps)[0, 10:].T
+    return np.asarray(first + np.concatenate([np.zeros((1, 3)), np.cumsum(ends, axis=0)]))

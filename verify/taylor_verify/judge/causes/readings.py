@@ -217,14 +217,15 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     yield Reading("has the scalar last", 0, np.roll(truth, -1, axis=1))
     yield Reading("has the scalar last, read as first", 0, np.roll(truth, 1, axis=1))
     for words, rows in (("", truth), ("is the conjugate, and ", conjugate(truth))):
-        for side, turn, turned in (
-            ("space", times(q, conjugate(rows)), lambda L, rows=rows: times(L[None], rows)),
-            ("body", times(conjugate(rows), q), lambda B, rows=rows: times(rows, B[None])),
+        for side, turn in (
+            ("space", times(q, conjugate(rows))),
+            ("body", times(conjugate(rows), q)),
         ):
             mean = np.linalg.eigh(turn.T @ turn)[1][:, -1]
             angle = np.degrees(2 * np.arccos(min(1.0, abs(float(mean[0])))))
             name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
-            yield Reading(name, 3, turned(mean))
+            turned = (mean[None], rows) if side == "space" else (rows, mean[None])
+            yield Reading(name, 3, times(*turned))
     yield from _both_frames(q, truth)
     yield _frame_that_turns(answer, q, truth)
 
@@ -233,7 +234,7 @@ def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
     """Yield S R P with a signed permutation P of the body's axes and a fixed S."""
     R, file = matrices(truth), matrices(q)
     for words, rows in (("", R), ("is transposed, and ", R.transpose(0, 2, 1))):
-        for P in SIGNED[1:]:
+        for P in (P for P in SIGNED[1:] if np.linalg.det(P) > 0):
             S = file[0] @ P.T @ rows[0].T
             turned = S @ rows @ P
             middle = len(turned) // 2

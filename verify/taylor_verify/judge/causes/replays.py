@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
@@ -72,11 +73,13 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
                 name=f"{words}, h = {h:.6g}",
                 kind="method",
                 defects=left,
-                prove=lambda method=method, steps=steps: whole(
-                    answer, answer.right, stepper(answer, method, steps)
-                ),
+                prove=partial(_proof, answer, method, steps),
                 method=(method, steps),
             )
+
+
+def _proof(answer: Answer, method: Method, steps: int) -> Motion | None:
+    return whole(answer, answer.right, stepper(answer, method, steps))
 
 
 def stepper(answer: Answer, method: Method, steps: int) -> Callable[[Floats], Floats]:
@@ -95,9 +98,9 @@ def _steps_of(arcs: Arcs, method: Method, stride: int) -> tuple[int, float]:
 
     def ends(steps: int) -> Floats:
         begin = arcs.begin(answer.n)
-        return replay(answer, method, answer.right, begin, arcs.since, arcs.spans, steps * stride)[
-            0
-        ]
+        count = steps * stride
+        (rows,) = replay(answer, method, answer.right, begin, arcs.since, arcs.spans, count)
+        return np.asarray(rows)
 
     steps, error = 1, (ends(1) - exact) / scale
     limit = _MOST_IMPLICIT if method.is_implicit else _MOST

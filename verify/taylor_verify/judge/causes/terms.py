@@ -9,10 +9,12 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.fault import Fault, Sizes, of_coriolis
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
+
+_TERMS: Final = (("Munk moment", "munk"), ("term x x W", "turn"), ("term y x W", "gyro"))
 
 
 def faults_of_terms(right: Equations) -> Iterator[Fault]:
@@ -90,7 +92,7 @@ def _faults_of_constant_loads(right: Equations) -> Iterator[Fault]:
 
 
 def _fluid_terms(right: Equations) -> Iterator[Fault]:
-    for name, part in (("Munk moment", "munk"), ("term x x W", "turn"), ("term y x W", "gyro")):
+    for name, part in _TERMS:
         rows = getattr(right, part)
         yield Fault(f"no {name}", "Coriolis terms", {part: 0 * rows})
         yield Fault(f"{name} with the other sign", "Coriolis terms", {part: -rows})
@@ -104,161 +106,103 @@ def load_names(n: int) -> list[str]:
 
 
 def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
-    """Yield the families of terms, one number first."""
-    right, n, one = answer.right, answer.n, np.ones(1)
-    yield Family("clock", "clock", one, one, lambda p: {"clock": p[0]})
+    """Yield the families of terms: clock, gyroscopic term, wheels, loads, drag and damping."""
+    right, n = answer.right, answer.n
+    yield _family("clock", "clock", "clock", 1.0, 1.0)
     word = "gyroscopic term" if n == 3 else "Coriolis terms"
+    one = np.ones(1)
 
-    def factor(p: Floats) -> dict[str, Floats]:
+    def factor(p: Floats) -> Changes:
         return {**of_coriolis(p[0] * right.mass), "rotor": p[0] * right.rotor}
 
     yield Family(f"factor of the {word}", "gyroscopic term", one, one, factor)
     if np.any(right.rotor):
         yield from _wheels(right)
     if right.acting is not None or np.any(right.load):
-        yield Family(
-            "factor of the moment" if n == 3 else "factor of the loads",
-            "load",
-            *(one, one),
-            lambda p: {"weights": np.full(n, p[0])},
-        )
+        noun = "moment" if n == 3 else "loads"
+        yield _family(f"factor of the {noun}", "load", "weights", np.ones(n), 1.0, np.ones((1, n)))
     if right.acting is not None:
-        late = np.array([0.1 / sizes.pace])
-        yield Family("loads late", "load", 0 * one, late, lambda p: {"late": p[0]})
+        yield _family("loads late", "load", "late", 0.0, 0.1 / sizes.pace)
     yield from _loads(right, sizes)
-    yield from _drags(right, sizes)
+    yield _family("damping", "damping", "damping", right.damping, sizes.pace)
+    yield from _drags(n, sizes)
     if right.damping:
         yield from _damping_steps(right)
     if n == 6:
-        yield from _factors_in_fluid(right)
+        for name, part in _TERMS:
+            rows = getattr(right, part)
+            title = f"factor of the {name}"
+            yield _family(title, "Coriolis terms", part, rows, 1.0, rows[None], np.ones(1))
+
+
+def _family(
+    name: str,
+    kind: str,
+    field: str,
+    base: Any,
+    scale: Any,
+    directions: Floats | None = None,
+    right: Floats | None = None,
+) -> Family:
+    """Return a family that changes one parameter linearly, along one or more directions.
+
+    Without ``right`` the numbers are the components of the ``base`` along the directions.
+    """
+    base = np.asarray(base, dtype=float)
+    along = np.ones((1, *base.shape)) if directions is None else directions
+    if right is None:
+        flat = along.reshape(len(along), -1)
+        right = flat @ base.ravel() / np.sum(flat**2, axis=1)
+    scales = np.broadcast_to(np.asarray(scale, dtype=float), right.shape)
+
+    def changes(p: Floats) -> Changes:
+        return {field: base + np.tensordot(p - right, along, axes=1)}
+
+    return Family(name, kind, right, scales, changes)
 
 
 def _wheels(right: Equations) -> Iterator[Family]:
-    scale, one = np.full(3, np.linalg.norm(right.rotor)), np.ones(1)
-    yield Family(
-        "factor of the wheels", "wheels", one, one, lambda p: {"rotor": p[0] * right.rotor}
-    )
+    size, unit = np.linalg.norm(right.rotor), np.eye(3)
+    along = right.rotor[None]
+    yield _family("factor of the wheels", "wheels", "rotor", right.rotor, 1.0, along)
     for i in range(3):
-        unit = np.eye(3)[i]
-        yield Family(
-            f"wheel {i + 1}",
-            "wheels",
-            right.rotor[[i]],
-            scale[:1],
-            lambda p, i=i, unit=unit: {"rotor": right.rotor + (p[0] - right.rotor[i]) * unit},
-        )
-    yield Family("wheels", "wheels", right.rotor, scale, lambda p: {"rotor": p})
+        yield _family(f"wheel {i + 1}", "wheels", "rotor", right.rotor, size, unit[[i]])
+    yield _family("wheels", "wheels", "rotor", right.rotor, size, unit)
 
 
 def _loads(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    n, zeros = right.size, np.zeros(right.size)
-    for i, name in enumerate(load_names(n)):
-        unit = np.eye(n)[i]
-        yield Family(
-            f"{name}, body axes",
-            "load",
-            right.load[[i]],
-            sizes.load[[i]],
-            lambda p, i=i, unit=unit: {"load": right.load + (p[0] - right.load[i]) * unit},
-        )
-        yield Family(
-            f"{name}, space axes",
-            "load in space axes",
-            np.zeros(1),
-            sizes.load[[i]],
-            lambda p, unit=unit: {"space": p[0] * unit},
-        )
-    for first in range(0, n, 3):
-        part, noun = slice(first, first + 3), load_names(n)[first].split()[0]
-        yield Family(
-            f"{noun} in body axes",
-            "load",
-            right.load[part],
-            sizes.load[part],
-            lambda p, part=part: {"load": _placed(right.load, part, p)},
-        )
-        yield Family(
-            f"{noun} in space axes",
-            "load in space axes",
-            np.zeros(3),
-            sizes.load[part],
-            lambda p, part=part: {"space": _placed(zeros, part, p)},
-        )
-    arms, axis = sizes.load[-3:], np.eye(3)[2]
-    yield Family(
-        "couple r x R^T e3 (weight and buoyancy), r along axis 3",
-        "restoring couple",
-        np.zeros(1),
-        arms[2:],
-        lambda p: {"arm": p[0] * axis},
-    )
-    yield Family(
-        "couple r x R^T e3 (weight and buoyancy)",
-        "restoring couple",
-        np.zeros(3),
-        arms,
-        lambda p: {"arm": p},
-    )
-    if n == 6:
-        yield Family(
-            "force and couple in body axes", "load", right.load, sizes.load, lambda p: {"load": p}
-        )
-
-
-def _placed(vector: Floats, part: slice, values: Floats) -> Floats:
-    changed = vector.copy()
-    changed[part] = values
-    return changed
-
-
-def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    n, zero = right.size, np.zeros(1)
-    pace = np.array([sizes.pace])
-    yield Family("damping", "damping", zero + right.damping, pace, lambda p: {"damping": p[0]})
-    turns = np.concatenate([np.zeros(n - 3), np.ones(3)])
-    yield Family(
-        "one drag on all rates of turn",
-        "drag",
-        zero,
-        pace * np.min(sizes.inertia[-3:]) ** 2,
-        lambda p: {"linear": p[0] * turns},
-    )
-    for name, power in (("linear", 1), ("quadratic", 2)):
-        scale = sizes.load / sizes.nu**power
-        kind = f"{name} drag"
-        for i in range(n):
-            unit = np.eye(n)[i]
-            yield Family(
-                f"{name} drag on axis {i + 1}",
-                kind,
-                zero,
-                scale[[i]],
-                lambda p, name=name, unit=unit: {name: p[0] * unit},
-            )
+    n, unit, names = right.size, np.eye(right.size), load_names(right.size)
+    in_space = (("load", "body axes", right.load), ("space", "space axes", np.zeros(n)))
+    for field, axes, base in in_space:
+        kind = "load" if field == "load" else "load in space axes"
+        for i, name in enumerate(names):
+            yield _family(f"{name}, {axes}", kind, field, base, sizes.load[i], unit[[i]])
         for first in range(0, n, 3):
-            part = slice(first, first + 3)
-            noun = load_names(n)[first].split()[0]
-            yield Family(
-                f"{name} drag, {noun}",
-                kind,
-                np.zeros(3),
-                scale[part],
-                lambda p, name=name, part=part: {name: _placed(np.zeros(n), part, p)},
-            )
+            part, noun = slice(first, first + 3), names[first].split()[0]
+            yield _family(f"{noun} in {axes}", kind, field, base, sizes.load[part], unit[part])
+    if n == 6:
+        yield _family("force and couple in body axes", "load", "load", right.load, sizes.load, unit)
+    name, arms = "couple r x R^T e3 (weight and buoyancy)", sizes.load[-3:]
+    for title, axes_ in ((f"{name}, r along axis 3", [2]), (name, [0, 1, 2])):
+        along = np.eye(3)[axes_]
+        yield _family(title, "restoring couple", "arm", np.zeros(3), arms[axes_], along)
+
+
+def _drags(n: int, sizes: Sizes) -> Iterator[Family]:
+    zeros, unit, names = np.zeros(n), np.eye(n), load_names(n)
+    turns = np.concatenate([np.zeros(n - 3), np.ones(3)])
+    least = sizes.pace * np.min(sizes.inertia[-3:]) ** 2
+    name = "one drag on all rates of turn"
+    yield _family(name, "linear drag", "linear", zeros, least, turns[None])
+    for field, power in (("linear", 1), ("quadratic", 2)):
+        scale, kind = sizes.load / sizes.nu**power, f"{field} drag"
+        for i in range(n):
+            yield _family(f"{kind} on axis {i + 1}", kind, field, zeros, scale[i], unit[[i]])
+        for first in range(0, n, 3):
+            part, noun = slice(first, first + 3), names[first].split()[0]
+            yield _family(f"{kind}, {noun}", kind, field, zeros, scale[part], unit[part])
         if n == 6:
-            yield Family(f"{name} drag", kind, np.zeros(6), scale, lambda p, name=name: {name: p})
-
-
-def _factors_in_fluid(right: Equations) -> Iterator[Family]:
-    one = np.ones(1)
-    for name, part in (("Munk moment", "munk"), ("term x x W", "turn"), ("term y x W", "gyro")):
-        rows = getattr(right, part)
-        yield Family(
-            f"factor of the {name}",
-            "Coriolis terms",
-            *(one, one),
-            lambda p, part=part, rows=rows: {part: p[0] * rows},
-        )
+            yield _family(kind, kind, field, zeros, scale, unit)
 
 
 # The factor of one step as a function of x = c h.
@@ -281,7 +225,7 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
     h = np.array([0.05 / abs(right.damping)])
     for (name, words, factor), place in product(_FACTORS, ("after", "before")):
 
-        def changes(p: Floats, factor: Any = factor, place: str = place) -> dict[str, Any]:
+        def changes(p: Floats, factor: Any = factor, place: str = place) -> Changes:
             step = float(p[0]) or 1e-9
             f = factor(right.damping * step)
             damping = -np.log(f) / step if f > 0 else np.nan
