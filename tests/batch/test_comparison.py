@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 import taylor_verify
-from taylor_verify.batch.comparison import compare_with_baseline, read_baseline, shown_verdicts
+from taylor_verify.batch.comparison import compare_with_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     compare_with_published,
@@ -23,7 +23,6 @@ from taylor_verify.batch.selection import select
 from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.status import Status
 from taylor_verify.report.folder import write_report
-from taylor_verify_reports.studies.hard import measure as hard
 
 SCENES = ["euler/rest", "euler/generic"]
 LONG = "extremes/euler-separatrix-long"
@@ -57,15 +56,6 @@ def baseline(tmp_path: Path, results: Judgements) -> Path:
     return file
 
 
-def test_a_result_is_no_regression_from_itself(baseline: Path, results: Judgements) -> None:
-    """All rows are compared, and the comparison passes."""
-    comparison = compare_with_baseline(results, baseline)
-    assert comparison.compared == len(results.verdicts)
-    assert comparison
-    assert comparison.exit_status == 0
-    comparison.raise_for_failure()
-
-
 def test_an_error_that_grew_is_a_regression(baseline: Path, results: Judgements) -> None:
     """It fails by name, also where the gate itself still passes."""
     worse = changed(results, "euler/generic", "omega", max=1e-3)
@@ -87,21 +77,6 @@ def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judg
     assert (other.compared, other.exit_status) == (0, 3)
     with pytest.raises(NotPassed, match="no row was compared"):
         other.raise_for_failure()
-
-
-def test_a_judgement_of_one_run_is_compared_alone(baseline: Path, results: Judgements) -> None:
-    """The rows of the baseline that belong to this run count, and no others."""
-    comparison = compare_with_baseline(results[1], baseline)
-    assert comparison.passed
-    assert comparison.compared == len(results[1].verdicts)
-
-
-def test_what_is_no_baseline_is_refused(tmp_path: Path) -> None:
-    """A file that is half understood would let all pass."""
-    file = tmp_path / "other.json"
-    file.write_text("{}")
-    with pytest.raises(ValueError, match="expected a key verdicts"):
-        read_baseline(file)
 
 
 def test_a_report_is_compared_both_ways(tmp_path: Path, results: Judgements) -> None:
@@ -143,12 +118,3 @@ def test_a_junit_file_is_as_red_as_the_result(
     assert len(shown_verdicts(expected)) == len(expected.verdicts) - 1
     write_junit(file, expected[0])
     assert colour(file) == "red"
-
-
-def test_the_page_of_hard_scenes_has_what_was_run() -> None:
-    """Its document has the verdicts, the titles of the scenes and what was expected of each row."""
-    study = hard.study(taylor_verify.run_many([LONG]))
-    assert [scene.scene for scene in study.scenes] == [LONG]
-    assert study.mismatches == ()
-    assert [(row.quantity, row.verdict) for row in study.expected] == [("omega", Status.VACUOUS)]
-    assert all(map(study.is_met, study.verdicts))

@@ -57,12 +57,3 @@ def test_a_row_that_is_none_is_refused_by_its_place(
         load(file)
     assert message in str(refused.value)
     assert str(file) in str(refused.value)
-
-
-@pytest.mark.parametrize("text", ["{", "[]", "1", "{}", '{"verdicts": {}}', '{"verdicts": [1]}'])
-def test_a_document_of_something_else_is_refused(tmp_path: Path, text: str) -> None:
-    """A document without verdicts is refused as a baseline."""
-    file = tmp_path / "other.json"
-    file.write_text(text, encoding="utf-8")
-    with pytest.raises(ValueError, match=r"other\.json"):
-        load(file)

@@ -46,10 +46,6 @@ def threads() -> int:
     return len(os.listdir("/proc/self/task"))
 
 
-def ignores_interrupts() -> bool:
-    return signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-
-
 def end(number: int) -> None:
     os.kill(os.getpid(), number)
 
@@ -67,14 +63,6 @@ def pool() -> Iterator[LocalPool]:
     """A pool for the tests that leave it whole."""
     with LocalPool(2) as pool:
         yield pool
-
-
-def test_it_is_an_executor(pool: LocalPool) -> None:
-    """Functions with arguments run in other processes, and `map` keeps the order."""
-    assert [*pool.map(divmod, [7, 8, 9], [2, 3, 4])] == [(3, 1), (2, 2), (2, 1)]
-    processes = {pool.submit(os.getpid).result() for _ in range(4)}
-    assert os.getpid() not in processes
-    assert pool.submit(int, "ff", base=16).result() == 255
 
 
 def test_an_error_of_the_work_is_raised_as_it_was(pool: LocalPool) -> None:
@@ -98,18 +86,6 @@ def test_what_cannot_be_pickled_is_an_error_with_a_text(
     assert error is not None
     assert text in str(error)
     assert pool.submit(len, "abc").result() == 3
-
-
-def test_work_that_cannot_be_sent_is_an_error(pool: LocalPool) -> None:
-    """A lambda cannot be pickled, and its future says so."""
-    with pytest.raises(Exception, match="lambda"):
-        pool.submit(lambda: 1).result(timeout=PATIENCE)
-    assert pool.submit(len, "abc").result() == 3
-
-
-def test_a_worker_is_deaf_to_interrupts(pool: LocalPool) -> None:
-    """Ctrl-C goes to every process of a terminal, and is their parent's affair."""
-    assert pool.submit(ignores_interrupts).result()
 
 
 # A process of its own: in this one multiprocessing may have started its helper long ago.

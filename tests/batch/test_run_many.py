@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from multiprocessing import get_context
@@ -19,12 +18,10 @@ import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
-from taylor_verify.batch.lock import LOCK
 from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.records.faults import Refused
-from taylor_verify.records.json_text import complete
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -82,20 +79,6 @@ def test_any_executor_gives_the_verdicts_of_run(executor: Any, alone: list[Judge
     assert progress[0] == (0, 3, "None")
     assert [k for k, *_ in progress] == [0, 1, 2, 3]
     assert {name for *_, name in progress[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
-
-
-def test_a_single_scene_goes_to_an_executor_that_is_given() -> None:
-    """Without one it runs in this process."""
-    submitted: list[Any] = []
-
-    class Counting(ThreadPoolExecutor):
-        def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Any:
-            submitted.append(args)
-            return super().submit(fn, *args, **kwargs)
-
-    with Counting(1) as executor:
-        assert taylor_verify.run_many(["euler/rest"], executor=executor).passed
-    assert len(submitted) == 1
 
 
 def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
@@ -213,27 +196,7 @@ def test_every_fault_of_every_scene_is_told(tmp_path: Path) -> None:
     assert "euler/rest is refused" not in text
 
 
-def test_a_doubtful_scene_is_known_before_it_runs(tmp_path: Path) -> None:
-    """A body that no solid can be is a warning of the selection, with the name of its scene."""
-    file = tmp_path / "doubtful.toml"
-    file.write_text(THREE_INSTANTS.replace("[1, 2, 3]", "[1, 2, 4]"))
-    (warning,) = select([file]).warnings
-    assert warning.endswith(f"@ {file}")
-
-
 # The result.
-
-
-def test_it_behaves_as_a_list(results: Judgements, alone: list[Judgement]) -> None:
-    """Length, indices, slices, iteration and equality."""
-    assert len(results) == 6
-    assert [*results] == alone
-    assert results[0] is alone[0]
-    assert results[-2:] == tuple(alone[-2:])
-    assert results == alone
-    assert results != alone[1:]
-    assert alone[3] in results
-    assert taylor_verify.run_many([]) == []
 
 
 def marred(results: Judgements, status: Status) -> Judgements:
@@ -270,14 +233,6 @@ def test_its_truth_value_is_whether_it_passed(
     assert judgements.summary[status.value] >= 1
 
 
-def test_nothing_judged_is_no_pass() -> None:
-    """No runs, and a machine without the number format, have an exit status and do not pass."""
-    nothing = taylor_verify.run_many([])
-    assert (nothing.exit_status, nothing.passed) == (3, False)
-    with pytest.raises(NotPassed, match="nothing was judged"):
-        nothing.raise_for_failure()
-
-
 def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A vacuous extreme passes as expected; where nobody expects it, it fails by name."""
     judgements = taylor_verify.run_many([LONG])
@@ -291,16 +246,6 @@ def test_what_was_expected_is_part_of_it(monkeypatch: pytest.MonkeyPatch) -> Non
     assert again.exit_status == 1
     with pytest.raises(NotPassed, match=f"expected pass, got vacuous @ {LONG} f64 omega"):
         again.raise_for_failure()
-
-
-def test_what_a_folder_leaves_out_is_part_of_it() -> None:
-    """The scene, the rung and the reason, as in the document."""
-    selection = select(["extremes"], ["mp237"])
-    judgements = Judgements((), selection, "taylor")
-    assert judgements.left_out
-    assert judgements.document()["left_out"] == [complete(one) for one in judgements.left_out]
-    jobs = {(job.name, rung) for job in selection.jobs("taylor") for rung in job.rungs}
-    assert not jobs & {(one.scene, one.rung) for one in judgements.left_out}
 
 
 def test_the_command_prints_its_document(
@@ -331,34 +276,3 @@ def test_its_repr_is_short_and_its_table_is_escaped(results: Judgements) -> None
     assert "&lt;script&gt;" in many._repr_html_()
     assert many._repr_html_().count("<tr>") == 41
     assert "and 11 more runs" in many._repr_html_()
-
-
-def test_a_data_frame_has_a_row_for_each_verdict(
-    results: Judgements, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """pandas gets the fields of each verdict, and what was expected of it."""
-    monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=lambda rows: rows))
-    rows: Any = results.to_dataframe()
-    assert len(rows) == len(results.verdicts)
-    fields = {"scene", "rung", "quantity", "verdict", "max", "bound", "expected"}
-    assert all(fields <= set(row) for row in rows)
-    assert {row["expected"] for row in rows} == {None}
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ModuleNotFoundError, match=r"expected pandas .*pip install pandas"):
-        results.to_dataframe()
-
-
-# The folder of reports.
-
-
-def test_out_writes_what_the_command_writes(tmp_path: Path) -> None:
-    """A call from Python and the command write the same files, and no lock is left."""
-    judgements = taylor_verify.run_many(["euler/rest"], out=tmp_path / "mine")
-    assert main(["run", "euler/rest", "--out", str(tmp_path / "its")]) == 0
-    mine, its = (
-        {file.relative_to(folder) for file in folder.rglob("*") if file.is_file()}
-        for folder in (tmp_path / "mine", tmp_path / "its")
-    )
-    assert mine == its
-    assert Path(LOCK) not in mine
-    assert judgements.passed

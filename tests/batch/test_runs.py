@@ -50,12 +50,6 @@ def test_any_executor_gives_the_order_asked_for(make: Callable[[], Executor]) ->
         executor.shutdown()
 
 
-def test_processes_of_this_machine_give_the_order_asked_for() -> None:
-    """Without an executor there is a pool; no work needs none."""
-    assert run_all(square, ASKED, workers=2) == [9, 1, 16, 1, 25]
-    assert run_all(square, []) == []
-
-
 def test_the_dearest_begins_first() -> None:
     """Work is submitted by expense, and the results keep their order."""
     started: list[int] = []
@@ -173,13 +167,3 @@ def test_an_error_of_the_executor_names_the_work(at_once: bool) -> None:
         Failed, match=r"3: .* an error of the executor: ConnectionRefusedError: .*refused"
     ):
         run_all(square, [3], Unreachable(at_once), raises=Failed)
-
-
-def test_an_error_of_the_work_is_no_error_of_the_executor() -> None:
-    """An exception of the work is raised as it is."""
-
-    def work(one: int) -> int:
-        raise Failed(f"{one} is broken")
-
-    with ThreadPoolExecutor(1) as executor, pytest.raises(Failed, match=r"^3 is broken$"):
-        run_all(work, [3], executor, raises=Failed)

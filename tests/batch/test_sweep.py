@@ -310,14 +310,6 @@ def test_a_grid_beyond_the_largest_sweep_is_refused_at_once(tmp_path: Path) -> N
     assert not (tmp_path / "out").exists()
 
 
-def test_a_number_that_is_none_is_a_value_error() -> None:
-    """A count that is a text is refused by its name, from Python as from the command line."""
-    with pytest.raises(
-        ValueError, match="expected a whole number from 1 to 1000000000, got '3' @ count"
-    ):
-        sweep("satellites", count="3")  # type: ignore[arg-type]
-
-
 def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
     """Each file is a scene; what is drawn, and all faults of all files, are refused."""
     folder = tmp_path / "scenes"
@@ -332,12 +324,3 @@ def test_a_folder_of_scenes_is_swept(template: str, tmp_path: Path) -> None:
     (folder / "wrong.toml").write_text("x = 1\n")
     with pytest.raises(Refused, match=r"wrong\.toml is refused:\n.*title"):
         sweep(str(folder), solver=SOLVER)
-
-
-@pytest.mark.usefixtures("quick")
-def test_json_is_one_document(template: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """`sweep --json` prints the summary and nothing else; without --out no file is named."""
-    assert main(["sweep", template, *WORDS, "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert (document["total"], document["exit_status"], document["bodies"]["pass"]) == (20, 0, 20)
-    assert {case["file"] for case in document["worst"]} == {""}

@@ -14,10 +14,11 @@ from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, vector
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure import step
 from taylor_verify.exact.enclosure.coefficients import Rows
-from taylor_verify.exact.enclosure.course import Course, Row
+from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody

@@ -1,4 +1,8 @@
-"""Scenes under loads that are drawn: every function and every name, in both directions of time."""
+"""Scenes under loads that are drawn: every function and every name, in both directions of time.
+
+With states of their own they have wheels that are driven, lags, integrals, and values that are held, late,
+and jump with the state; then they run forward.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +17,13 @@ from taylor_verify.scenes.scene import Scene
 EULER = """
 title = "Drawn loads"
 model = "euler"
-track = ["attitude"]
+track = ["attitude"{track}]
 [body]
 inertia = {body}
 moment = {loads[0]}
 {hung}
 {tables}
+{states}
 [initial]
 omega = {start[0]}
 attitude = {attitude}
@@ -29,13 +34,14 @@ at = ["{end}"]
 KIRCHHOFF = """
 title = "Drawn loads"
 model = "kirchhoff"
-track = ["attitude", "centre"]
+track = ["attitude", "centre"{track}]
 [body]
 {body}
 force = {loads[0]}
 couple = {loads[1]}
 {hung}
 {tables}
+{states}
 [initial]
 linear_impulse = {start[0]}
 angular_impulse = {start[1]}
@@ -87,6 +93,17 @@ SWITCHED = (
 )
 
 
+JUMPS = (
+    "sign({a})", "step({a} - {c})", "floor(3*({a}))/4", "({a} if {b} > {c} else -{c})",
+    "({a} if {a} <= {b} else {b})", "(0 if abs({a}) < {c} else {b})", "floor(t*{n})/{n}",
+)  # fmt: skip
+ROTORS = (
+    ("h1", "h2", "h3"), ("h1 + f/3", "0.2", "-h3/2"), ("tanh(h1)", "sin(2*t)/5", "h2*h3"),
+    ("1/3", "f", "0"),
+    ("clip(h1, -2, 2)", "k2/4", "exp(-f^2)/3"),
+)  # fmt: skip
+
+
 class Drawn(NamedTuple):
     """A scene, its one time since the start, and the switches on the way, as times of the scene."""
 
@@ -101,11 +118,12 @@ class _Formulas:
 
     def __init__(self, random: Random, names: Sequence[str], times: Sequence[Fraction]) -> None:
         self._random, self._names, self._times = random, names, times
+        self.may_jump = False
         self.switches: set[Fraction] = set()
         self.reads_table = False
 
-    def vector(self) -> str:
-        return "[" + ", ".join(f'"{self.entry()}"' for _ in range(3)) + "]"
+    def vector(self, size: int = 3) -> str:
+        return "[" + ", ".join(f'"{self.entry()}"' for _ in range(size)) + "]"
 
     def entry(self) -> str:
         kind = self._random.randrange(8)
@@ -120,22 +138,51 @@ class _Formulas:
             name, number = random.choice(self._names), random.choice(NUMBERS)
             self.reads_table |= name == "p"
             return random.choice((name, name, f"{number}*{name}", f"{name} - {number}"))
-        form = random.choice(random.choice((FORMS, FORMS, FORMS, FORMS, KINKS, SWITCHED)))
+        kinds = (FORMS, FORMS, FORMS, FORMS, KINKS, SWITCHED)
+        form = random.choice(random.choice((*kinds, JUMPS, JUMPS) if self.may_jump else kinds))
         switch = random.choice(self._times)
         if "{s}" in form:
             self.switches.add(switch)
         a, b = self.formula(depth - 1), self.formula(depth - 1)
-        return form.format(a=a, b=b, c=random.choice(NUMBERS), s=switch)
+        return form.format(a=a, b=b, c=random.choice(NUMBERS), s=switch, n=random.choice((2, 5, 8)))
 
 
-def drawn(random: Random) -> Drawn:
+class _States:
+    """States of a scene's own: wheels h, a lag f, an integral k, held m, and a that is late."""
+
+    names = ("h1", "h2", "h3", "f", "k1", "k2", "m1", "m2", "a")
+
+    def __init__(self, random: Random, formulas: _Formulas, elapsed: Fraction) -> None:
+        self._random, self._formulas, self._elapsed = random, formulas, elapsed
+
+    def table(self) -> str:
+        f, random = self._formulas, self._random
+        rates = {"h": f.vector(), "f": f'"{f.entry()} - 3*f"', "k": f.vector(2)}
+        starts = {"h": _vector(random), "f": random.choice(("0", '"1/3"')), "k": "[0, -0.5]"}
+        lines = [f"{n} = {{ start = {starts[n]}, rate = {rates[n]} }}" for n in rates]
+        f.may_jump = True
+        late = f'"{random.choice(("m1", "m2/2 + a/3", f.entry()))}"'
+        every = [self._elapsed * Fraction(random.choice((1, 2, 3)), 8) for _ in range(2)]
+        offset = random.choice((Fraction(0), self._elapsed / 16, self._elapsed / 3))
+        lines += [
+            f'm = {{ every = "{every[0]}", start = [0, "1/4"], value = {f.vector(2)} }}',
+            f'a = {{ every = "{every[1]}", offset = "{offset}", start = 0.5, value = {late} }}',
+        ]
+        f.may_jump = False
+        return "\n".join(["[states]", *lines])
+
+
+def drawn(random: Random, with_states: bool = False) -> Drawn:
     """A scene whose span is short, with what it needs to be followed by any integrator."""
     is_euler = random.random() < 0.5
     begin = Fraction(random.choice(("0", "1/4", "-2")))
     elapsed = Fraction(random.choice((1, 2, 3)), 8) * random.choice((1, 1, -1))
+    elapsed = abs(elapsed) if with_states else elapsed
     end = begin + elapsed
     times = [begin + elapsed * Fraction(k, 8) for k in (1, 3, 5, 6)]
-    formulas = _Formulas(random, _names(random, is_euler), times)
+    names = _names(random, is_euler)
+    formulas = _Formulas(random, [*names, *_States.names * 2] if with_states else names, times)
+    states = _States(random, formulas, elapsed).table() if with_states else ""
     loads = [formulas.vector() for _ in range(1 if is_euler else 2)]
     knots = sorted({begin + elapsed * Fraction(k, 8) for k in (-1, 2, 4, 7)})
     tables = TABLES.format(
@@ -147,7 +194,9 @@ def drawn(random: Random) -> Drawn:
     text = (EULER if is_euler else KIRCHHOFF).format(
         body=random.choice(INERTIAS if is_euler else SOLIDS),
         loads=loads,
-        hung=_hung(random, is_euler),
+        hung=_hung(random, is_euler) + (_rotor(random) if with_states and is_euler else ""),
+        states=states,
+        track=', "h", "f", "k", "m", "a"' if with_states else "",
         tables=tables,
         start=[_vector(random) for _ in range(3)],
         attitude='[1, "1/4", "-1/8", "1/2"]' if random.random() < 0.8 else "[0, 1, 0, 0]",
@@ -179,6 +228,12 @@ def _hung(random: Random, is_euler: bool) -> str:
     if not is_euler and random.random() < 0.3:
         lines.append(CURRENT.format(_vector(random)))
     return "\n".join(lines)
+
+
+def _rotor(random: Random) -> str:
+    """Wheels that are driven, in most scenes."""
+    texts = ", ".join(f'"{text}"' for text in random.choice(ROTORS))
+    return f"\nrotor = [{texts}]" if random.random() < 0.7 else ""
 
 
 def _vector(random: Random) -> str:

@@ -66,3 +66,19 @@ def fixed_step(
         return np.array(rows)
 
     return solve
+
+
+def step(rates: Callable[[Any, list[Any]], list[Any]], t: Any, y: list[Any], h: Any) -> list[Any]:
+    """One step of the classical Runge-Kutta method, in whatever numbers."""
+
+    def moved(slope: list[Any], share: Any) -> list[Any]:
+        return [a + share * s for a, s in zip(y, slope, strict=True)]
+
+    first = rates(t, y)
+    second = rates(t + h / 2, moved(first, h / 2))
+    third = rates(t + h / 2, moved(second, h / 2))
+    fourth = rates(t + h, moved(third, h))
+    return [
+        a + h / 6 * (p + 2 * q + 2 * r + s)
+        for a, p, q, r, s in zip(y, first, second, third, fourth, strict=True)
+    ]

@@ -2,24 +2,28 @@
 
 The integrator is that of Gragg, Bulirsch and Stoer in mpmath, on the equations as the source texts have
 them. Python's own ``eval`` reads the loads: nothing of the product's reading or of its series is shared.
+Under a rotor of texts the state is the momentum P = R (I w + h) in space axes, P' = R M. Held values are
+taken one instant after the other, each time all from what was before it.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from mpmath import mp, mpf
 
-from taylor_verify.scenes.loads.tables import Table
+from builders.extrapolation import extrapolated
+from builders.text_functions import FUNCTIONS, Sides, tabulated, value
+from taylor_verify.scenes.loads.states import Continuous, Held
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
 COLUMNS = 12
 # The time in a condition or a step: that of the piece, so that a switch belongs to one of its sides.
-_CLOCK = re.compile(r"\bt(?= [<>])|(?<=step\()t|(?<=sign\()t")
+_CLOCK = re.compile(r"\bt(?= [<>])|(?<=step\()t|(?<=sign\()t|(?<=floor\()t")
 _WORD = re.compile(r"[A-Za-z]\w*")
 _NUMBER = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)")
 Vector = list[Any]
@@ -99,89 +103,11 @@ def _toml(texts: Sequence[str]) -> str:
     return "[" + ", ".join(f'"{text}"' for text in texts) + "]"
 
 
-def value(number: Fraction) -> Any:
-    return mpf(number.numerator) / number.denominator
-
-
-FUNCTIONS: Mapping[str, Callable[..., Any]] = {
-    name: getattr(mp, name)
-    for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "atan2")
-} | {
-    "sinh": mp.sinh, "cosh": mp.cosh, "tanh": mp.tanh, "abs": abs, "min": min, "max": max,
-    "pow": lambda a, b: a**b, "norm": lambda *parts: mp.sqrt(sum(p * p for p in parts)),
-    "clip": lambda x, low, high: min(max(x, low), high),
-    "step": lambda x: mpf(x >= 0), "sign": mp.sign,
-}  # fmt: skip
-
-
-class Sides:
-    """The sides of its kinks on which a motion was, in the order in which its texts ask for them."""
-
-    def __init__(self) -> None:
-        self.crosses = False
-        self.begin_piece()
-
-    def begin_piece(self) -> None:
-        self._signs: list[int] = []
-        self.begin_evaluation()
-
-    def begin_evaluation(self) -> None:
-        self._next = 0
-
-    def _watch(self, value: Any) -> None:
-        side = int(mp.sign(value))
-        if self._next == len(self._signs):
-            self._signs.append(side)
-        elif side and self._signs[self._next] != side:
-            self.crosses |= bool(self._signs[self._next])
-            self._signs[self._next] = side
-        self._next += 1
-
-    def functions(self) -> Mapping[str, Callable[..., Any]]:
-        def watched(function: str, *differences: Callable[..., Any]) -> Callable[..., Any]:
-            def value(*arguments: Any) -> Any:
-                for difference in differences:
-                    self._watch(difference(*arguments))
-                return FUNCTIONS[function](*arguments)
-
-            return value
-
-        return {
-            "abs": watched("abs", lambda a: a),
-            "min": watched("min", lambda a, b: a - b),
-            "max": watched("max", lambda a, b: a - b),
-            "clip": watched("clip", lambda x, low, _: x - low, lambda x, _, high: x - high),
-        }
-
-
-def tabulated(table: Table, t: Any, clock: Any) -> Any:
-    """The value of a table at t, which is in the same piece as the clock."""
-    times, values = ([value(entry) for entry in entries] for entries in (table.times, table.values))
-    k = sum(time <= clock for time in times) - 1
-    if k < 0 or k == len(times) - 1:
-        return values[max(k, 0)]
-    if table.kind == "hold":
-        return values[k]
-    bends = _bends(times, values) if table.kind == "cubic" else [mpf(0)] * len(times)
-    width = times[k + 1] - times[k]
-    a, b = (times[k + 1] - t) / width, (t - times[k]) / width
-    bend = (a**3 - a) * bends[k] + (b**3 - b) * bends[k + 1]
-    return a * values[k] + b * values[k + 1] + bend * width**2 / 6
-
-
-def _bends(times: Vector, values: Vector) -> Vector:
-    """The second derivatives of the natural spline, by a linear system of all of them."""
-    n = len(times)
-    matrix, right = mp.eye(n), mp.zeros(n, 1)
-    for k in range(1, n - 1):
-        before, after = times[k] - times[k - 1], times[k + 1] - times[k]
-        matrix[k, k - 1], matrix[k, k], matrix[k, k + 1] = before, 2 * (before + after), after
-        right[k] = 6 * ((values[k + 1] - values[k]) / after - (values[k] - values[k - 1]) / before)
-    return list(mp.lu_solve(matrix, right))
-
-
 class Evaluated:
-    """The rates of a scene, its texts read by Python; y is state, quaternion and centre."""
+    """The rates of a scene, its texts read by Python; y is state, quaternion, centre, and own states.
+
+    ``values`` are the held ones by name.
+    """
 
     def __init__(self, scene: Scene) -> None:
         body, loads = scene.body, scene.body.loads
@@ -200,29 +126,97 @@ class Evaluated:
             }
         entries = [e for _, es in (*loads.vectors, *loads.space) for e in es]
         entries += [e for _, e in loads.definitions]
+        entries += [e for state in loads.states for e in state.entries]
         self.words = {word for e in entries if isinstance(e, str) for word in _WORD.findall(e)}
         self.clock = mpf(0)
+        self._constant_wheels = [value(c) for c in body.parts().get("rotor", ())]
+        self._moving = [s for s in loads.states if isinstance(s, Continuous)]
+        self._sampled = [s for s in loads.states if isinstance(s, Held)]
+        self.values = {
+            name: value(number)
+            for state in self._sampled
+            for name, number in zip(
+                state.components, state.start or [Fraction(0)] * len(state.value), strict=True
+            )
+        }
+
+    @property
+    def _size(self) -> int:
+        """The number of components in front of the own states."""
+        return 7 if self._is_euler else 13
 
     def start(self) -> Vector:
         initial = self._scene.initial
         q = [value(c) for c in initial.attitude]
         size = mp.sqrt(sum(c * c for c in q))
         centre = [] if self._is_euler else [value(c) for c in initial.centre]
-        return [*map(value, initial.moving), *(c / size for c in q), *centre]
+        own = [value(c) for state in self._moving for c in state.start]
+        z = [value(c) for c in initial.moving]
+        if self._loads.rotor:
+            wheels = self._wheels(value(self._loads.origin), own)
+            z = _apply(rotation(q), _sum(_apply(self._matrix, z), wheels))
+        return [*z, *(c / size for c in q), *centre, *own]
+
+    def _own(self, t: Any, own: Vector) -> dict[str, Any]:
+        names = [name for state in self._moving for name in state.components]
+        return {**dict(zip(names, own, strict=True)), **self.values, "t": t, "clock": self.clock}
+
+    def _wheels(self, t: Any, own: Vector) -> Vector:
+        return [self._entry(entry, self._own(t, own)) for entry in self._loads.rotor]
+
+    def omega(self, t: Any, y: Vector) -> Vector:
+        """The angular velocity of a rigid body."""
+        if not self._loads.rotor:
+            return y[:3]
+        momentum = _apply(_transposed(rotation(y[3:7])), y[:3])
+        wheels = self._wheels(t, y[self._size :])
+        return _apply(self._inverse, [a - h for a, h in zip(momentum, wheels, strict=True)])
+
+    def own(self, y: Vector) -> dict[str, Vector]:
+        """The components of each own state by its name."""
+        names = self._own(mpf(0), y[self._size :])
+        return {s.name: [names[n] for n in s.components] for s in self._loads.states}
+
+    def take(self, t: Any, elapsed: Fraction, y: Vector) -> None:
+        """Take the values of an elapsed time, all of them from what was before."""
+        due = [
+            state
+            for state in self._sampled
+            if elapsed >= state.offset and not (elapsed - state.offset) % state.every
+        ]
+        # Just behind the time: a switch belongs to the later piece.
+        self.clock = t + mpf(10) ** -mp.dps
+        names = self._meanings(t, y)
+        taken = {
+            name: self._entry(entry, names)
+            for state in due
+            for name, entry in zip(state.components, state.value, strict=True)
+        }
+        self.values |= taken
+
+    def _meanings(self, t: Any, y: Vector) -> dict[str, Any]:
+        """All names at a time."""
+        n, own = (3 if self._is_euler else 6), self._own(t, y[self._size :])
+        z, q, centre = y[:n], y[n : n + 4], y[n + 4 : self._size]
+        if self._is_euler:
+            w, u = self.omega(t, y), []
+        else:
+            u, w = _apply(self._matrix[:3], z), _apply(self._matrix[3:], z)
+        self.sides.begin_evaluation()
+        return self._names(own, z, q, rotation(q), w, u, centre)
 
     def rates(self, t: Any, y: Vector) -> Vector:
         n = 3 if self._is_euler else 6
         z, q = y[:n], y[n : n + 4]
         R = rotation(q)
-        if self._is_euler:
-            w, u = z, []
-        else:
-            u, w = _apply(self._matrix[:3], z), _apply(self._matrix[3:], z)
-        self.sides.begin_evaluation()
-        names = self._names(t, z, q, R, w, u, y[n + 4 :])
+        names = self._meanings(t, y)
+        w, u = (
+            [names[f"{letter}{i}"] for i in (1, 2, 3) if f"{letter}{i}" in names] for letter in "wu"
+        )
         loads = [
             [self._entry(entry, names) for entry in entries] for _, entries in self._loads.vectors
         ]
+        own = [self._entry(entry, names) for state in self._moving for entry in state.rate]
         for force, at in self._loads.hung:
             body_force = _apply(_transposed(R), [value(c) for c in force])
             parts = [body_force, _cross([value(c) for c in at], body_force)][-len(loads) :]
@@ -233,20 +227,27 @@ class Evaluated:
             (q[0] * w[1] + q[3] * w[0] - q[1] * w[2]) / 2,
             (q[0] * w[2] + q[1] * w[1] - q[2] * w[0]) / 2,
         ]
+        if self._loads.rotor:
+            return [*_apply(R, loads[0]), *turned, *own]
         if self._is_euler:
             momentum = _apply(self._matrix, w)
-            return [*_apply(self._inverse, _sum(_cross(momentum, w), loads[0])), *turned]
+            if self._constant_wheels:
+                momentum = _sum(momentum, self._constant_wheels)
+            return [*_apply(self._inverse, _sum(_cross(momentum, w), loads[0])), *turned, *own]
         x_rate = _sum(_cross(z[:3], w), loads[0])
         y_rate = _sum(_sum(_cross(z[3:], w), _cross(z[:3], u)), loads[1])
         drift = [value(c) for c in self._loads.current]
-        return [*x_rate, *y_rate, *turned, *_sum(_apply(R, u), drift)]
+        return [*x_rate, *y_rate, *turned, *_sum(_apply(R, u), drift), *own]
 
-    def _names(self, t: Any, z: Vector, q: Vector, R: Any, w: Vector, u: Vector, c: Vector) -> Any:
-        tables = self._loads.tables
-        names = {
-            name: tabulated(table, t, self.clock) for name, table in tables if name in self.words
+    def _names(
+        self, own: dict[str, Any], z: Vector, q: Vector, R: Any, w: Vector, u: Vector, c: Vector
+    ) -> dict[str, Any]:
+        names, tables = dict(own), self._loads.tables
+        names |= {
+            name: tabulated(table, own["t"], self.clock)
+            for name, table in tables
+            if name in self.words
         }
-        names |= {"t": t, "clock": self.clock}
         names |= {f"q{i}": e for i, e in enumerate(q)}
         names |= {f"r{i + 1}{j + 1}": R[i][j] for i in range(3) for j in range(3)}
         for letter, vector in (("w", w), ("u", u), ("c", c)):
@@ -287,11 +288,13 @@ class End(NamedTuple):
     """State, quaternion and centre at the end, and what the last two columns of the table differ by.
 
     ``crosses`` is True if the motion went over a kink on its way: then the error is no such difference.
+    ``own`` are the scene's own states by name.
     """
 
     state: Vector
     error: Any
     crosses: bool
+    own: Mapping[str, Vector]
 
 
 def end_of(
@@ -309,46 +312,35 @@ def end_of(
     with mp.workdps(digits + 15):
         equations = Evaluated(scene)
         start = scene.clock.start
-        ends = sorted([*switches, start + time], reverse=time < 0)
+        begun, end = Fraction(0), start + time
+        ends = sorted({*switches, *instants(scene, time), end}, reverse=time < 0)
         y, now, error = equations.start(), value(start), mpf(0)
-        for end in map(value, ends):
+        for stop in ends:
+            equations.take(now, begun, y)
             equations.sides.begin_piece()
-            equations.clock = (now + end) / 2
-            h = (end - now) / parts
+            equations.clock = (now + value(stop)) / 2
+            h = (value(stop) - now) / parts
             for _ in range(parts):
-                y, missed = _extrapolated(equations.rates, now, y, h, columns)
+                y, missed = extrapolated(equations.rates, now, y, h, columns)
                 now, error = now + h, error + missed
-            now = end
-        return End(y, error, equations.sides.crosses)
+            now, begun = value(stop), stop - start
+        equations.take(now, begun, y)
+        if scene.model == "euler":
+            y[:3] = equations.omega(now, y)
+        return End(y, error, equations.sides.crosses, equations.own(y))
 
 
-def _extrapolated(
-    rates: Callable[[Any, Vector], Vector], t: Any, y: Vector, h: Any, columns: int
-) -> tuple[Vector, Any]:
-    """Take one large step: the modified midpoint rule at 2, 4, .. small ones, extrapolated to none."""
-    table: list[list[Vector]] = []
-    for j in range(1, columns + 1):
-        row = [_midpoint(rates, t, y, h, 2 * j)]
-        for k in range(1, j):
-            ratio = (mpf(j) / (j - k)) ** 2
-            row.append(
-                [b + (b - a) / (ratio - 1) for a, b in zip(table[-1][k - 1], row[-1], strict=True)]
-            )
-        table.append(row)
-    last, before = table[-1][-1], table[-2][-1]
-    return last, max(abs(a - b) for a, b in zip(last, before, strict=True))
-
-
-def _midpoint(
-    rates: Callable[[Any, Vector], Vector], t: Any, y: Vector, h: Any, count: int
-) -> Vector:
-    s = h / count
-    before, here = y, [a + s * r for a, r in zip(y, rates(t, y), strict=True)]
-    for k in range(1, count):
-        rate = rates(t + k * s, here)
-        before, here = here, [a + 2 * s * r for a, r in zip(before, rate, strict=True)]
-    rate = rates(t + h, here)
-    return [(a + b + s * r) / 2 for a, b, r in zip(before, here, rate, strict=True)]
+def instants(scene: Scene, time: Fraction) -> list[Fraction]:
+    """The times of the scene after its start at which values are taken, up to an elapsed one."""
+    loads = scene.body.loads
+    assert loads is not None
+    return [
+        scene.clock.start + elapsed
+        for state in loads.states
+        if isinstance(state, Held)
+        for elapsed in (state.offset + k * state.every for k in range(int(time / state.every) + 1))
+        if 0 < elapsed <= time
+    ]
 
 
 def rotation(q: Vector) -> list[Vector]:

@@ -14,7 +14,6 @@ from taylor_verify.cli import main
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.claims import ledger
 from taylor_verify_reports.claims.claim import Claim, Verdict
-from taylor_verify_reports.claims.document import ClaimResiduals
 from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
 from taylor_verify_reports.studies.claims.page import CLAIMS, page
@@ -95,42 +94,6 @@ def test_the_page_has_the_errata_in_front() -> None:
             assert f"correct: $`{entry.correction}`$" in errata
     for number in CITED:
         assert number in rest
-
-
-def test_the_page_is_put_in_place(tmp_path: Path) -> None:
-    """The rows, the page and its sheet, in the folder given."""
-    names = ("data/claims.json", "claims.md", "tables/claims.csv")
-    assert publish_document(tmp_path / "new", PUBLISHED, CLAIMS, STUDY) == [
-        tmp_path / "new" / name for name in names
-    ]
-
-
-def test_what_is_stored_reads_back(tmp_path: Path) -> None:
-    """The ledger is read as it was written, and page and sheet are made of it anew."""
-    texts = {
-        path: path.read_text(encoding="utf-8")
-        for path in publish_document(tmp_path, PUBLISHED, CLAIMS, STUDY)
-    }
-    assert CLAIMS.load(tmp_path) == STUDY
-    again = PUBLISHED.pages(tmp_path)
-    assert {tmp_path / name: text for name, text in again.items()} == {
-        path: text for path, text in texts.items() if path != tmp_path / CLAIMS.name
-    }
-    assert set(again) == {"claims.md", "tables/claims.csv"}
-    publish_document(tmp_path, PUBLISHED, CLAIMS, CLAIMS.load(tmp_path))
-    assert {path: path.read_text(encoding="utf-8") for path in texts} == texts
-
-
-def test_a_number_that_is_not_finite_is_null(tmp_path: Path) -> None:
-    """A residual that came to no number is null in the file and in words on the page, and never zero."""
-    lost = replace(ROWS[0], bound=float("nan"), residual=ClaimResiduals(float("inf"), float("nan")))
-    publish_document(tmp_path, PUBLISHED, CLAIMS, replace(STUDY, claims=(lost,)))
-    (stored,) = json.loads((tmp_path / CLAIMS.name).read_text(encoding="utf-8"))["claims"]
-    assert stored["bound"] is None
-    assert stored["residual"] == {"statement": None, "transcribed": None}
-    ledger = PUBLISHED.pages(tmp_path)["claims.md"].partition("## The ledger")[2]
-    (line,) = (line for line in ledger.splitlines() if line.startswith(f"| `{lost.id}`"))
-    assert "within not finite" in line
 
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:

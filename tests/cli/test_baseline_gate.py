@@ -23,7 +23,6 @@ from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words.annotations import annotation_lines
 from taylor_verify.words.case import Remark
 from taylor_verify.words.junit import junit
-from taylor_verify.words.step_summary import step_summary
 
 Captured = pytest.CaptureFixture[str]
 
@@ -122,13 +121,6 @@ def test_a_row_beyond_its_bound_is_green_for_a_ci_and_a_regression_is_red() -> N
     (line, _) = annotation_lines(rows, [grew], by_remarks=True)
     assert line.startswith("::error title=euler/generic on f64%3A T fail::")
     assert len(annotation_lines(rows, [], by_remarks=True)) == 1
-
-
-def test_the_summary_says_what_decided_and_keeps_the_verdicts() -> None:
-    """A row that fails its own bound is listed with its verdict, below the line that says what decided."""
-    text = step_summary([ordinary()], [], "decided by the baseline alone: no regression")
-    assert "**decided by the baseline alone: no regression**" in text
-    assert text.index("decided by") < text.index("**fail**")
 
 
 # The command.

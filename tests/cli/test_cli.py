@@ -22,7 +22,6 @@ from builders.scenes import LISTED_INSTANTS, scene_file
 import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
-from taylor_verify.models.form import Form
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -32,7 +31,6 @@ from taylor_verify.solvers import registry
 from taylor_verify.solvers.files.formats.reading import FORMATS
 
 ROOT = Path(__file__).resolve().parents[2]
-GENERIC = library.cases_directory() / "euler" / "generic.toml"
 REFUSED = sorted((library.cases_directory() / "refused").glob("*.toml"))
 # Two instants that no double tells apart.
 TOO_CLOSE = LISTED_INSTANTS.replace('["0.5", 1, 2]', '[1, "1.000000000000000000000001"]')
@@ -92,25 +90,6 @@ def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) ->
     assert first == "which scene tells what"
     for line, (name, purpose) in zip(rest, GUIDE.items(), strict=False):
         assert line.split(maxsplit=1) == [name, purpose]
-
-
-@pytest.mark.parametrize("verb", [[], ["list"], ["run"], ["exact"], ["explain"], ["publish"]])
-def test_every_verb_has_help_with_an_example(capsys: Captured, verb: list[str]) -> None:
-    """`--help` ends with status 0, and names a call that can be copied."""
-    with pytest.raises(SystemExit) as ended:
-        main([*verb, "--help"])
-    assert ended.value.code == 0
-    text = capsys.readouterr().out
-    assert "example" in text
-    if verb:
-        assert f"taylor-verify {verb[0]} " in text
-        assert "--json" in text
-
-
-def test_times_are_those_of_every_at(capsys: Captured) -> None:
-    """`--at` may be repeated: its times are printed in the order given, also negative ones."""
-    assert main(["exact", "euler/rest", "--at", "1", "--at", "-2,3", "--json"]) == 0
-    assert [row["t"] for row in json.loads(capsys.readouterr().out)["rows"]] == ["1", "-2", "3"]
 
 
 def test_help_imports_nothing_heavy() -> None:
@@ -196,21 +175,6 @@ def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
     assert numbers[0] == numbers[2] != numbers[1]
 
 
-def test_the_number_of_processes_is_that_of_jobs(
-    monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """`--jobs` reaches the pool; what is below one is a wrong call."""
-    asked: list[object] = []
-    monkeypatch.setattr(
-        "taylor_verify.batch.judging.judge_all",
-        lambda jobs, progress, workers, *_: asked.append(workers) or [],
-    )
-    assert main(["run", "euler/rest", "euler/generic", "--jobs", "3"]) == 3
-    assert main(["run", "euler/rest", "--jobs", "0"]) == 2
-    assert asked == [3]
-    assert "expected a number of at least 1, got 0 @ --jobs" in capsys.readouterr().err
-
-
 def test_with_no_scene_the_standard_set_is_run_on_all_rungs(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
@@ -264,17 +228,6 @@ def test_the_table_fits_a_hundred_columns(
     assert len(rows) == 2
     assert all(len(row) <= 100 for row in rows)
     assert all("pass" in row for row in rows)
-
-
-def test_names_are_shown_as_they_are(capsys: Captured, tmp_path: Path) -> None:
-    """Brackets, colons and spaces of a path are no markup."""
-    folder = tmp_path / "a [bold]folder"
-    folder.mkdir()
-    file = folder / ":smile: x.toml"
-    file.write_text(LISTED_INSTANTS)
-    for arguments in (["run"], ["exact", "--at", "1"], ["explain"]):
-        assert main([arguments[0], str(file), *arguments[1:]]) == 0
-        assert str(file) in capsys.readouterr().out
 
 
 def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
@@ -383,16 +336,6 @@ def test_reports_that_fail_at_the_end_cost_no_results(
     assert not (tmp_path / "out").exists()
 
 
-def test_publish_without_data_says_what_it_needs(capsys: Captured, tmp_path: Path) -> None:
-    """Exit 2, one line, and no folder made."""
-    assert main(["publish", "--from", str(tmp_path / "nothing")]) == 2
-    out, error = capsys.readouterr()
-    assert out == ""
-    assert "run --out" in error
-    assert error.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
 # explain
 
 
@@ -412,17 +355,6 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
     cost = document["cost"]
     assert cost["states"] == len(document["equations"])
     assert cost["evaluations"] >= cost["steps"] > 0
-
-
-def test_the_cost_counts_each_operation_once() -> None:
-    """Shared products are formed once: a k and (a k) b of a' = (a k) b - a k and b' = (a k) b / b."""
-
-    def equations(n: Any) -> dict[str, Any]:
-        a, b, k = n["a"], n["b"], n["k"]
-        return {"a": a * k * b - a * k, "b": (a * k * b) / b}
-
-    form = Form(equations, ("a", "b"), ("k",))
-    assert form.operations() == {"sums": 1, "products": 2, "quotients": 1}
 
 
 # What is wrong.
@@ -493,17 +425,6 @@ def test_a_call_that_cannot_be_read_ends_with_2(capsys: Captured, arguments: lis
     out, error = capsys.readouterr()
     assert out == ""
     assert "usage: taylor-verify" in error
-
-
-@pytest.mark.parametrize("text", ["0x10", "1e9/3", "5s", "1/3/4", "10,", "one"])
-def test_a_time_that_is_no_number_is_answered_by_examples_of_numbers(
-    capsys: Captured, text: str
-) -> None:
-    """Neither hexadecimal digits nor a quotient of decimals is taken for a unit."""
-    assert main(["exact", "euler/rest", "--at", text]) == 2
-    (error,) = capsys.readouterr().err.splitlines()
-    got = repr(text.rpartition(",")[2])
-    assert error == (f"taylor-verify: expected a number such as 10, 1e9 or 1/3, got {got} @ --at")
 
 
 def test_an_error_nobody_foresaw_is_one_line_with_its_place(

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from builders import reports
-from builders.verdicts import row
 
 from taylor_verify.cli import main
-from taylor_verify.records.status import Status
 
 Captured = pytest.CaptureFixture[str]
 TWO = ["run", "euler/generic", "euler/full-tensor"]
@@ -99,19 +96,6 @@ def test_a_comparison_of_nothing_is_undecided(
     assert "its solver is `process:./other`, and this run's is `taylor`" in error
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [])
     assert main(["run", "euler/generic", "--rung", "f32", *option(report, AGAINST)]) == 3
-
-
-def test_a_baseline_excuses_no_failure(
-    report: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """A row that failed before and fails again is no regression, and the exit status is 1."""
-    failed = row(60.0, verdict=Status.FAIL)
-    judged = SimpleNamespace(verdicts=(failed,), record=None, costs={}, causes=(), notes=())
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: [judged])
-    file = report / "data/verdicts.json"
-    file.write_text(json.dumps({"verdicts": [failed.row()]}), encoding="utf-8")
-    assert main(["run", "euler/generic", *option(report, BASELINE), "--json"]) == 1
-    assert json.loads(capsys.readouterr().out)["baseline"]["regressions"] == []
 
 
 @pytest.mark.parametrize(

@@ -34,13 +34,6 @@ class Leaving(Solver):
         raise AssertionError("it left")
 
 
-class Array:
-    """An answer that ends the program when it is looked at."""
-
-    def __array__(self, *_: Any, **__: Any) -> Any:
-        sys.exit(0)
-
-
 WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
     "check": lambda solve: taylor_verify.check("euler/rest", solve),
     "run": lambda solve: taylor_verify.run("euler/rest", Callback(solve)),
@@ -57,12 +50,6 @@ def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
     assert verdict.outcome == Outcome.RAISED.value
     sentence = "SystemExit" if code is None else f"SystemExit: {code}"
     assert f"({sentence})" in verdict.because
-
-
-def test_sys_exit_in_the_answer_is_a_failed_solver() -> None:
-    """An answer may be an object, which leaves when it is asked for its numbers."""
-    (verdict,) = taylor_verify.check("euler/rest", lambda problem: Array()).verdicts
-    assert (verdict.verdict, verdict.outcome) == (Status.FAIL, Outcome.RAISED.value)
 
 
 @pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())

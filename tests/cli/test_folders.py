@@ -269,15 +269,6 @@ def test_publish_outside_a_checkout_is_refused(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_of_one_s_own_is_published_anywhere(
-    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The tables of what `run --out` wrote are made again wherever it lies."""
-    monkeypatch.chdir(tmp_path)
-    assert main(["run", str(short), "--out", "mine"]) == 0
-    assert main(["publish", "--from", "mine"]) == 0
-
-
 def test_the_reports_of_the_checkout_are_meant_below_it_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -306,14 +297,3 @@ def test_a_file_in_place_of_a_folder_of_reports_is_refused(
     error = capsys.readouterr().err
     assert "`run --out" in error
     assert f"{file}/data/verdicts.json" in error
-
-
-def test_against_outside_a_checkout_says_what_to_do(
-    capsys: Captured, short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """`run --against reports`, as `make check-reports` has it, is refused with the same sentence."""
-    monkeypatch.chdir(tmp_path)
-    assert main(["run", str(short), "--against", "reports"]) == 2
-    error = capsys.readouterr().err
-    assert "@ --against reports/data/verdicts.json; what is published belongs" in error
-    assert "go to one, or name a folder that `run --out` has written" in error

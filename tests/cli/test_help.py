@@ -62,12 +62,6 @@ def test_a_wrong_verb_suggests_the_near_one(capsys: Captured, word: str, meant: 
     assert f"expected a verb, got {word} (did you mean {meant}" in refusal(capsys, word, "x")
 
 
-def test_a_verb_like_none_is_told_where_they_are(capsys: Captured) -> None:
-    """Nothing is suggested that is not near."""
-    error = refusal(capsys, "zzz")
-    assert "expected a verb, got zzz (`taylor-verify --help` names them)" in error
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -129,18 +123,6 @@ def test_every_verb_takes_a_pattern(
     assert main(call.format("euler/spherical*").split()) == 0
 
 
-def test_check_takes_a_pattern(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """Behind --scene too."""
-    monkeypatch.chdir(tmp_path)
-    assert main(["question", "euler/rest", "--csv"]) == 0
-    header, *rows = capsys.readouterr().out.splitlines()
-    zeros = [f"{row.partition(',')[0]},0,0,0" for row in rows]
-    Path("mine.csv").write_text("\n".join([header, *zeros]))
-    assert main(["check", "mine.csv", "--scene", "euler/re?t"]) == 0
-
-
 @pytest.mark.parametrize("call", ["exact {} --at 1", "question {}", "explain {}", "draw {}"])
 def test_a_verb_of_one_scene_refuses_several(call: str, capsys: Captured) -> None:
     """The scenes that a pattern or a folder stands for are named, the first of them."""
@@ -170,12 +152,6 @@ def test_a_folder_of_one_s_own_is_no_scene(
     assert "got mine (it is a folder: name the scenes in it, 'mine/*.toml')" in (
         capsys.readouterr().err
     )
-
-
-def test_the_hint_of_a_question_names_the_scene(capsys: Captured) -> None:
-    """Not the pattern, which a shell might expand."""
-    assert main(["question", "euler/spherical*", "--csv"]) == 0
-    assert "--scene euler/spherical\n" in capsys.readouterr().err
 
 
 # Completion.

@@ -13,7 +13,6 @@ from subprocess import run
 
 import pytest
 from builders.scenes import LISTED_INSTANTS
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -97,13 +96,6 @@ def test_styles_are_the_consoles_own() -> None:
     assert not CONTROL.search(own)
 
 
-def test_a_plain_console_would_let_it_through() -> None:
-    """rich alone drops the bell and keeps the escape: what the test above sees can be there."""
-    stream = io.StringIO()
-    Console(file=stream, force_terminal=True, color_system=None, markup=False).print(STEERING)
-    assert "\x1b[2J" in stream.getvalue()
-
-
 def test_text_without_control_characters_is_left_alone() -> None:
     """Tabs, line breaks, accents and mathematics stay as they are."""
     text = "ω = 1\tε\nfin d'été"
@@ -154,10 +146,3 @@ def test_no_cell_begins_a_formula(name: str) -> None:
     (heading, cells) = csv.reader(io.StringIO(sheets.sheet(["scene"], [{"scene": name}])))
     assert heading == ["scene"]
     assert cells == ["'" + name.strip()]
-
-
-@pytest.mark.parametrize("value", [-1.5, "-1.5", "+2e-3", "-inf", "a=b", "euler/generic", None])
-def test_numbers_and_plain_names_stay_as_they_are(value: object) -> None:
-    """A number begins with its sign, and means no formula."""
-    _, *rows = csv.reader(io.StringIO(sheets.sheet(["v", "w"], [{"v": value, "w": 1}])))
-    assert rows == [["" if value is None else str(value), "1"]]

@@ -37,14 +37,6 @@ def test_news_of_long_work_is_told(
     assert all(later - began > 1.5 * (earlier - began) for earlier, later in pairwise(times))
 
 
-def test_short_work_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    """What takes less than a second has no news, and leaves no listener behind."""
-    with working("exact scene"):
-        PROGRESS.info("half of it")
-    assert capsys.readouterr() == ("", "")
-    assert not PROGRESS.handlers
-
-
 def test_a_terminal_shows_the_news_and_the_share(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

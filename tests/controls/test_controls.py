@@ -28,7 +28,6 @@ from taylor_verify_reports.studies.controls.measure import RUNG, Twins, sights, 
 from taylor_verify_reports.studies.controls.study import STUDY
 
 NAMED = {defect.name: defect for defect in DEFECTS}
-STATE = {"omega", "impulse", "attitude", "centre"}
 TWINS: Twins = {}
 COMPARED = [pytest.param(d, id=d.name) for d in DEFECTS if not d.honest]
 
@@ -108,12 +107,6 @@ def test_every_gate_catches_a_defect() -> None:
     assert asked == caught
     assert asked >= {"omega", "impulse", "attitude", "centre", "T", "H2", "F2", "FG", "y3"}
     assert asked >= {"H_space", "x_space", "y_space"}
-
-
-def test_names_are_unique_and_everything_is_told_in_words() -> None:
-    """Each defect has one name and says what is wrong and why it shows where it does."""
-    assert len(NAMED) == len(DEFECTS)
-    assert all(defect.what and defect.why for defect in DEFECTS)
 
 
 @pytest.mark.parametrize(
@@ -263,42 +256,6 @@ def test_stored_rows_that_are_none_are_refused(tmp_path: Path) -> None:
         CONTROLS.load(tmp_path)
 
 
-def test_what_is_read_is_written_the_same(tmp_path: Path) -> None:
-    """A stored run, read and stored again, is the same document."""
-    study_of_one = study([sight_of("one-ulp-over")])
-    (file,) = CONTROLS.write(tmp_path, study_of_one)
-    first = json.loads(file.read_text(encoding="utf-8"))
-    CONTROLS.write(tmp_path, CONTROLS.load(tmp_path))
-    again = json.loads(file.read_text(encoding="utf-8"))
-    assert again == first
-    assert list(again) == list(first)
-    assert [list(row) for row in again["verdicts"]] == [list(row) for row in first["verdicts"]]
-    assert list(first["machine"]) == ["python", "processor", "command"]
-    assert "python" not in first["versions"]
-
-
-def test_a_row_without_a_reason_has_its_sentence(tmp_path: Path) -> None:
-    """In a file of an earlier version a row says its reason in a sentence alone; it is kept as a remark."""
-    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
-    file = tmp_path / "data" / "controls.json"
-    content = json.loads(file.read_text(encoding="utf-8"))
-    sentences = [row["because"] for row in content["verdicts"]]
-    for row in content["verdicts"]:
-        del row["reason"]
-    file.write_text(json.dumps(content), encoding="utf-8")
-    verdicts = CONTROLS.load(tmp_path).verdicts
-    assert [verdict.reason.conclusion for verdict in verdicts] == sentences
-
-
-def test_a_page_whose_table_has_no_rows_keeps_it(tmp_path: Path) -> None:
-    """Where no controls are stored, the table between the marks stays as it is."""
-    page = f"{controls.BEGIN}\n\na table\n\n{controls.END}\n"
-    (tmp_path / "README.md").write_text(page, encoding="utf-8")
-    store.write(tmp_path / "reports", sight_of("one-ulp-over").sound.values(), [])
-    report.publish(tmp_path / "reports")
-    assert (tmp_path / "README.md").read_text(encoding="utf-8") == page
-
-
 def test_every_cell_says_what_the_verdict_says() -> None:
     """In the tables a bold number is a gate that fails the defect, a dash one that passes it."""
     text = controls.page(read_back())
@@ -315,11 +272,3 @@ def table_lines(text: str, title: str) -> list[list[str]]:
     lines = [line for line in figures.splitlines() if line.startswith("|")]
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
     return [row for row in cells if row[0] == title]
-
-
-def test_short_table_is_short() -> None:
-    """Some fifteen defects in four columns, with some that conservation does not see at all."""
-    lines = [line for line in controls.short(read_back()).splitlines() if line.startswith("|")]
-    assert 10 <= len(lines) - 2 <= 18
-    assert all(line.count(" | ") == 3 for line in lines)
-    assert sum(line.count("not seen") == 2 for line in lines) >= 2

@@ -52,14 +52,6 @@ def test_branches_are_the_exact_spins() -> None:
     assert np.array(sorted(branches))[:, 0] == pytest.approx([rate for rate, _ in spins], abs=2e-3)
 
 
-def test_a_pair_is_born_at_each_cusp() -> None:
-    """Just below a birth there are two spins fewer than just above."""
-    for birth in PLAIN.births():
-        rotor = (Fraction(3, 10), Fraction(-1, 5), Fraction(1, 2))
-        counts = [len(exact(rotor, Fraction(birth * part))) for part in (0.999, 1.001)]
-        assert counts[1] - counts[0] == 2
-
-
 def test_wheels_along_the_middle_axis_make_it_stable_up_to_a_birth() -> None:
     """With h along axis 2 the evolute's section is known: |H| = h/|1 - J2/J| at the cusps of that axis."""
     births = Wheels(np.array([1.0, 2.0, 3.0]), np.array([0.0, 4.0, 0.0])).births()

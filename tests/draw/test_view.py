@@ -8,11 +8,9 @@ from builders.motions import document
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.draw import axis_path, polhode
 from taylor_verify.draw.caption import NotDrawn
-from taylor_verify.draw.stage import scale
-from taylor_verify.draw.view import Ellipsoid, View, pieces
-from taylor_verify.plotting.palette import lightness
+from taylor_verify.draw.view import Ellipsoid, View
 
 angles = st.floats(-180, 180)
 heights = st.floats(-80, 80)
@@ -59,24 +57,6 @@ def test_the_outline_is_on_the_surface_and_nothing_is_seen_beyond_it(
     for pole in np.eye(3):
         # The rim has a corner every two degrees.
         assert (np.abs(view.project(surface.circle(pole))).max(axis=0) <= 1.001 * widest).all()
-
-
-@given(st.lists(st.booleans(), min_size=2, max_size=30))
-def test_the_pieces_are_the_whole_line(mask: list[bool]) -> None:
-    """The pieces stand in order, each from the end of the last, seen or hidden as its first point is."""
-    line = np.arange(2.0 * len(mask)).reshape(-1, 2)
-    parts = list(pieces(line, np.array(mask)))
-    joined = [parts[0][1][0], *(point for _, piece in parts for point in piece[1:])]
-    assert np.array_equal(np.array(joined), line)
-    for is_seen, piece in parts:
-        assert is_seen == mask[int(piece[0, 0]) // 2]
-
-
-def test_a_view_from_below_or_above_is_never_steep() -> None:
-    """Whatever side is asked for, the upright axis stays upright on the paper."""
-    assert View.facing((0, 0, 5)).elevation == 28
-    assert View.facing((1, 0, -0.01)).elevation == -12
-    assert View.facing((0, 0, 0)).elevation == 12
 
 
 # Curves
@@ -135,23 +115,3 @@ def test_the_axis_is_that_of_the_motion(scene: str, axis: int) -> None:
     assert series.axis == axis
     assert np.abs(np.linalg.norm(series.path, axis=1) - 1).max() <= 1e-7
     assert (series.fixed is None) == scene.startswith("manufactured")
-
-
-def test_a_path_has_its_bodies_apart() -> None:
-    """The path is the course's own; solids on it are no nearer to each other than their size."""
-    course = document("kirchhoff/ellipsoid-prolate")
-    series = centre_path.series(course)
-    assert series.path.tolist() == course["course"]["centre"]
-    places = series.path[series.instants]
-    apart = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    assert series.semi_axes is not None
-    assert len(series.instants) >= 2
-    assert apart.min() >= max(series.semi_axes)
-
-
-def test_the_scale_of_colours_reads_the_same_in_grey() -> None:
-    """Lightness falls all the way from little to much, by more than half of what paper has."""
-    colours = [scale()(k / 20) for k in range(21)]
-    shades = [lightness("#" + "".join(f"{round(255 * v):02X}" for v in c[:3])) for c in colours]
-    assert shades == sorted(shades, reverse=True)
-    assert shades[0] - shades[-1] >= 50

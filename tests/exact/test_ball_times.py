@@ -16,7 +16,7 @@ from mpmath import mp
 from taylor_verify.exact.balls import Enclosed, ball
 from taylor_verify.exact.carried import carried
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NoClosedForm, Solution, longest
+from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
@@ -111,13 +111,3 @@ def test_a_wide_ball_of_time_contains_the_motion_at_its_ends(name: str) -> None:
 def flat(row: Any) -> list[Any]:
     """The entries of a vector or a matrix."""
     return [entry for part in row for entry in flat(part)] if hasattr(row, "__len__") else [row]
-
-
-def test_a_ball_and_an_mpf_stay_as_they_are() -> None:
-    """ball() returns a ball that it is given, and the longest time is bounded by a power of two."""
-    wide = arb(1, 0.25)
-    assert ball(wide) is wide
-    with mp.workdps(30):
-        assert longest([mp.mpf(-5), Fraction(3), mp.mpf(0)]) == 8
-    assert longest([Fraction(-5), Fraction(3)]) == 5
-    assert longest([]) == 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, final
@@ -144,13 +143,6 @@ def test_the_ambient_precision_is_restored() -> None:
     assert all(prec == bits for prec, bits in precisions)
 
 
-def test_no_times_make_no_rows() -> None:
-    """A motion at no time at all has no rows and is settled at once."""
-    solution = Told(lambda elapsed, bits: {"omega": []})
-    assert len(solution.motion([], DIGITS).radius) == 0
-    assert len(solution.asked) == 1
-
-
 # What a radius says. Balls are made whose true value lies in a corner: no radius may be smaller.
 
 
@@ -232,28 +224,6 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
     assert not encloses(measured(enclosure), truth)
 
 
-@given(st.lists(st.fractions(max_denominator=10**6), min_size=3, max_size=3))
-def test_a_coarse_evaluation_encloses_a_fine_one(angles: list[Fraction]) -> None:
-    """The radius at a few digits holds the midpoints found at many more."""
-    solution = Told(
-        lambda elapsed, bits: {"omega": [[ball(a).sin().exp() for a in angles] for _ in elapsed]}
-    )
-    coarse, fine = solution.motion(NOW, 3), solution.motion(NOW, 200)
-    # What the finer one does not know, 1e-200, is far below the slack of a radius of 40 bits.
-    truth = {"omega": [[exact_value(number) for number in fine["omega"][0]]]}
-    assert encloses(coarse, truth)
-
-
-def test_the_widest_quantity_gives_the_radius_of_a_row() -> None:
-    """Rows are apart from each other, and the quantities of one row are not."""
-    narrow, wide = arb(1, 2.0**-90), arb(1, 2.0**-60)
-    with ctx.workprec(200):
-        enclosure: Enclosure = {"omega": [[narrow], [narrow]], "attitude": [[[narrow]], [[wide]]]}
-        motion = module._measured(enclosure, 2)[0]
-    assert 2**-90 <= motion.radius[0] <= 2**-89
-    assert 2**-60 <= motion.radius[1] <= 2**-59
-
-
 @given(st.lists(cornered(), min_size=1, max_size=4), st.integers(-900, 900))
 def test_widths_of_rows_are_those_of_each(
     cases: list[tuple[Enclosure, dict[str, Any]]], exponent: int
@@ -284,19 +254,6 @@ def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
     assert not mp.isfinite(module.width([arb(0), arb(0, 1e-30)]))
     assert not mp.isfinite(module.width([NOT_A_NUMBER]))
     assert not mp.isfinite(module.width([arb(1), INFINITE]))
-
-
-def test_midpoints_of_a_motion_are_a_mapping_that_can_be_sent() -> None:
-    """Its quantities are arrays, converted once; another process receives them as numbers."""
-    quantities = Told(lambda elapsed, bits: {"omega": [[ball(t), arb(3)] for t in elapsed]}).motion(
-        [Fraction(1, 2), Fraction(5)], DIGITS
-    )
-    midpoints = quantities.quantities
-    assert (len(midpoints), list(midpoints)) == (1, ["omega"])
-    assert midpoints["omega"].tolist() == [[mpf(0.5), mpf(3)], [mpf(5), mpf(3)]]
-    assert midpoints["omega"] is midpoints["omega"]
-    sent = pickle.loads(pickle.dumps(quantities))
-    assert sent["omega"].tolist() == midpoints["omega"].tolist()
 
 
 # Between rationals, balls and mpmath.

@@ -19,20 +19,15 @@ from builders.scenes import (
     sample_scene,
     vector,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.conditioning.condition import Path, many, path, sharp, transition
+from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
 from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.path_times import many
 from taylor_verify.exact.conditioning.variation import integrated
-from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.exact.units import exponent, later
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import (
-    ZERO_MATRIX,
     Matrix,
     apply,
     diagonal,
@@ -47,10 +42,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
-
-
-EULER_BLOCKS = ("momentum", "attitude")
-KIRCHHOFF_BLOCKS = ("linear_impulse", "angular_impulse", "attitude", "centre")
 
 
 LOADED_EULER = sample_scene(RigidBody(TENSOR, MOMENT), "attitude")
@@ -168,13 +159,6 @@ def test_norms_follow_the_units() -> None:
         assert abs(heavy_norms.norms(out, into)[1] - expected) <= 1e-12 * expected
 
 
-def test_what_is_not_tracked_is_not_known() -> None:
-    """Asking for the attitude of a scene that tracks omega alone raises KeyError."""
-    flow = transition(sample_scene(RigidBody(TENSOR)), times(0, 1))
-    with pytest.raises(KeyError, match="attitude"):
-        flow.norms("attitude", "momentum")
-
-
 @pytest.mark.parametrize(
     "start",
     [
@@ -264,19 +248,6 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None
 
 
-def test_velocities_are_counted_in_lengths_and_times() -> None:
-    """U and Omega in the units of a flow are those of the scene times the time, U also over the length."""
-    body = sample_scene(CLEBSCH).body
-    equations, units = kind_of(body).equations(body), vector(2, 2, 2, 8, 8, 8)
-    state = np.array(vector(1, -2, 3, 5, 7, -4), dtype=object)
-    time, length = Fraction(4), Fraction(32)
-    scaled = equations.scaled(units, time, length)
-    counted = (state / np.array(units, dtype=object)).astype(float)
-    U, Omega = (form @ state for form in (equations.velocity, equations.spin))
-    assert np.allclose(scaled.velocity @ counted, (U * time / length).astype(float))
-    assert np.allclose(scaled.spin @ counted, (Omega * time).astype(float))
-
-
 @pytest.mark.parametrize("heavier", [Fraction(2) ** 20, Fraction(2) ** -20])
 def test_the_unit_of_time_is_that_of_a_heavier_body(heavier: Fraction) -> None:
     """A damped body whose moments are all larger turns alike, and is damped alike."""
@@ -285,22 +256,6 @@ def test_the_unit_of_time_is_that_of_a_heavier_body(heavier: Fraction) -> None:
         for factor in (Fraction(1), heavier)
     )
     assert Flow.of(light).time == Flow.of(heavy).time
-
-
-@given(st.integers(-40, 40), st.integers(-40, 40))
-def test_what_grows_is_as_large_as_rate_times_time(rate: int, time: int) -> None:
-    """A velocity that grows by 2^rate a second is 2^(rate + time) after 2^time seconds."""
-    grown = tensors.scaled(Fraction(2) ** time, vector(Fraction(2) ** rate, 0, 0))
-    assert later(exponent(vector(Fraction(2) ** rate, 0, 0)), time) == exponent(grown)
-
-
-@pytest.mark.parametrize("axis", [0, 1, 2])
-def test_a_couple_about_any_axis_sets_the_unit_of_time(axis: int) -> None:
-    """A body at rest that is alike in all directions has one unit of time, wherever its load points."""
-    alike = diagonal(vector(1, 1, 1))
-    couple = tuple(Fraction(1024 * (k == axis)) for k in range(3))
-    body = ImmersedBody(alike, ZERO_MATRIX, alike, vector(0, 0, 0), couple)
-    assert kind_of(body).units(body, vector(0, 0, 0, 0, 0, 0)).time < -4
 
 
 @pytest.mark.slow

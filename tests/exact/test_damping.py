@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -12,13 +11,12 @@ import pytest
 from builders.turns import by_turns
 from mpmath import mp
 
-from taylor_verify.exact.damping import decayed, without_damping
+from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
-from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -187,21 +185,6 @@ def test_loads_and_wheels_leave_it_to_the_series(name: str) -> None:
     assert elements(scene).regime == NO_CLOSED_FORM
 
 
-def test_series_hold_the_damping_of_a_body_with_wheels() -> None:
-    """The rate of the motion at the start is that of (I omega)' = (I omega + h) x omega - c I omega."""
-    scene = damped("euler/gyrostat", Fraction(1, 10))
-    step = Fraction(1, 10**12)
-    ahead, back = solution(scene).motion([step, -step], 40)["omega"]
-    body: Any = scene.body
-    I, w, h = (
-        np.array(each, dtype=float) for each in (body.inertia, scene.initial.moving, body.rotor)
-    )
-    expected = np.linalg.solve(I, np.cross(I @ w + h, w) - 0.1 * I @ w)
-    with mp.workdps(40):
-        rate = (ahead - back) / (2 * mp.convert(step))
-    assert np.allclose(rate.astype(float), expected, rtol=1e-12)
-
-
 def test_what_is_out_of_reach_is_said_in_time() -> None:
     """A growth of e^100000 ends in a sentence, with the rows of the other times, and no number for it."""
     scene = damped("kirchhoff/four-real-roots", Fraction(-1))
@@ -231,19 +214,3 @@ def test_elements_tell_the_horizon() -> None:
     assert mp.almosteq(damped["periods_to_rest"].value, 20 / free["period"].value, 1e-12)
     assert "e^{ct}" in damped["T"].meaning
     assert "horizon" not in elements(load("euler/damped-negative"))
-
-
-def test_exponentials_keep_their_digits() -> None:
-    """e^{-x} of a long rational has all digits of the ambient precision."""
-    for x in (Fraction(10) ** 9 + Fraction(1, 3), Fraction(-1, 3) - 10**9, Fraction(1, 10**40)):
-        with mp.workdps(30):
-            rough = decayed(x, mp.convert)
-        with mp.workdps(80):
-            assert abs(rough / decayed(x, mp.convert) - 1) <= mp.mpf(10) ** -29
-
-
-def test_every_shipped_damped_scene_is_listed() -> None:
-    """There are damped scenes of both models, and one of them has a negative damping."""
-    scenes: Sequence[Scene] = [scene for scene in map(load, names()) if scene.body.damping]
-    assert {scene.model for scene in scenes} == {"euler", "kirchhoff"}
-    assert min(scene.body.damping for scene in scenes) < 0

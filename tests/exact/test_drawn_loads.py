@@ -22,15 +22,16 @@ MOST_GIVEN_UP = 0.02
 def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
     """The quantities that are farther from the other integrator's than their radius and its error."""
     n = 3 if case.scene.model == "euler" else 6
-    state, q, centre = end.state[:n], end.state[n : n + 4], end.state[n + 4 :]
+    state, q, centre = end.state[:n], end.state[n : n + 4], end.state[n + 4 : n + 7]
     vectors = {"attitude": [entry for row in rotation(q) for entry in row]}
     if n == 3:
         vectors["omega"] = state
     else:
         vectors |= {"linear_impulse": state[:3], "angular_impulse": state[3:], "centre": centre}
+    vectors |= {name: end.own[name] for name in motion.peaks}
     far = []
     for name, other in vectors.items():
-        size = mp.norm(other)
+        size = motion.peaks[name][0] if name in motion.peaks else mp.norm(other)
         middle = [e for row in motion[name][0] for e in (row if name == "attitude" else [row])]
         apart = mp.norm([a - b for a, b in zip(middle, other, strict=True)])
         radius = motion.radius_of(name)[0] * (size or 1)
@@ -39,11 +40,11 @@ def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
     return far
 
 
-def answers(seed: int, count: int) -> Counter[str]:
+def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
     """Count what became of drawn scenes; a motion outside its radius fails with its scene."""
     random, reasons = Random(seed), Counter[str]()
     while reasons.total() < count:
-        case = drawn(random)
+        case = drawn(random, with_states)
         end = end_of(case.scene, case.elapsed, DIGITS, 1, case.switches, columns=7)
         if end.crosses or end.error > mpf(10) ** -(DIGITS - 2):
             # The other integrator does not end its steps at kinks, or would need more of them.
@@ -66,4 +67,11 @@ def answers(seed: int, count: int) -> Counter[str]:
 def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
     """At most a fiftieth of all of them is given up, each with its reason."""
     reasons = answers(seed, count)
+    assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
+
+
+@pytest.mark.parametrize(("seed", "count"), [(3, 20), pytest.param(4, 200, marks=pytest.mark.slow)])
+def test_drawn_motions_with_own_states_are_within_their_radii(seed: int, count: int) -> None:
+    """Wheels, lags, integrals and held values that jump: the other integrator has other equations."""
+    reasons = answers(seed, count, with_states=True)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons

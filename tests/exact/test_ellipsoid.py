@@ -6,7 +6,6 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.ellipsoids import quadrature
 from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -17,7 +16,6 @@ from taylor_verify.numbers.irrational import PI
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes import ellipsoid
 from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody
-from taylor_verify.scenes.ellipsoid import LambIntegral
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn, written
 
 BITS = STAND_IN_BITS
@@ -56,36 +54,7 @@ def diagonal(body: ImmersedBody) -> list[Any]:
     return [block[i][i] for block in (body.linear, body.angular) for i in range(3)]
 
 
-def integral(axes: Vector, i: int) -> LambIntegral:
-    a, (b, c) = axes[i], (axes[k] for k in range(3) if k != i)
-    return LambIntegral(((b / a) ** 2, (c / a) ** 2))
-
-
 # Against routes that share no formula.
-
-
-@pytest.mark.parametrize("name", SHAPES)
-def test_inertias_lie_in_balls_of_a_certified_quadrature(name: str) -> None:
-    """alpha_i, m_i and j_i meet balls that integrate Lamb's integrands themselves.
-
-    With J = (alpha_k - alpha_j)/(a_j^2 - a_k^2) as an integral of its own, nothing cancels in j_i.
-    """
-    body = shape(SHAPES[name], fluid=3)
-    axes, exact = body.semi_axes, body.inertias
-    with ctx.workprec(200):
-        displaced = 4 * arb.pi() * ball(axes[0] * axes[1] * axes[2])
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            alpha, J = quadrature(axes, (i,)), quadrature(axes, (j, k))
-            gap, total = ball(axes[j] ** 2 - axes[k] ** 2), ball(axes[j] ** 2 + axes[k] ** 2)
-            assert alpha.overlaps(integral(axes, i).evaluated())
-            m, inertia = exact.added_mass[i], exact.added_inertia[i]
-            for value, enclosed in (
-                (m, displaced * alpha / (2 - alpha)),
-                (inertia, displaced * gap**2 * J / (5 * (2 - total * J))),
-            ):
-                assert not value or enclosed.rel_accuracy_bits() >= 100
-                assert enclosed.overlaps(ball(value))
 
 
 # Without mass, only three different axes give every motion an inertia.

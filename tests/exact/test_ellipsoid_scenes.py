@@ -11,7 +11,6 @@ from mpmath import mp, mpf
 import taylor_verify
 from taylor_verify.exact.ellipsoid import sentences
 from taylor_verify.exact.route import solution
-from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import cross, dot
@@ -113,11 +112,3 @@ def test_the_exact_motion_is_that_of_the_ellipsoid_to_any_digits() -> None:
     with mp.workdps(170):
         assert mp.norm(list(impulse - best)) <= mpf(10) ** -149 * mp.norm(list(best))
         assert mp.norm(list(coarse - best)) > mpf(10) ** -130
-
-
-def test_explain_says_which_body_is_solved() -> None:
-    """The explanation tells masses, the rounding and the symmetry; of a body by coefficients nothing."""
-    sphere = explanation("kirchhoff/ellipsoid-sphere", "f64")
-    assert "semi-axes 3/4, 3/4, 3/4" in sphere["body"][0]
-    assert "y is constant in body axes" in sphere["body"][-1]
-    assert sentences(load("kirchhoff/cubic").body) == []

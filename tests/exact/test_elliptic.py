@@ -89,29 +89,3 @@ def test_complete_integral_near_the_separatrix(m_prime: str) -> None:
     K = Landen(1 - small, small).quarter_period
     # The next term of the series is (9/64)(L - 7/6) m'^2.
     assert abs(K - (L + (L - 1) * small / 4)) <= L * small**2 + 200 * mp.eps
-
-
-def test_zero_parameter_is_trigonometric() -> None:
-    """At m = 0 the functions are sin u, cos u and 1."""
-    u = mpf("17.3")
-    for value, right in zip(jacobi(u, mpf(0), False), (mp.sin(u), mp.cos(u), mpf(1)), strict=True):
-        assert ulps(value, right) <= FEW_ULP
-
-
-def test_detest_b5_reference_digits() -> None:
-    """The digits in circulation for B5 at t = 20 are (sn, cn, dn)(t | 0.51) to double precision."""
-    published = ("-0.9396570798729192", "-0.3421177754000779", "0.7414126596199957")
-    # An integrator in doubles over 20 units of time, with |y'| <= 1, rounds each component 20 times
-    # even if it takes steps as long as 1; it took shorter ones.
-    bound = 20 * 2 * mpf(2) ** -52
-    for value, digits in zip(jacobi(mpf(20), mpf("0.51"), False), published, strict=True):
-        assert abs(value - mpf(digits)) <= bound
-
-
-@pytest.mark.parametrize(
-    ("m", "m_prime"), [("1", "0"), ("1.1", "-0.1"), ("-0.1", "1.1"), ("nan", "nan")]
-)
-def test_parameters_outside_the_range_are_refused(m: str, m_prime: str) -> None:
-    """m = 1 (hyperbolic), m > 1, m < 0 and NaN are refused with the range that is expected."""
-    with pytest.raises(ValueError, match="expected 0 <= m and 0 < m'"):
-        Landen(mpf(m), mpf(m_prime))

@@ -14,7 +14,7 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.enclosure import box, course, placing, step, tube
+from taylor_verify.exact.enclosure import box, placing, step, tube, walk
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import Place
@@ -122,7 +122,7 @@ def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.Mo
             monkeypatch.setattr(Bounds, "defect", lambda _: zero)
         case "radius":
             monkeypatch.setattr(
-                course, "carried", lambda *a: replace(carried(*a), radius=carried(*a).radius / 64)
+                walk, "carried", lambda *a: replace(carried(*a), radius=carried(*a).radius / 64)
             )
         case "turn":
             monkeypatch.setattr(step, "leg", lambda *a: replace(leg(*a), turn_error=arb(0)))

@@ -5,7 +5,6 @@ test_exact_euler_theta compares the motion with the balls, which are put back in
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -17,9 +16,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.euler.jacobi import free_rotation
-from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import decades
 from taylor_verify.numbers.tensors import Matrix
 
 DIGITS = 50
@@ -140,10 +137,6 @@ def omega_at(spin: FreeSpin, *times: Fraction | int, digits: int = DIGITS) -> li
     return [list(row) for row in free_rotation(spin).evaluate(elapsed, digits)["omega"]]
 
 
-def numbers(entries: Sequence[Fraction]) -> list[mpf]:
-    return [mp.convert(entry) for entry in entries]
-
-
 def distance(p: Sequence[mpf], q: Sequence[mpf]) -> mpf:
     """|p - q| / |q|, or |p| where q is zero."""
     size = mp.norm(list(q))
@@ -205,15 +198,6 @@ def test_invariants_do_not_depend_on_the_axes(spin):
         assert getattr(other, name) == getattr(spin, name)
 
 
-@given(MOMENTS)
-@settings(max_examples=50, deadline=None)
-def test_discriminant_is_the_product_of_the_squared_gaps(moments):
-    """Written out in the moments, the two formulas for the discriminant are one polynomial."""
-    x, y, z = moments
-    spin = turned(OBLIQUE, spinning(vector(*moments), vector(0, 0, 0)))
-    assert spin.discriminant == ((x - y) * (y - z) * (z - x)) ** 2
-
-
 @pytest.mark.parametrize("name", EXTREMES)
 def test_every_digit_asked_for_is_right(name):
     """An evaluation at 20, 40 or 60 digits agrees so far with one at 150: the guards suffice."""
@@ -222,33 +206,6 @@ def test_every_digit_asked_for_is_right(name):
     for digits in (20, 40, 60):
         with mp.workdps(150):
             assert distance(omega_at(spin, t, digits=digits)[0], best) <= one_ulp(digits)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("exponent", [12, 24, 60])
-def test_complementary_parameter_is_accurate_relatively(sign, exponent):
-    """m' beside the separatrix has every digit of the working precision, with no guard."""
-    spin = near_separatrix(Fraction(sign, 10**exponent))
-    with mp.workdps(30):
-        m_prime = Orbit(spin).m_prime
-    with mp.workdps(200):
-        exact = Orbit(spin)
-        assert abs(exact.m + exact.m_prime - 1) <= mpf(10) ** -198
-        # Some thirty roundings of 30 digits.
-        assert distance([m_prime], [exact.m_prime]) <= 3 * one_ulp(29)
-
-
-@pytest.mark.parametrize("gap", ["1e-10", "1e-40"])
-@pytest.mark.parametrize("moment", [1, 3])
-def test_gap_of_a_full_tensor_is_accurate_relatively(moment, gap):
-    """The difference of two nearly equal moments comes from the discriminant to every digit."""
-    moments = (Fraction(2), 2 + Fraction(gap), Fraction(moment))
-    spin = turned(OBLIQUE, spinning(moments, vector(1, 1, 1)))
-    with mp.workdps(30):
-        frame = principal_frame(spin)
-        frame_gap = frame.upper_gap if moment == 1 else frame.lower_gap
-        # A dozen roundings of 30 digits.
-        assert distance([frame_gap], [mp.convert(Fraction(gap))]) <= one_ulp(29)
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -264,31 +221,3 @@ def test_separatrix_ends_on_the_intermediate_axis(side):
             # lam = 3/4 |limit|, where limit^2 > 1/2: e^-5000 is left of the other two components.
             assert max(abs(w[0]), abs(w[2])) <= mp.exp(-5000)
             assert distance([w[1]], [end]) <= one_ulp(DIGITS)
-
-
-# The interface
-
-
-def test_no_samples_are_no_rows():
-    """An empty list of times gives an array of no rows and three columns."""
-    assert free_rotation(ORBITS["max-axis"]).evaluate([], 30)["omega"].shape == (0, 3)
-
-
-def test_evaluation_is_repeatable():
-    """The same question has the same answer to the last bit, whatever was asked in between."""
-    solution = free_rotation(ORBITS["max-axis, full tensor"])
-    times = [Fraction(1, 3), Fraction(10)]
-    first = solution.evaluate(times, 40)["omega"]
-    solution.evaluate([LONG], 70)
-    assert (first == solution.evaluate(times, 40)["omega"]).all()
-    assert (
-        first == free_rotation(ORBITS["max-axis, full tensor"]).evaluate(times, 40)["omega"]
-    ).all()
-
-
-@given(st.fractions(min_value=Fraction(1, 10**9), max_value=10**9))
-def test_the_decades_of_a_ratio_are_a_close_upper_bound(ratio: Fraction) -> None:
-    """Never too few, and at most those of one factor of two too many."""
-    excess = decades(ratio) - math.log10(ratio)
-    # Ten roundings of numbers below ten.
-    assert -1e-13 <= excess <= math.log10(2) + 1e-13

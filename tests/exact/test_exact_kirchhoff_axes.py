@@ -18,7 +18,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.kirchhoff import quartic
-from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about, clebsch_about
+from taylor_verify.exact.kirchhoff.axes import UPRIGHT, body_about, clebsch_about
 from taylor_verify.exact.kirchhoff.closed import closed_form, enclosed
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -180,43 +180,6 @@ def test_the_start_is_the_scenes_own(route: str, n: Vector) -> None:
 # The axis.
 
 
-fractions = st.fractions(min_value=-3, max_value=3, max_denominator=7)
-
-
-@given(
-    n=st.tuples(entries, entries, entries).filter(any),
-    six=st.tuples(*[fractions] * 6),
-)
-def test_the_six_coefficients_come_back(n: tuple[int, ...], six: tuple[Fraction, ...]) -> None:
-    """T about any direction is recognised, with its coefficients and an axis along that direction."""
-    direction = tuple(map(Fraction, n))
-    body = body_about(Clebsch(*six), direction)
-    clebsch = clebsch_about(body)
-    assert clebsch is not None
-    assert body_about(clebsch[0], clebsch[1].n) == body
-    if six[0::2] != six[1::2]:
-        assert clebsch[0] == Clebsch(*six)
-        assert not any(tensors.cross(clebsch[1].n, direction))
-
-
-@given(n=st.tuples(entries, entries, entries).filter(any), v=st.tuples(*[fractions] * 3))
-def test_the_axes_about_a_direction_are_a_right_handed_orthonormal_triad(
-    n: tuple[int, ...], v: tuple[Fraction, ...]
-) -> None:
-    """Components of sqrt(nu) v along the columns are those of ``across`` and n.v."""
-    axes = Axes.about(tuple(map(Fraction, n)))
-    with mp.workdps(30):
-        e1, e2, e = axes.columns(mp.convert)
-        turned = [e1[i - 2] * e2[i - 1] - e1[i - 1] * e2[i - 2] for i in range(3)]
-        assert all(abs(a - b) <= mpf(10) ** -28 for a, b in zip(turned, e, strict=True))
-        assert abs(mp.fdot(e1, e1) - 1) <= mpf(10) ** -28
-        assert abs(mp.fdot(e1, e2)) <= mpf(10) ** -28
-        scaled = [mp.sqrt(mp.convert(axes.nu)) * mp.convert(entry) for entry in v]
-        expected = *axes.across(v, mp.convert), mp.convert(tensors.dot(axes.n, v))
-        for column, entry in zip((e1, e2, e), expected, strict=True):
-            assert abs(mp.fdot(column, scaled) - entry) <= mpf(10) ** -25
-
-
 LITTLE = Fraction(1, 10**60)
 
 
@@ -239,13 +202,6 @@ def test_what_is_nearly_of_revolution_is_not(block: str, i: int, k: int) -> None
     for solve in (enclosed, closed_form):
         with pytest.raises(NoClosedForm, match="about any axis"):
             solve(replace(scene, body=other))
-
-
-def test_two_matrices_with_different_axes_are_no_body_of_revolution() -> None:
-    """A about one direction, C about another."""
-    body = body_about(Clebsch(*SIX["cubic"]), DIRECTIONS[0])
-    other = body_about(Clebsch(*SIX["four-roots"]), DIRECTIONS[1])
-    assert clebsch_about(replace(body, linear=other.linear)) is None
 
 
 def test_a_body_with_a_choice_keeps_the_third_axis() -> None:
@@ -276,20 +232,6 @@ def test_the_elements_are_those_of_the_body_about_axis_3() -> None:
     text = " ".join([*orbit.sentences, *(element.meaning for element in orbit.values())])
     assert "about the direction e along (1, 2, 2)" in text
     assert not any(word in text for word in ("x3", "y3", "axis 3"))
-
-
-@pytest.mark.parametrize("axis", [1, 2])
-def test_the_orbit_is_told_of_its_own_body_axis(axis: int) -> None:
-    """Period and range are those of the body about axis 3; x3, y3 and the axis have other names."""
-    orbit = elements(about(AXES[axis - 1], SIX["four-roots"], *GENERIC))
-    # A cyclic change of names mirrors nothing.
-    named_anew = about(AXES[2], SIX["four-roots"], *(v[axis:] + v[:axis] for v in GENERIC))
-    other = elements(named_anew)
-    assert orbit["period"].value == other["period"].value
-    assert orbit[f"x{axis}_low"].value == other["x3_low"].value
-    text = " ".join([*orbit.sentences, *orbit, *(element.meaning for element in orbit.values())])
-    assert f"x{axis} swings" in text
-    assert not any(word in text for word in ("x3", "y3"))
 
 
 @pytest.mark.parametrize(

@@ -117,12 +117,6 @@ def test_a_double_root_anywhere(place: str) -> None:
                 assert apart(truth, motion) <= 2 * mpf(10) ** -DIGITS
 
 
-def test_double_roots_of_both_kinds_are_met() -> None:
-    """The random double roots give hyperbolic and trigonometric motion."""
-    drawn = (pair for place in PLACES for pair in random_double_roots(place, 4))
-    assert {regime(nutation(*pair)) for pair in drawn} >= {"hyperbolic", "trigonometric"}
-
-
 def _times(a: Polynomial, b: Polynomial) -> Polynomial:
     product = [Fraction(0)] * (len(a) + len(b) - 1)
     for i, c in enumerate(a):

@@ -275,13 +275,6 @@ def test_a_weak_moment_has_its_attitude_by_power_series(name: str) -> None:
         solution(scene, "mpmath")
 
 
-def test_a_weak_moment_is_followed_for_a_thousand_units() -> None:
-    """Some hundred radians in as many power series as it takes, and back."""
-    scene, times = WEAK["1e-60"], [Fraction(10**3, 3), Fraction(-(10**3), 7)]
-    exact = solution(scene, "arb")
-    assert apart(exact.motion(times, 20), TaylorSolution(scene).motion(times, 20)) <= mpf("2e-20")
-
-
 def test_a_time_out_of_reach_is_said_at_once() -> None:
     """Power series cost by the angle: beyond some seconds of work they say that they end."""
     with pytest.raises(Unsettled, match="under a weak moment: expected at most 131072 radians"):
@@ -311,12 +304,6 @@ def test_the_tail_of_a_power_series_is_in_its_balls(a: Vector, b: Vector, expone
     assert all(coarse.contains(fine) for coarse, fine in zip(*quaternions, strict=True))
 
 
-def test_no_moment_is_refused() -> None:
-    """A free body is not for these formulas."""
-    with pytest.raises(ValueError, match=r"expected a moment that is not zero.*@ body.moment"):
-        LoadedSpin(TOP, vector(0, 0, 0), vector(1, 1, 1))
-
-
 def test_across_the_axis_omega_recurs_after_the_period() -> None:
     """The one loaded motion with a period; without spin, and with any part along the axis, none."""
     scene = load("euler/moment-across-axis")
@@ -330,19 +317,6 @@ def test_across_the_axis_omega_recurs_after_the_period() -> None:
         orbit = elements(load(f"euler/{name}"), 15)
         assert orbit.regime == REGIMES[name]
         assert len(orbit) == 0
-
-
-@pytest.mark.parametrize(("t", "is_short"), [("0.5", True), ("3", False), ("40", False)])
-@pytest.mark.parametrize("faster", [1, 1000, Fraction(1, 1000)])
-def test_whether_a_line_is_short_does_not_depend_on_the_unit_of_time(
-    t: str, is_short: bool, faster: Fraction
-) -> None:
-    """The first of |b| t^2/4 = 25/16, 225/4 and 10^4 is below the limit of 10, the others are above."""
-    a, b = (
-        tensors.scaled(Fraction(faster) ** k, v)
-        for k, v in ((1, vector(0, 3, 4)), (2, vector(15, 0, 20)))
-    )
-    assert Line(a, b).is_short(Fraction(t) / faster, 10) is is_short
 
 
 @pytest.mark.parametrize("faster", [1, 1000, Fraction(1, 1000)])

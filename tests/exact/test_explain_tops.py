@@ -10,7 +10,6 @@ from builders.scenes import vector
 from mpmath import mp
 
 from taylor_verify.exact.elements import Elements, elements
-from taylor_verify.exact.kirchhoff.displaced import moved, symmetric_origin
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers import tensors
@@ -21,7 +20,6 @@ from taylor_verify.scenes.scene import Scene
 
 CLOCK = Clock(Fraction(0), (Fraction(1),))
 X, Y = vector("0.5", "0.2", "0.3"), vector("0.3", "0.5", 1)
-AWAY = vector("0.1", "-0.2", "0.3")
 
 
 def immersed(b: Fraction, x: tensors.Vector = X) -> Scene:
@@ -72,14 +70,6 @@ def test_without_linear_impulse_omega_is_that_of_the_top() -> None:
     orbit = elements(scene, 20)
     assert "Omega = C y as its omega" in story_of(orbit)
     assert "need not recur" not in story_of(orbit)
-
-
-def test_about_another_origin_the_y_of_the_top_is_said_to_be_another() -> None:
-    """A body given about an origin beside its own has a top whose H is y about the other origin."""
-    scene = moved(immersed(Fraction(0)), AWAY)
-    assert any(symmetric_origin(solid(scene)[0]))
-    assert "y about that origin moves as its angular momentum H" in story_of(elements(scene, 20))
-    assert "y moves as its angular momentum H" in story_of(elements(immersed(Fraction(0)), 20))
 
 
 def test_a_body_whose_wheels_cancel_its_momentum_has_one_steady_spin() -> None:

@@ -13,7 +13,6 @@ import pytest
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.kirchhoff import integrable
 from taylor_verify.exact.kirchhoff.integrable import Fourth, fourth_integral
@@ -303,15 +302,6 @@ def test_chaplygins_needs_orthogonal_impulses_and_no_body_is_loaded() -> None:
     assert fourth_integral(with_body(shipped("steklov"), couple=couple)) is None
     assert fourth_integral(load("kirchhoff/general-body")) is None
     assert fourth_integral(load("kirchhoff/four-real-roots")) is None  # it has y3
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_the_words_of_the_orbit_tell_of_it(name: str) -> None:
-    """`explain` names the fourth integral, and of no other general body one."""
-    assert any(
-        f"{SCENES[name]}, the fourth integral" in s for s in elements(shipped(name)).sentences
-    )
-    assert not any("fourth" in s for s in elements(load("kirchhoff/general-body")).sentences)
 
 
 # Scale and sensitivity.

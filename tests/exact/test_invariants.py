@@ -82,15 +82,6 @@ def test_they_tell_one_motion_from_another() -> None:
             assert largest(value[1:] - value[:1]) >= invariant.scale(motion) / 1000
 
 
-def test_y3_of_a_loaded_clebsch_body() -> None:
-    """For a body of Clebsch's form y3 grows by the axial couple alone: y3 = y3(0) + N t."""
-    loaded = sample_scene(replace(CLEBSCH, force=FORCE, couple=COUPLE))
-    motion = sampled(loaded, [Fraction(4)])
-    with mp.workdps(50):
-        expected = mp.convert(Fraction(1) + 4 * COUPLE[2])
-        assert abs(named(loaded)["y3"].value(motion)[0] - expected) <= mpf(10) ** -39
-
-
 def test_energy_grows_by_the_work_of_a_moment() -> None:
     """T(t) - T(0) is the integral of M . omega, and R I omega grows by the integral of R M."""
     loaded = sample_scene(RigidBody(TENSOR, MOMENT), "attitude")

@@ -104,19 +104,6 @@ def test_p_obeys_its_equation(invariants: Invariants) -> None:
             assert close(cubic / slope**2, acb(1))
 
 
-@by_case
-def test_p_begins_as_it_should(invariants: Invariants) -> None:
-    """p = 1/u^2 + g2 u^2/20 + g3 u^4/28 + ..., so it is Weierstrass's, and p' is its derivative."""
-    with at_work(invariants) as (cell, length):
-        g2, g3 = (ball(g) for g in invariants)
-        u = acb(length, length / 3) / 2**30
-        p, slope = cell.p(u)
-        # The next terms are below (|u|/length)^8 of the first, times a number below 1: 2^-238.
-        bound = arb(2) ** -238
-        assert abs(u**2 * p - 1 - g2 * u**4 / 20 - g3 * u**6 / 28) <= bound
-        assert abs(u**3 * slope + 2 - g2 * u**4 / 10 - g3 * u**6 / 7) <= 8 * bound
-
-
 @pytest.mark.parametrize("name", PERIODIC)
 def test_p_has_its_period(name: str) -> None:
     """p(u + L) = p(u), and on the real line it is above its least value, which is at L/2."""
@@ -227,20 +214,6 @@ def test_s_is_odd_with_a_simple_zero(invariants: Invariants) -> None:
 
 
 @by_case
-def test_derivatives_of_s_are_those_of_differences(invariants: Invariants) -> None:
-    """s' and s'' against central differences."""
-    with at_work(invariants) as (cell, length):
-        h = length / 2**60
-        for u in points(length):
-            value, slope, bend = cell.jet(u, 2)
-            after, before = cell.jet(u + h, 1), cell.jet(u - h, 1)
-            # The error is h^2/6 of a third derivative, which here is below 2^20 s/length^3.
-            bound = arb(2) ** -90 * (abs(value) + length * abs(slope) + length**2 * abs(bend))
-            assert abs((after[0] - before[0]) / (2 * h) - slope) * length <= bound
-            assert abs((after[1] - before[1]) / (2 * h) - bend) * length**2 <= bound
-
-
-@by_case
 def test_the_second_logarithmic_derivative_of_s_is_minus_p(invariants: Invariants) -> None:
     """s''/s - (s'/s)^2 + p is the same everywhere: s is sigma but for exp(a u^2)."""
     with at_work(invariants) as (cell, length):
@@ -294,19 +267,6 @@ def test_the_turn_begins_at_zero_and_is_continuous(invariants: Invariants) -> No
                 previous = now
 
 
-@by_case
-def test_conjugate_offsets_have_conjugate_quotients(invariants: Invariants) -> None:
-    """On the real line s(u - w)/s(-w) and its derivatives, for w and its conjugate."""
-    with at_work(invariants) as (cell, length):
-        for w in off_the_line(cell, length):
-            for u in (length, -20 * length):
-                for order in (0, 1, 2):
-                    one, other = (
-                        cell.jet(u - a, 2)[order] / cell.jet(-a, 0)[0] for a in (w, w.conjugate())
-                    )
-                    assert close(one.conjugate() * length**order, other * length**order)
-
-
 @pytest.mark.parametrize("name", PERIODIC)
 @pytest.mark.parametrize("number", [1, 7, -(10**6), 10**12])
 def test_the_turn_of_many_periods_is_that_of_one(name: str, number: int) -> None:
@@ -319,20 +279,3 @@ def test_the_turn_of_many_periods_is_that_of_one(name: str, number: int) -> None
             assert close(abs(single), arb.pi())
             there, here = turned(cell, length + number * period, w), turned(cell, length, w)
             assert close((there - here) / number, single)
-
-
-@by_case
-def test_the_turn_about_a_real_argument_is_left_open(invariants: Invariants) -> None:
-    """On the line itself s vanishes: there is no turn."""
-    with at_work(invariants) as (cell, length), pytest.raises(Undecidable):
-        cell.turn(length, acb(length * 2), acb(1))
-
-
-def test_a_turn_at_a_time_beyond_all_doubles() -> None:
-    """An argument of 1e400 is no obstacle but a matter of precision."""
-    invariants = CASES["one real root, positive"]
-    far = Fraction(10) ** 400
-    with ctx.workprec(2000):
-        cell = lattice(*invariants)
-        w = acb(1, scale(invariants))
-        assert turned(cell, ball(far), w).rad() <= NARROW

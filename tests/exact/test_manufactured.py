@@ -33,7 +33,6 @@ from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named
@@ -282,8 +281,8 @@ class Twin(Solver):
 def test_a_broken_equation_under_the_right_loads_fails(name: str, broken: Equations) -> None:
     """The state gate finds it; the same solver with the right equations passes."""
     right = euler_equations if name == EULER else kirchhoff_equations
-    assert run(name, Twin(right), "f64").verdicts[1].verdict is Status.PASS
-    assert run(name, Twin(broken), "f64").verdicts[1].verdict is Status.FAIL
+    assert run(name, Twin(right), "f64", causes=False).verdicts[1].verdict is Status.PASS
+    assert run(name, Twin(broken), "f64", causes=False).verdicts[1].verdict is Status.FAIL
 
 
 def test_a_broken_product_is_not_undone_by_the_loads(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -303,22 +302,12 @@ def test_a_late_answer_fails_and_is_said_to_be_late(name: str) -> None:
         motion = solution(given).motion([t - late for t in given.clock.elapsed], 25)
         return vectors(motion.quantities)
 
-    verdict = run(name, Callback(answer), "f64").verdicts[1]
+    verdict = run(name, Callback(answer), "f64", causes=False).verdicts[1]
     assert verdict.verdict is Status.FAIL
     assert abs(verdict.time_shift - float(late)) <= 1e-3 * float(late)
 
 
 # Scenes, and who is not made for them.
-
-
-def test_a_motion_begins_at_the_sum_of_its_cosines() -> None:
-    """Terms of both vectors with one frequency become one wave, in the order of the frequencies."""
-    scene = load(KIRCHHOFF)
-    motion, initial = motion_of(scene), scene.initial
-    assert [w.frequency for w in motion.waves] == [1, Fraction(7, 5)]
-    assert initial.linear == (Fraction(7, 10), Fraction(1, 5), Fraction(3, 10))
-    assert initial.angular == (Fraction(1, 10), Fraction(1, 10), Fraction(2, 5))
-    assert not scene.body.is_free
 
 
 @pytest.mark.parametrize("step", LADDER)
@@ -328,23 +317,6 @@ def test_a_motion_that_stands_still_is_answered(step: str) -> None:
     lines = [line for line in text.splitlines() if "frequency = 1" not in line]
     scene = read("\n".join(lines), "still")
     assert motion_of(scene).waves == ()
-    assert run(scene, "taylor", step).verdicts[1].verdict is Status.PASS
-
-
-@pytest.mark.parametrize("size", ["1e150", "1e-15"])
-@pytest.mark.parametrize("step", ["f32", "f64"])
-def test_the_size_of_a_motion_does_not_matter(size: str, step: str) -> None:
-    """A motion far beyond the range of single precision is one of size one in other units."""
-    scene = bare("manufactured/euler-tones")
-    factor, motion = Fraction(size), motion_of(scene)
-    faster = motion.in_units((factor,) * 3, 1 / factor)
-    times = tuple(t / factor for t in scene.clock.elapsed)
-    scene = replace(
-        scene,
-        body=replace(scene.body, manufactured=faster),
-        initial=replace(scene.initial, omega=faster.start),
-        clock=Clock(Fraction(0), times),
-    )
     assert run(scene, "taylor", step).verdicts[1].verdict is Status.PASS
 
 

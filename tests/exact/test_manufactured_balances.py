@@ -130,7 +130,7 @@ def test_an_offset_of_the_clock_does_the_work_that_is_allowed_for_it(name: str) 
 
 
 def moved(scene: Scene, solver: Solver) -> dict[str, Any]:
-    judgement = run(scene, solver, "f64")
+    judgement = run(scene, solver, "f64", causes=False)
     assert judgement.record is not None
     return {gate.quantity: np.array(gate.errors) for gate in judgement.record.gates}
 
@@ -225,22 +225,10 @@ def without_second(problem: Problem, t: float, since: float) -> list[float]:
 def test_the_balances_see_a_load_that_is_not_that_of_the_time(name: str, broken: Any) -> None:
     """Loads held over a step, or without their second wave, fail by every balance; the twin passes."""
     scene = over(name, Fraction(2), 21)
-    sound = status(run(scene, Forced(clock_at), "f32"))
+    sound = status(run(scene, Forced(clock_at), "f32", causes=False))
     assert all(sound[gate] is Status.PASS for gate in BALANCES[name])
-    spoiled = status(run(scene, Forced(broken), "f32"))
+    spoiled = status(run(scene, Forced(broken), "f32", causes=False))
     assert all(spoiled[gate] is Status.FAIL for gate in BALANCES[name])
-
-
-def test_a_number_that_is_none_fails_every_balance() -> None:
-    """A NaN in one row is a failed balance, and not an arc from nowhere."""
-
-    def answer(problem: Problem) -> Any:
-        rows = solution(problem.given).evaluate(problem.given.clock.elapsed, 20)["omega"]
-        rows[3][1] = mp.nan
-        return rows
-
-    statuses = status(run(over(EULER, Fraction(2), 6), Callback(answer), "f64"))
-    assert all(statuses[gate] is Status.FAIL for gate in ("omega", "T", "H2"))
 
 
 def test_the_exact_answer_is_balanced_to_its_last_bits() -> None:
@@ -249,20 +237,9 @@ def test_the_exact_answer_is_balanced_to_its_last_bits() -> None:
     def answer(problem: Problem) -> Any:
         return solution(problem.given).evaluate(problem.given.clock.elapsed, 25)["omega"]
 
-    judgement = run(over(EULER, Fraction(5), 11), Callback(answer), "f64")
+    judgement = run(over(EULER, Fraction(5), 11), Callback(answer), "f64", causes=False)
     assert all(
         verdict.verdict is Status.PASS and verdict.ratio <= 1e-6
         for verdict in judgement.verdicts
         if verdict.quantity in BALANCES[EULER]
     )
-
-
-def test_the_gate_says_what_its_bound_rests_on() -> None:
-    """The reason of a balance names the clock; that of a constant load has none to name."""
-    reasons = {
-        v.quantity: v.because for v in run(over(EULER, Fraction(1), 3), Taylor(), "f64").verdicts
-    }
-    assert "clock" in reasons["T"]
-    assert "clock" not in reasons["omega"]
-    free = run("euler/constant-moment", Taylor(), "f64").verdicts
-    assert all("clock" not in verdict.because for verdict in free)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from types import SimpleNamespace
@@ -11,20 +12,28 @@ import gmpy2
 import numpy as np
 import pytest
 from builders.turns import by_turns
+from builders.written_loads import kirchhoff
 from mpmath import mp, mpf
 
+from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning import neighbours as module
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
+from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.loaded import Linearised
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
-from taylor_verify.scenes.motion import Motion, State
+from taylor_verify.scenes.motion import Clock, Motion, State
 from taylor_verify.scenes.mpfr import in_mpfr, precision, to_mpf
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 TIMES = (Fraction(0), Fraction(1, 3), Fraction(3, 2))
 ENDS = (Fraction(2, 5), Fraction(1), Fraction(13, 4))
+LOADED = replace(
+    kirchhoff(["-u1/4", "c2/9", "-r33/3"], ["-w1/5", "x1*r21", "sin(t)/4"], "4"),
+    clock=Clock(Fraction(0), (Fraction(0), Fraction(1), Fraction(13, 4))),
+)
 # Of the exact motion.
 DIGITS = 90
 # Constant loads; wheels and attitude; a path; a load that changes with time, and a path.
@@ -70,10 +79,23 @@ def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     exact = tuple(in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS))
     here = arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES)
     with precision():
-        motion = neighbours(scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits)
+        derivatives = led(scene)
+        motion = neighbours(
+            scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits, derivatives=derivatives
+        )
     if motion is None:
         return None
     return Motion({name: to_mpf(rows) for name, rows in motion.quantities.items()}, motion.radius)
+
+
+def led(scene: Scene) -> Floats | None:
+    """The derivatives of the motion over the arcs, under written loads."""
+    if scene.body.loads is None:
+        return None
+    every = Clock(scene.clock.start, tuple(sorted({*TIMES, *ENDS})))
+    assert not scene.clock.start
+    exact = Linearised(replace(scene, clock=every), 20)
+    return exact.derivatives(Flow.of(scene), TIMES, ENDS)
 
 
 def distance(one: Motion, other: Motion) -> mpf:
@@ -99,18 +121,26 @@ def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
         assert distance(motion, arrived) <= mpf(10) ** -(digits + 3)
 
 
-def test_the_exact_motion_leads_to_itself() -> None:
-    """A state that is not off is not off afterwards."""
+@pytest.mark.parametrize(("size", "is_close"), [("1e-12", True), ("1e-3", False)])
+def test_under_written_loads_a_derivative_leads_there(size: str, is_close: bool) -> None:
+    """What is off by little is led by the derivative to where its own arc comes; more is refused."""
     with mp.workdps(DIGITS + 20):
-        scene = load("euler/gyrostat-moment")
-        exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS)]
-        with precision():
-            motion = neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), exact[0], 40)
-        assert motion is not None
-        there = {name: to_mpf(rows) for name, rows in exact[1].quantities.items()}
-        arrived = {name: to_mpf(rows) for name, rows in motion.quantities.items()}
-        left = distance(Motion(arrived, motion.radius), Motion(there, motion.radius))
-        assert left <= mpf(10) ** -(DIGITS - 1)
+        states = beside(LOADED, Fraction(size))
+        motion = asked(LOADED, states, 15)
+        assert (motion is not None) is is_close
+        if motion is not None:
+            spans = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
+            arrived = arcs(LOADED, states, spans, 30, TIMES)
+            assert 0 < distance(motion, arrived) <= mpf(10) ** -18
+
+
+def test_the_motion_beside_its_derivative_is_the_exact_one() -> None:
+    """The run that gives the derivative has the motion, within both radii; elsewhere it is asked for."""
+    exact, other = Linearised(LOADED, 20), solution(LOADED)
+    for elapsed in (LOADED.clock.elapsed, [Fraction(1, 7)]):
+        one, two = (each.motion(elapsed, 20) for each in (exact, other))
+        assert one.quantities.keys() == two.quantities.keys()
+        assert distance(one, two) <= 4 * max(*one.radius, *two.radius) < mpf(10) ** -19
 
 
 def test_no_answer_where_doubles_are_not_enough() -> None:

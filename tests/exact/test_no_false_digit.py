@@ -14,7 +14,6 @@ from flint import arb
 from mpmath import mp, mpf
 
 from taylor_verify.exact import printed as printing
-from taylor_verify.exact.elements import elements
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import CLOSED_ROUTES, solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -275,11 +274,6 @@ def test_a_kind_of_motion_that_is_not_decided_has_no_closed_form() -> None:
     row = printed(open_question, None, 2, 150)
     assert row["regime"] == NO_CLOSED_FORM
     check_digits(row, printed(separatrix, "arb", 2, 200))
-
-
-def test_the_elements_of_an_undecided_motion_are_those_without_a_closed_form() -> None:
-    """No regime is guessed, and none is an error."""
-    assert elements(top(TWIN / 3)).regime == NO_CLOSED_FORM
 
 
 def test_a_body_that_may_be_a_sphere_is_enclosed() -> None:

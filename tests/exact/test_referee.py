@@ -22,9 +22,10 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.enclosure.bounds import Bounds
-from taylor_verify.exact.enclosure.course import Coarse, Row
 from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.stopping import Coarse
 from taylor_verify.exact.enclosure.system import column
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled, _distance

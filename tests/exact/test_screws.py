@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb, ctx
-from hypothesis import given
-from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import ball, midpoint
@@ -19,7 +17,6 @@ from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff.screws import (
     Screw,
     Stability,
-    _stability,
     is_steady,
     screws,
     screws_beside,
@@ -165,17 +162,6 @@ def test_the_spectrum_is_that_of_the_linearised_equations(seed: int) -> None:
             assert np.allclose(rates, [slow, slow, fast, fast], atol=1e-6, rtol=0)
 
 
-def test_drawn_bodies_have_screws_of_every_kind() -> None:
-    """What the other tests draw is not of one kind."""
-    kinds = {s.stability for seed in range(12) for s in screws(*with_turn(seed))}
-    assert {Stability.STABLE, Stability.UNSTABLE, Stability.TO_FIRST_ORDER} <= kinds
-
-
-def with_turn(seed: int) -> tuple[ImmersedBody, Fraction, Fraction]:
-    body, turn = drawn(seed)
-    return body, F2, turn
-
-
 def test_a_disturbance_of_an_unstable_screw_grows_at_the_rate_stated() -> None:
     """The Taylor motion from 10^-25 beside it, between t = 30 and t = 60."""
     scene = load("kirchhoff/general-body")
@@ -235,17 +221,3 @@ def test_explain_says_which_screws_are_stable() -> None:
     assert len(lines) == 3
     assert all(word in line for word, line in zip(words, lines, strict=True))
     assert not any("itself" in line for line in elements(load("kirchhoff/general-body")).sentences)
-
-
-@given(st.integers(-9, 9), st.integers(-9, 9))
-def test_two_roots_say_whether_a_screw_is_stable(a: int, b: int) -> None:
-    """s^2 = a or b: stable to first order if both are negative, and open if they coincide or vanish."""
-    expected = Stability.TO_FIRST_ORDER
-    if a == b or not a * b:
-        expected = Stability.UNDECIDED
-    if max(a, b) > 0:
-        expected = Stability.UNSTABLE
-    assert _stability(arb(-a - b), arb(a * b)) is expected
-    # a +- b i
-    if b:
-        assert _stability(arb(-2 * a), arb(a * a + b * b)) is Stability.UNSTABLE

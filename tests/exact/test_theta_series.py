@@ -8,16 +8,14 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from flint import acb, arb, arb_mat, ctx
+from flint import acb, arb, ctx
 
-from taylor_verify.exact import lattice as lattice_module
 from taylor_verify.exact import theta_series
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball
-from taylor_verify.exact.euler import theta
 from taylor_verify.exact.lattice import Lattice, Periods, lattice
 from taylor_verify.exact.line import BySeries, OneByOne
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.theta_series import MANY, MOST_TERMS, Places, ThetaSeries
+from taylor_verify.exact.theta_series import MANY, Places, ThetaSeries
 from taylor_verify.scenes.reading.reader import load
 
 BITS = 150
@@ -106,19 +104,6 @@ def test_the_functions_of_real_arguments_are_those_of_flint(tau: str) -> None:
     assert agree(tau_of(tau)) == [True] * (2 if tau.startswith("rhombic") else 4)
 
 
-@pytest.mark.parametrize("count", [2, 7])
-def test_polynomials_together_have_the_values_of_each_alone(count: int) -> None:
-    """Values are the same whether few or many are asked for, short or long, and longer ones later."""
-    places = Places([arb.pi() * v for v in arguments()])
-    for most in (3, 9, 5):
-        asked = [
-            arb_mat(1, 1 + k % most, [arb(n - k) / 7 for n in range(1 + k % most)])
-            for k in range(count)
-        ]
-        for values, polynomial in zip(places.at_each(asked), asked, strict=True):
-            assert all(map(arb.overlaps, values, places.at(polynomial)))
-
-
 # The terms left out
 
 
@@ -160,17 +145,6 @@ def test_a_short_series_without_its_tail_is_caught(
     assert agrees(at, shift, order)
     monkeypatch.setattr(ThetaSeries, "_tail", lambda self, count, b, order: arb(0))
     assert not agrees(at, shift, order)
-
-
-def test_near_a_separatrix_there_is_no_series() -> None:
-    """Where terms cancel, or are more than polynomials are worth, the rule says so."""
-    assert ThetaSeries.where_short(acb(0, arb("0.06"))) is None
-    assert ThetaSeries.where_short(acb(0, arb("0.075"))) is not None
-    with ctx.workprec(4000):
-        assert ThetaSeries.where_short(acb(0, arb("0.075"))) is None
-        series = ThetaSeries.where_short(acb(0, arb(1)))
-        assert series is not None
-        assert series._count(0.5, 1) <= MOST_TERMS
 
 
 # Lattices
@@ -243,19 +217,3 @@ def test_a_motion_by_series_that_are_too_short_is_caught(
     many, alone = enclosures(name, 90)
     rows = ((flat(row), flat(alone[k][q][0])) for q in many for k, row in enumerate(many[q]))
     assert not all(overlap(one, other) for one, other in rows)
-
-
-@pytest.mark.parametrize("module", [theta, lattice_module])
-def test_few_times_are_taken_one_by_one(module: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Up to a dozen times no series is made."""
-
-    def made(tau: acb) -> ThetaSeries | None:
-        raise AssertionError
-
-    monkeypatch.setattr(ThetaSeries, "where_short", made)
-    name = "euler/with-attitude" if module is theta else "kirchhoff/whole-motion"
-    exact = solution(load(name))
-    times = [Fraction(k, 3) for k in range(MANY)]
-    exact.motion(times[:-1], 20)
-    with pytest.raises(AssertionError):
-        exact.motion(times, 20)

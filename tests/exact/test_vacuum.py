@@ -16,7 +16,6 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import entrywise
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 TIMES = [Fraction(0), Fraction(7, 3), Fraction(-2)]
@@ -92,8 +91,3 @@ def test_a_little_fluid_ends_it() -> None:
     """With a fluid of 10^-30 of its density an ellipsoid of three different axes has no closed form."""
     y = vector("0.5", "0.75", "-0.25")
     assert solution(ellipsoid(vector(3, 2, 1), y, "1e-30")).route == "taylor"
-
-
-def test_the_shipped_ellipsoid_is_on_the_separatrix() -> None:
-    """As its title says; the coefficients of a rung miss it."""
-    assert solution(load("kirchhoff/vacuum-ellipsoid")).regime == "separatrix"

@@ -394,9 +394,3 @@ def test_where_there_is_no_closed_form_it_says_so(scene: Scene, what: str) -> No
         solution(scene, "arb")
     exact = solution(scene)
     assert (exact.route, exact.regime) == ("taylor", NO_CLOSED_FORM)
-
-
-def test_mpmath_names_its_second_route() -> None:
-    """On a washboard the second route is the enclosure, which proves more than two precisions do."""
-    with pytest.raises(NoClosedForm, match="the second route is taylor"):
-        solution(SCENES["middle"][0], "mpmath")

@@ -175,12 +175,6 @@ def test_beside_a_degenerate_curve_the_balls_still_hold() -> None:
         assert apart(truth, motion) <= 2 * mpf(10) ** -30
 
 
-def test_its_second_route_is_taylor() -> None:
-    """The formulas of mpmath are declined with the name of the other proven way."""
-    with pytest.raises(NoClosedForm, match="weber is taylor"):
-        solution(shipped(), "mpmath")
-
-
 def test_attitude_and_path_have_no_closed_form() -> None:
     """The whole answer is Taylor's where they are tracked, and its impulses lie in the balls of Weber's."""
     scene, times = load("kirchhoff/weber-path"), [Fraction(4)]

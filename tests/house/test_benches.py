@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from io import StringIO
 from pathlib import Path
@@ -15,7 +15,6 @@ from benches.history import Row, has_moved, keep, last
 from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
 from benches.ratio import Action, Ratio, Side, Target
-from benches.registry import RATIOS
 from benches.suite import Costs, Measured, in_turns, summary
 from benches.table import remarks, table
 from rich.console import Console
@@ -98,13 +97,6 @@ def test_a_short_call_is_repeated_until_the_clock_can_tell() -> None:
     assert len(time.order) - before >= 40
 
 
-def test_a_long_call_is_made_once_before_it_is_timed() -> None:
-    """What its first call fills is not timed, and it is not made more often than that."""
-    time = Time()
-    assert time.action("l", 1.0).cost() == 1.0
-    assert time.order == "ll"
-
-
 def test_both_sides_have_a_turn_in_each_round() -> None:
     """The first cost of each is after a call that is not timed."""
     time = Time()
@@ -113,12 +105,6 @@ def test_both_sides_have_a_turn_in_each_round() -> None:
     assert {time.order[:4]} <= {"aayy", "yyaa"}
     assert all({*time.order[k : k + 2]} == {"a", "y"} for k in (4, 6, 8))
     assert costs == Costs((1.0,) * 4, (2.0,) * 4)
-
-
-def test_rounds_go_on_for_the_seconds_that_are_given() -> None:
-    """There are two at least, and no more than can matter."""
-    assert len(in_turns(invented(), 0).action) == 2
-    assert len(in_turns(invented(), 60).action) == 15
 
 
 def test_a_ratio_is_the_median_of_quotients_of_single_rounds() -> None:
@@ -169,14 +155,6 @@ def test_a_ratio_has_moved_beyond_both_spreads_and_the_resolution(
     assert has_moved(Measured(invented(), 2 + sign * (value - 2), spread, 1.0), row) is moved
 
 
-def test_a_ratio_that_is_no_number_misses_and_has_moved() -> None:
-    """NaN is never as good as it was."""
-    one = Measured(invented(), float("nan"), 0.0, 1.0)
-    row = Row("2026-01-01", COMMIT, "1", PROCESSOR, "invented/twice", 2.0, 0.0, 1.0)
-    assert one.misses_target
-    assert has_moved(one, row)
-
-
 def test_a_cost_beyond_its_own_target_misses() -> None:
     """The ratio may be as good as it likes."""
     ratio = replace(invented(), limit=Target(0.5, "half a second"))
@@ -197,11 +175,6 @@ def test_the_history_answers_with_the_latest_row_of_the_same_processor(tmp_path:
     assert last(file, "another, older")["invented/twice"].ratio == 9.0
     assert file.read_text().count("date,commit") == 1
     assert len(file.read_text().splitlines()) == 4
-
-
-def test_the_history_of_the_repository_can_be_read() -> None:
-    """Each of its rows is that of a ratio that there is, or was."""
-    assert all(row.ratio > 0 for row in last(history.FILE, processor()).values())
 
 
 # The command
@@ -244,35 +217,6 @@ def test_a_wrong_call_is_refused(
     assert not shipped.exists()
 
 
-@pytest.mark.slow
-def test_another_checkout_has_caches_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A cold run begins with an empty folder and leaves it to the warm one."""
-    caches: list[tuple[str, bool]] = []
-
-    @dataclass
-    class Done:
-        returncode: int = 0
-
-    def run(command: list[str], env: dict[str, str], **_: object) -> Done:
-        cache = Path(env["HEYOKA_CACHE_DIR"])
-        assert env["XDG_CACHE_HOME"] == str(cache)
-        caches.append((cache.name, cache.exists()))
-        cache.mkdir(exist_ok=True)
-        return Done()
-
-    monkeypatch.setattr(commands.subprocess, "run", run)
-    share_a_scene(tmp_path)
-    cold, warm = commands.ratios(tmp_path, tmp_path / "caches")
-    (tmp_path / "caches").mkdir()
-    in_turns(replace(cold, rounds=1))
-    assert sorted(caches) == [("here", False), ("here", True), ("other", False), ("other", True)]
-    caches.clear()
-    in_turns(replace(warm, rounds=1))
-    assert sorted(caches) == [("here", True)] * 2 + [("other", True)] * 2
-
-
 def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:
     """A checkout whose standard set does not pass is an error, and no time."""
     package = tmp_path / "verify" / "taylor_verify"
@@ -306,13 +250,6 @@ def test_two_checkouts_are_timed_on_the_scenes_that_both_have(tmp_path: Path) ->
 
 
 # The ratios
-
-
-def test_names_are_single_and_fit_into_a_command_line() -> None:
-    """A name has a family, and no blank."""
-    names = [ratio.name for ratio in RATIOS]
-    assert len(set(names)) == len(names)
-    assert all("/" in name and len(name.split()) == 1 for name in names)
 
 
 @pytest.mark.parametrize(("tolerance", "status"), [(PASSING, "pass"), (FAILING, "fail")])

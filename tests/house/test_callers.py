@@ -22,7 +22,6 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import cases_directory
-from taylor_verify.solvers.options import options
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.tradeoff.recommendation import recommend
 
@@ -77,12 +76,6 @@ def test_times_of_every_kind_are_taken_exactly(time: Any, exact: Fraction) -> No
     assert np.all(taylor_verify.exact(SCENE, [time])["omega"] == expected)
 
 
-def test_an_array_of_times_is_a_sequence() -> None:
-    """NumPy's integers and doubles are times; so is what an iterator yields."""
-    assert taylor_verify.exact(SCENE, np.arange(3))["omega"].shape == (3, 3)
-    assert taylor_verify.exact(SCENE, (t for t in np.linspace(0, 1, 2)))["omega"].shape == (2, 3)
-
-
 @pytest.mark.parametrize(
     ("times", "fault"),
     [
@@ -119,12 +112,6 @@ def test_digits_are_a_number_from_one_to_ten_thousand(digits: Any) -> None:
     """Zero digits are no answer, and text is no number."""
     with pytest.raises(ValueError, match=r"expected digits from 1 to 10000, got .* @ digits"):
         taylor_verify.exact(SCENE, [1], digits=digits)
-
-
-def test_a_route_is_one_of_three() -> None:
-    """A misspelt route lists those that there are."""
-    with pytest.raises(ValueError, match=r"expected a route \(arb, mpmath, taylor\), got 'ball'"):
-        taylor_verify.exact(SCENE, [1], route="ball")
 
 
 # Scenes, solvers, rungs and files.
@@ -190,11 +177,6 @@ def test_a_mask_is_not_dropped() -> None:
     assert outcome(lambda problem: np.ma.array(still(problem))) == "reached the last sample"
 
 
-def test_a_table_is_refused_for_the_order_of_its_columns() -> None:
-    """A table's columns have names, and a state has an order."""
-    assert "expected an array of states, got a Table (" in outcome(lambda p: Table(still(p)))
-
-
 @pytest.mark.parametrize("size", [1e200, 1e308, 10**5000, mp.mpf(10) ** 5000], ids=range(4))
 def test_answers_whose_square_is_no_double_are_judged(size: Any) -> None:
     """An answer may be as large as it likes: it fails, and nothing breaks."""
@@ -234,12 +216,6 @@ def test_a_tolerance_a_target_and_a_step_are_positive_numbers(
         tolerances({"omega": number}, [scene])
 
 
-@pytest.mark.parametrize("number", [Fraction(1, 1000), Decimal("0.001"), np.float64(1e-3)])
-def test_a_tolerance_may_be_a_number_of_any_kind(number: Any) -> None:
-    """Fractions, Decimals and NumPy's numbers are tolerances."""
-    assert tolerances(number, []).of("omega") == 1e-3
-
-
 @pytest.mark.parametrize(
     "solver",
     [
@@ -257,13 +233,6 @@ def test_no_setting_of_a_solver_is_taken_for_a_fault_of_ours(solver: str, number
     """Every number of a solver's name is positive and one that a double holds."""
     with pytest.raises(ValueError, match=r"^expected .*, got .*"):
         solver_named(solver.format(number))
-
-
-def test_a_long_setting_is_cut_short() -> None:
-    """A message repeats no more of a number than helps."""
-    with pytest.raises(ValueError, match="expected a number of at most 4000 digits") as refused:
-        options("taylor?tol=" + "1" * 100_000, ["taylor"], ["tol"]).positive("tol", "")
-    assert len(str(refused.value)) <= 200
 
 
 def test_settings_that_never_end_are_refused() -> None:

@@ -12,11 +12,10 @@ import subprocess
 import sys
 from enum import StrEnum
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
-from builders.pages import results, table_rows
+from builders.pages import table_rows
 from builders.worked import DOCS, ROOT, blocks, work
 
 import taylor_verify
@@ -46,16 +45,6 @@ EVIDENT = {"scene", "name", "rung", "problem", "solver", "trajectory", "verdicts
 
 def text_of(page: str) -> str:
     return (DOCS / page).read_text(encoding="utf-8")
-
-
-def configuration() -> ModuleType:
-    """docs/conf.py, as Sphinx reads it."""
-    spec = importlib.util.spec_from_file_location("conf", DOCS / "conf.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 # The pages.
@@ -116,13 +105,6 @@ def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
 
 
 # What the pages tell.
-
-
-def test_the_table_of_results_has_both_models_and_every_state() -> None:
-    """Rows of both models, and of each kind of state there is."""
-    rows = results()
-    assert {row[0].strip("`").split("/")[0] for row in rows} == {"euler", "kirchhoff"}
-    assert {row[1] for row in rows} == {"omega", "impulse", "attitude", "centre"}
 
 
 def regimes() -> set[str]:
@@ -262,20 +244,3 @@ def test_every_call_is_in_the_reference() -> None:
     """The names of `import taylor_verify` are documented under those names."""
     calls = {f"taylor_verify.{name}" for name in taylor_verify.__all__ if name != "__version__"}
     assert calls <= {name for _, name in PUBLIC}
-
-
-# Docstrings are plain text.
-
-
-def test_marks_of_a_docstring_are_text_and_literals_literal() -> None:
-    """Bars, stars and underscores stay what they are; what is marked as literal is not touched."""
-    plain = configuration().plain
-    assert list(plain(["|x| of x_ and z*, not ``a_*|b|`` nor `load`."])) == [
-        r"\|x\| of x\_ and z\*, not ``a_*|b|`` nor ``load``."
-    ]
-
-
-def test_an_indented_block_of_a_docstring_is_verbatim() -> None:
-    """A formula on lines of its own stays on them, and the text goes on behind it."""
-    lines = list(configuration().plain(["With", "", "    |x|  y", "", "    z", "", "and |x|."]))
-    assert lines == ["With", "", "::", "", "    |x|  y", "", "    z", "", r"and \|x\|."]

@@ -6,7 +6,6 @@ import inspect
 import pickle
 import subprocess
 import sys
-from importlib.metadata import version
 from types import FunctionType
 from typing import Any
 
@@ -16,16 +15,13 @@ from builders.turns import by_turns
 import taylor_verify
 import taylor_verify_reports
 from taylor_verify.batch.failure import Failed
-from taylor_verify.cli import main
-from taylor_verify.explain.explanation import explanation
 from taylor_verify.models.problem import Problem
-from taylor_verify.numbers.precision import Rung, rung
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.recommendation import recommend
-from taylor_verify.tradeoff.setting import setting
 from taylor_verify_reports.claims.claim import Finding
 
 NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
@@ -101,15 +97,6 @@ def test_a_function_goes_to_another_process(function: FunctionType) -> None:
     assert pickle.loads(pickle.dumps(function)) is function
 
 
-def test_the_version_is_that_of_the_distribution(capsys: pytest.CaptureFixture[str]) -> None:
-    """The package, the installed distribution and `--version` have one version."""
-    assert taylor_verify.__version__ == version("taylor-verify")
-    with pytest.raises(SystemExit) as ended:
-        main(["--version"])
-    assert ended.value.code in {0, None}
-    assert capsys.readouterr().out == f"taylor-verify {taylor_verify.__version__}\n"
-
-
 # What they return.
 
 
@@ -177,25 +164,6 @@ def test_many_runs_refuse_a_wrong_call(
     with pytest.raises(error, match=expected) as raised:
         taylor_verify.run_many(**{"scenes": SCENES, **changed})
     assert not isinstance(raised.value, Failed)
-
-
-def test_explain_returns_the_document_of_the_verb() -> None:
-    """The rung is a name or a Rung; the numbers are those of `explain --json`."""
-    document = taylor_verify.explain("euler/spherical", rung("f64"))
-    assert document["rung"] == "f64"
-    assert set(document) == set(explanation("euler/spherical", "f64"))
-    with pytest.raises(ValueError, match="f65"):
-        taylor_verify.explain("euler/spherical", "f65")
-
-
-def test_a_trade_off_measures_what_was_asked_for() -> None:
-    """The points are those of the settings; a number of repeats below one is refused."""
-    asked = [setting("taylor", rung("f32")), setting("taylor", rung("f64"))]
-    trade_off = taylor_verify.tradeoff("euler/rest", asked, repeats=1)
-    assert [p.timed.setting for p in trade_off.points] == asked
-    assert trade_off.repeats == 1
-    with pytest.raises(ValueError, match="expected repeats of at least 1, got 0"):
-        taylor_verify.tradeoff("euler/rest", asked, repeats=0)
 
 
 def test_a_recommendation_has_the_arguments_of_its_room() -> None:

@@ -70,25 +70,6 @@ def test_the_scene_shown_is_a_scene(tmp_path: Path) -> None:
     )
 
 
-def test_the_picture_is_the_published_one() -> None:
-    """Its text says what the picture of the engine board says, with the same number."""
-    (alt, file) = re.findall(r"!\[([^]]*)\]\(([^)]*)\)", README)[0]
-    svg = (ROOT / file).read_text(encoding="utf-8")
-    (wrong,) = re.findall(r"(\d+ %) wrong", alt)
-    (engines,) = re.findall(r"in (\d+) physics engines", alt)
-    assert f"{wrong} wrong" in svg
-    assert f"in {engines} physics engines" in svg
-
-
-def test_what_the_set_up_costs_is_said() -> None:
-    """The sizes that the page names are those that the set-up says on the terminal."""
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    message = " ".join(re.findall(r"@echo '(.*)' >&2", makefile))
-    sizes = re.findall(r"\d+(?:\.\d+)? [MG]B", message)
-    assert len(sizes) == 4
-    assert [size for size in sizes if size not in README] == []
-
-
 @pytest.mark.parametrize("use", USES)
 def test_a_use_leads_further(use: str) -> None:
     """Each of the three uses shows a command and links to the page where it is worked."""

@@ -63,26 +63,6 @@ def test_the_citation_is_one() -> None:
     assert all({"type", "title", "authors"} <= set(each) for each in cited["references"])
 
 
-def test_the_page_of_heinbockel_is_one() -> None:
-    """Wherever Euler's equations in Heinbockel's book have a page, it is page 210."""
-    named = re.compile(r"(?:Heinbockel|Euler's equations).{0,200}?\bpage (\d+)", re.DOTALL)
-    files = [ROOT / "CITATION.cff", *ROOT.glob("*.md"), *ROOT.glob("reports/*.md")]
-    files += [
-        f
-        for kind in ("md", "py")
-        for folder in ("docs", "verify")
-        for f in (ROOT / folder).rglob(f"*.{kind}")
-    ]
-    pages = {
-        str(file.relative_to(ROOT)): set(named.findall(file.read_text(encoding="utf-8")))
-        for file in files
-    }
-    pages = {name: page for name, page in pages.items() if page}
-    assert {"CITATION.cff", "reports/claims.md"} <= set(pages)
-    assert any(name.startswith("verify/") for name in pages)
-    assert set().union(*pages.values()) == {"210"}
-
-
 def test_the_classifiers_are_the_pythons_that_are_allowed() -> None:
     """requires-python, the classifiers and the workflow name the same versions."""
     metadata = project()["project"]
@@ -106,15 +86,6 @@ def test_the_small_set_up_is_a_part_of_the_whole() -> None:
     assert {"heyoka", "numpy", "python-flint", "hatchling"} <= set(small)
     assert small.items() <= whole.items()
     assert len(small) < len(whole) / 4
-
-
-def test_publishing_has_a_group_of_its_own() -> None:
-    """The libraries of the site and of the paper are in no other group, and `make verify` lacks them."""
-    groups = project()["dependency-groups"]
-    names = {re.match(r"[\w-]+", line)[0].lower() for line in groups["publishing"]}
-    assert {"sphinx", "pypandoc-binary", "selenium"} <= names
-    assert names.isdisjoint(pins("requirements-verify.txt"))
-    assert {"include-group": "publishing"} in groups["dev"]
 
 
 def test_the_extra_of_the_second_package_is_that_group() -> None:
@@ -178,15 +149,6 @@ def test_dependabot_watches_actions_and_libraries() -> None:
     assert set(kinds) == {"github-actions", "pip"}
     assert kinds["github-actions"]["directories"] == ["/", "/.github/actions/verify"]
     assert all("interval" in update["schedule"] for update in settings["updates"])
-
-
-def test_the_docs_are_built_of_what_is_there() -> None:
-    """Configuration and requirements are files of the repository, and a warning is an error."""
-    settings = read(ROOT / ".readthedocs.yaml")
-    assert (settings["version"], settings["sphinx"]["fail_on_warning"]) == (2, True)
-    first, second = settings["python"]["install"]
-    files = [settings["sphinx"]["configuration"], first["requirements"], second["path"]]
-    assert all((ROOT / file).exists() for file in files)
 
 
 @pytest.mark.parametrize(

@@ -69,13 +69,6 @@ def test_the_installed_command_lists_the_shipped_scenes(installed: Path, tmp_pat
     assert standard <= set(json.loads(answer)["scenes"])
 
 
-def test_the_installed_copy_is_the_one_that_runs(installed: Path, tmp_path: Path) -> None:
-    """The installed package and its scenes are found inside the folder, not in the checkout."""
-    script = "from taylor_verify.scenes.library import cases_directory; print(cases_directory())"
-    answer = run(installed, tmp_path, sys.executable, "-c", script)
-    assert Path(answer.strip()) == installed.resolve() / "taylor_verify" / "cases"
-
-
 # What another project writes to hold its simulator to the exact motion: two lines a test.
 ANOTHER_PROJECT = """
 import pathlib, shlex, sys

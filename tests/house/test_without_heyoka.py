@@ -232,25 +232,6 @@ def test_tests_that_need_it_are_skipped_with_one_reason(tmp_path: Path) -> None:
     }
 
 
-def test_the_verbs_that_judge_no_solver_of_ours_work(tmp_path: Path) -> None:
-    """`list`, `question`, `exact` and `check` have exit status 0."""
-    scene = taylor_verify.load("euler/spherical")
-    numbers = [[t, *scene.initial.omega] for t in scene.clock.instants]
-    rows = [",".join(str(float(number)) for number in row) for row in numbers]
-    (tmp_path / "mine.csv").write_text("\n".join(["t,w1,w2,w3", *rows]))
-    calls = [
-        ["list"],
-        ["question", "euler/spherical", "--csv"],
-        ["check", "mine.csv", "--scene", "euler/spherical"],
-        ["exact", "euler/generic", "--at", "1"],
-    ]
-    answers = commands(tmp_path, *calls)
-    assert [status for status, *_ in answers] == [0] * len(calls)
-    header, *lines = answers[1][1].splitlines()
-    assert header == "t,w1,w2,w3"
-    assert len(lines) == len(rows)
-
-
 @pytest.mark.parametrize("scene", by_turns(["euler/with-attitude", "kirchhoff/constant-loads"], 2))
 def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
     """Equations, orbit, truth and bounds are those of the exact motion, and a warning names the mend."""

@@ -19,8 +19,8 @@ BEGINNING: Final = re.compile(
     r"|That|The same|Those|Through|To|Towards|Under|Until|Upon|What|When|Where|Wherever|Whether|Which|While"
     r"|Who|Whose|Why|With|Within|Without)\b"
 )
-# Participles, pronouns and verbs that do not say what a variable holds.
-NAMELESS: Final = re.compile(r"_*(found|told|kept|held|seen|looks|said|gone|begun|it)_*")
+# Participles, pronouns and verbs that do not say what a variable has. Held values are a term of the field.
+NAMELESS: Final = re.compile(r"_*(found|told|kept|seen|looks|said|gone|begun|it)_*")
 # Keys of published JSON.
 KEYS: Final = frozenset({("Convention", "found"), ("DefectRow", "told")})
 

@@ -99,21 +99,10 @@ def test_matrices_are_judged_as_they_are(tmp_path: Path) -> None:
     assert attitude.max == pytest.approx(1e-9 * math.sqrt(3 / 2), rel=1e-3)
 
 
-def test_quaternions_have_either_sign(tmp_path: Path) -> None:
-    """q and -q are one attitude, from row to row."""
-    sound = exact_columns(SCENE)
-    signs = [(-1) ** k for k in range(len(sound["t"]))]
-    turned = {
-        name: [v * s if name[0] == "q" else v for v, s in zip(values, signs, strict=True)]
-        for name, values in sound.items()
-    }
-    assert all_pass(checked(tmp_path, SCENE, turned))
-
-
 def test_times_are_the_files_own(tmp_path: Path) -> None:
     """Rows between the scene's samples, beyond its end and before its start are judged."""
     scene = load(SCENE)
-    times = [Fraction(k, 7) * 3 for k in range(-20, 200, 9)]
+    times = [Fraction(k, 7) * 3 for k in range(-20, 200, 21)]
     judgement = checked(tmp_path, SCENE, columns_at(scene, times))
     assert max(times) > scene.clock.instants[-1]
     assert all_pass(judgement)
@@ -165,18 +154,6 @@ def test_the_floor_of_a_velocity_has_that_of_the_states(tmp_path: Path) -> None:
     alone = {name: columns[name] for name in ("t", *OMEGA)}
     omega = by_quantity(checked(tmp_path, "kirchhoff/screw", alone))["omega"]
     assert omega.attainable > both.attainable > 4 * 2**-53
-
-
-def test_shift_of_an_angular_velocity_alone(tmp_path: Path) -> None:
-    """w1 w2 w3 of a solid in a fluid tell how late they are, and what is left."""
-    sound = exact_columns("kirchhoff/screw")
-    columns = {"t": [t + 2**-11 for t in sound["t"]], **{n: sound[n] for n in OMEGA}}
-    judgement = checked(tmp_path, "kirchhoff/screw", columns)
-    omega = by_quantity(judgement)["omega"]
-    assert omega.verdict is Status.FAIL
-    assert omega.time_shift == pytest.approx(2**-11, rel=1e-9)
-    assert omega.residual < 1e-14
-    assert [finding.subject for finding in judgement.conventions] == ["time"]
 
 
 def test_columns_that_the_scene_does_not_track_are_not_compared(tmp_path: Path) -> None:
@@ -258,23 +235,6 @@ def test_numbers_cut_off_in_printing_are_told(tmp_path: Path) -> None:
     assert not any("digits" in note for note in sound.notes)
 
 
-def test_storing_as_float32_is_told(tmp_path: Path) -> None:
-    """A float64 run that was stored as float32 fails on f64, and the note says why; sound ones do not."""
-    columns = exact_columns(SCENE)
-    stored = {n: v if n == "t" else [float(np.float32(x)) for x in v] for n, v in columns.items()}
-    file = write_csv(tmp_path / "mine.csv", stored)
-    judgement = file_judgement(file, SCENE)
-    assert by_quantity(judgement)["omega"].verdict is Status.FAIL
-    assert any(
-        "every number is one of float32, where f64 has 53" in note for note in judgement.notes
-    )
-    # One number of float64 is enough: then it is another fault.
-    stored["w2"][3] = math.nextafter(stored["w2"][3], 1.0)
-    other = checked(tmp_path, SCENE, stored)
-    assert by_quantity(other)["omega"].verdict is Status.FAIL
-    assert not any("float32" in note for note in other.notes)
-
-
 def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
     """The rows there are judged, and the note says where the rest begins, also of a motion backwards."""
     for scene in (SCENE, "euler/backward"):
@@ -298,15 +258,6 @@ def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
     file = write_csv(tmp_path / "mine.csv", columns)
     assert by_quantity(file_judgement(file, scene.name))["omega"].verdict is Status.FAIL
     assert all_pass(file_judgement(file, scene.name, rung="f32"))
-
-
-def test_reference_trajectories_are_files(tmp_path: Path) -> None:
-    """Files of `publish --reference` have 32 digits of the scene's own numbers: f64 is no bound."""
-    from taylor_verify_reports.studies.reference.measure import reference
-
-    columns = reference(load("euler/later-start"))["columns"]
-    file = write_csv(tmp_path / "mine.csv", {n: v[:20] for n, v in columns.items()}, str)
-    assert all_pass(file_judgement(file, "euler/later-start"))
 
 
 # The problem that others solve.
@@ -372,13 +323,6 @@ def test_text_becomes_exact(text: str, value: Fraction) -> None:
     assert exact(np.longdouble(1) / 3) == Fraction(*(np.longdouble(1) / 3).as_integer_ratio())
 
 
-def test_held_numbers_are_right_to_the_bits_asked_for() -> None:
-    """A third is rounded at the precision given, whatever mpmath's own precision is."""
-    with mp.workprec(20):
-        third = as_mpf(Fraction(1, 3), 200)
-    assert abs(Fraction(*map(int, third.as_integer_ratio())) - Fraction(1, 3)) < Fraction(1, 2**200)
-
-
 # Formats.
 
 
@@ -413,14 +357,6 @@ def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
     trajectory = read(file)
     assert trajectory.times == (Fraction(1, 10), Fraction(1))
     assert trajectory.groups["omega"][0] == (Fraction(1, 10), Fraction(0), Fraction(1, 10**30))
-
-
-def test_long_doubles_are_taken_exactly(tmp_path: Path) -> None:
-    """An NPZ of long doubles keeps what a double would lose."""
-    third = np.longdouble(1) / 3
-    np.savez(tmp_path / "mine.npz", t=[0.0], w1=np.array([third]), w2=[0.0], w3=[0.0])
-    (row,) = read(tmp_path / "mine.npz").groups["omega"]
-    assert row[0] == Fraction(*third.as_integer_ratio())
 
 
 # Faults.
@@ -493,17 +429,6 @@ def test_missing_file_and_folder(tmp_path: Path) -> None:
     for name, got in (("none.csv", "no such file"), ("folder.csv", "a folder")):
         with pytest.raises(Refused, match=f"expected a trajectory file, got {got}"):
             read(tmp_path / name)
-
-
-def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
-    """Objects are never unpickled; matrices and complex numbers are no columns."""
-    np.savez(tmp_path / "mine.npz", t=[0.0], w1=np.zeros((2, 2)), w2=[1j], w3=[0.0])
-    with pytest.raises(Refused) as refused:
-        read(tmp_path / "mine.npz")
-    assert len(refused.value.faults) == 2
-    np.savez(tmp_path / "object.npz", t=np.array([{}], dtype=object))
-    with pytest.raises(Refused, match=r"got shape .* of object"):
-        read(tmp_path / "object.npz")
 
 
 def test_truth_of_a_path_that_begins_at_the_origin_is_narrow_enough(tmp_path: Path) -> None:
@@ -615,16 +540,6 @@ def test_command_tells_a_file_without_a_number(
     document = json.loads(capsys.readouterr().out)
     assert document["summary"]["fail"] == len(document["verdicts"])
     assert document["conventions"] == []
-
-
-@pytest.mark.parametrize("arguments", [["--rung", "f65"], ["--scene", "euler/genric"]])
-def test_command_refuses_a_wrong_call(
-    arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A rung or a scene that there is not ends with 2 and a suggestion."""
-    file = write_csv(tmp_path / "mine.csv", exact_columns("euler/generic"))
-    assert main(["check", file, "--scene", "euler/generic", *arguments]) == 2
-    assert "expected" in capsys.readouterr().err
 
 
 def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:

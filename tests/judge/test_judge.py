@@ -16,13 +16,11 @@ from taylor_verify.judge.errors.drifts import drifts
 from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, largest, state_errors
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.gates import index_of_largest, judge
-from taylor_verify.models.problem import pose
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, exit_status, summary
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
@@ -123,14 +121,6 @@ def test_what_left_the_orbit_does_not_come_back() -> None:
     assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, TERMS).status is Status.FAIL
 
 
-def test_no_floor_and_an_error_is_a_fail() -> None:
-    """Where nothing can be lost (a body at rest) any error is infinitely many times the floor."""
-    finding = judge(errors_of([0.0, 1e-300]), np.zeros(2), TERMS)
-    assert finding.status is Status.FAIL
-    assert finding.ratio == math.inf
-    assert judge(errors_of([0.0, 0.0]), np.zeros(2), TERMS).status is Status.PASS
-
-
 # Verdicts.
 
 
@@ -152,20 +142,6 @@ def verdict_of(status: Status, **numbers: float) -> Verdict:
 def test_exit_status_is_green_for_passes_alone(statuses: list[Status], status: int) -> None:
     """0 if all that could run passed, 1 if anything failed, 3 if something is open."""
     assert exit_status([verdict_of(s) for s in statuses]) == status
-
-
-def test_summary_counts_every_status() -> None:
-    """Every status is named in the summary, the vacuous and unavailable ones too."""
-    counts = summary([verdict_of(Status.PASS), verdict_of(Status.VACUOUS)])
-    assert counts == {
-        "pass": 1, "fail": 0, "undecided": 0, "vacuous": 1, "refused": 0, "unavailable": 0
-    }  # fmt: skip
-
-
-def test_row_holds_no_number_that_json_cannot() -> None:
-    """NaN and infinity become null in a row."""
-    row = verdict_of(Status.FAIL, max=math.nan, ratio=math.inf, mean=1.0).row()
-    assert (row["max"], row["ratio"], row["mean"]) == (None, None, 1.0)
 
 
 # Errors.
@@ -197,17 +173,6 @@ def test_attitude_error_is_the_angle_between_two_frames(angle: float) -> None:
         _, attitude = state_errors(scene_of("euler", "attitude"), truth, answer)
         # 60 digits less the 30 that the cosine loses at the smallest angle.
         assert attitude.values[0] == pytest.approx(float(angle), rel=1e-15)
-
-
-def test_quaternion_and_its_negative_are_one_attitude() -> None:
-    """The sign of an answer's quaternion changes no error."""
-    problem = pose(load("euler/with-attitude"), rung("f64"))
-    sound = Taylor().solve(problem)
-    flipped = replace(
-        sound, quantities=dict(sound.quantities) | {"quaternion": -sound.quantities["quaternion"]}
-    )
-    one, other = sound.motion(200)["attitude"], flipped.motion(200)["attitude"]
-    assert np.array_equal(one, other)
 
 
 def test_arc_length_of_a_steady_screw_is_speed_times_time() -> None:
@@ -251,17 +216,6 @@ def test_an_answer_that_runs_away_does_not_hide_its_own_drift() -> None:
         for _, errors in drifts(scene, start, truth, answer, answer.quantities, 30):
             assert float(errors.values[0]) == pytest.approx(0.01, rel=1e-9)
             assert float(errors.values[-1]) == pytest.approx(1e56, rel=1e-9)
-
-
-def test_energy_alone_is_not_conserved_under_load() -> None:
-    """What the balance closes is not trivial: T itself changes by more than a tenth of its value."""
-    scene = load("euler/constant-moment")
-    exact = solution(scene)
-    with mp.workdps(30):
-        omega = exact.motion([Fraction(0), *scene.clock.elapsed], 20)["omega"]
-        I = np.array([[mp.convert(v) for v in row] for row in scene.body.inertia], dtype=object)
-        before, *after = (w @ I @ w for w in omega)
-    assert max(abs(T / before - 1) for T in after) > 0.1
 
 
 # The floor.
@@ -331,7 +285,7 @@ def test_truth_that_does_not_settle_is_undecided(monkeypatch: pytest.MonkeyPatch
 
     with pytest.raises(Unsettled):
         Doubtful().motion([Fraction(1)], 20)
-    monkeypatch.setattr(gated, "solution", lambda scene: Doubtful())
+    monkeypatch.setattr(gated, "truth", lambda scene, digits: Doubtful())
     verdicts = run("euler/generic", "taylor", "f64").verdicts
     assert [v.verdict for v in verdicts] == [Status.UNDECIDED]
     assert exit_status(verdicts) == 3
@@ -345,7 +299,7 @@ def test_one_ulp_too_many_in_one_sample_is_seen_in_the_ratio() -> None:
         states[50] *= 1 + 2.0**-40
         return states
 
-    (start, omega, T, H2) = run("euler/generic", Callback(moved), "f64").verdicts
+    (start, omega, T, H2) = run("euler/generic", Callback(moved), "f64", causes=False).verdicts
     assert start.verdict is Status.PASS
     assert {omega.verdict, T.verdict, H2.verdict} == {Status.FAIL}
     assert H2.max == pytest.approx(2 * 2.0**-40, rel=1e-3)

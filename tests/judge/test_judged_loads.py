@@ -9,21 +9,26 @@ import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import pytest
+from builders.integrators import step
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
-from mpmath import mp
+from mpmath import mp, mpf
 
-from taylor_verify import check, explain, tradeoff
+from taylor_verify import check
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
-from taylor_verify.judge.files.judgement import NO_BALANCES, NO_CONVENTIONS
-from taylor_verify.records.faults import Refused
+from taylor_verify.judge.files.judgement import NO_CONVENTIONS
+from taylor_verify.judge.load_notes import NO_BALANCES, NOTHING_CONSERVED
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.tradeoff.setting import setting
+from taylor_verify.tradeoff.trade_off import trade_off
 
 GROUPS = {"euler": ("w",), "kirchhoff": ("x", "y")}
 ROWS = 6
@@ -31,7 +36,8 @@ ROWS = 6
 STEPS = 4
 TOLERANCE = 1e-3
 
-Rates = Callable[[Any, list[Any]], list[Any]]
+# The rates at a time in the step that begins at the first argument.
+Rates = Callable[[Any, Any, list[Any]], list[Any]]
 
 RIGID = euler(["r31*w2 + sin(2*t)/3", "-r32*tanh(t) - w2/20", "0.3*r11 - 0.1*w3*norm(w1, w2)"], "4")
 SOLID = kirchhoff(
@@ -39,6 +45,9 @@ SOLID = kirchhoff(
     ["-w1/5", "0.1*sin(t)*r21", "-w3/10"],
     "3",
 )
+SWITCH = "19/16"  # a step of `by_steps` ends here
+SWITCHED = euler([f"0.4 if t < {SWITCH} else -0.3", "-0.05*w2", f"0.5*step(t - {SWITCH})"], "4")
+TOP = euler(["r33/4 - r32/3", "r31/3 - r33/4", "(r32 - r31)/4"], "4")
 BY_CLOCK = euler(["0.4*sin(2*t)", "-0.05*w2", "0.3*exp(-t)"], "4")
 
 
@@ -71,23 +80,10 @@ def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
         for begin, end in pairwise(instants):
             h = (end - begin) / STEPS
             for k in range(STEPS):
-                y = step(rates, begin + k * h, y, h)
+                time = begin + k * h
+                y = step(partial(rates, time), time, y, h)
             rows.append(y)
         return rows
-
-
-def step(rates: Rates, t: Any, y: list[Any], h: Any) -> list[Any]:
-    def moved(slope: list[Any], share: Any) -> list[Any]:
-        return [a + share * s for a, s in zip(y, slope, strict=True)]
-
-    first = rates(t, y)
-    second = rates(t + h / 2, moved(first, h / 2))
-    third = rates(t + h / 2, moved(second, h / 2))
-    fourth = rates(t + h, moved(third, h))
-    return [
-        a + h / 6 * (p + 2 * q + 2 * r + s)
-        for a, p, q, r, s in zip(y, first, second, third, fourth, strict=True)
-    ]
 
 
 def with_moment(scene: Scene, texts: Sequence[str]) -> Scene:
@@ -113,26 +109,51 @@ def wrong_sign(scene: Scene) -> Scene:
     return with_moment(scene, [f"-({m[0]})", str(m[1]), str(m[2])])
 
 
-def of_text(scene: Scene) -> Rates:
-    return Evaluated(scene).rates
+def clocked(scene: Scene, later: int = 0, stops: bool = False) -> Rates:
+    """The rates, for conditions with the clock of a step so many later; or with one that stops."""
+    equations, start = Evaluated(scene), value(scene.clock.start)
+    span = value(scene.clock.instants[1] - scene.clock.start) / STEPS
 
-
-def late(scene: Scene) -> Rates:
-    """The rates with a clock that stands still over each step, as a load that is set once a step has it."""
-    rates, span = Evaluated(scene).rates, value(scene.clock.instants[1] - scene.clock.start) / STEPS
-    begin = value(scene.clock.start)
-
-    def stepped(t: Any, y: list[Any]) -> list[Any]:
-        return rates(begin + mp.floor((t - begin) / span * (1 - mp.eps * 8)) * span, y)
+    def stepped(begin: Any, t: Any, y: list[Any]) -> list[Any]:
+        equations.clock = start if stops else begin + span * (later + mpf(1) / 2)
+        return equations.rates(t, y)
 
     return stepped
 
 
-TWINS: Mapping[str, Callable[[Scene], Rates]] = {
-    "sign": lambda scene: of_text(wrong_sign(scene)),
-    "space axes": lambda scene: of_text(in_space(scene)),
-    "load of the step before": late,
+def of_text(scene: Scene) -> Rates:
+    return clocked(scene)
+
+
+def once_a_step(scene: Scene) -> Rates:
+    """The rates with a clock that stands still over each step, as a load that is set once a step has it."""
+    rates = of_text(scene)
+    return lambda begin, _, y: rates(begin, begin, y)
+
+
+def twice(scene: Scene) -> Scene:
+    """The scene with twice its moment, as where a weight is in the loads and in the energy."""
+    assert scene.body.loads is not None
+    ((_, m),) = scene.body.loads.vectors
+    return with_moment(scene, [f"2*({entry})" for entry in m])
+
+
+Twin = tuple[Scene, Callable[[Scene], Rates], set[str]]
+TWINS: Mapping[str, Twin] = {
+    "sign": (BY_CLOCK, lambda scene: of_text(wrong_sign(scene)), {"omega", "T"}),
+    "space axes": (BY_CLOCK, lambda scene: of_text(in_space(scene)), {"omega", "T"}),
+    "load of the step before": (BY_CLOCK, once_a_step, {"omega", "T"}),
+    "switch missed": (SWITCHED, lambda scene: clocked(scene, stops=True), {"omega", "T"}),
+    "switch late by a step": (SWITCHED, lambda scene: clocked(scene, later=-1), {"omega", "T"}),
+    "potential twice": (TOP, lambda scene: of_text(twice(scene)), {"omega", "T+V"}),
 }
+
+
+def failures(scene: Scene, file: Path) -> set[str]:
+    """The quantities that fail the tolerance."""
+    judged = check(scene, file, partial=True, tolerance=TOLERANCE)
+    assert not judged.causes
+    return {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
 
 
 @pytest.mark.parametrize("scene", [RIGID, SOLID, BY_CLOCK], ids=["rigid", "solid", "clock"])
@@ -162,23 +183,33 @@ def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path
 
 
 @pytest.mark.parametrize("twin", TWINS)
-def test_a_wrong_load_fails_the_state_and_the_energy(twin: str, tmp_path: Path) -> None:
-    """What passes with the right load fails with another sign, in other axes, or late by a step."""
-    scene = with_rows(BY_CLOCK)
+def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
+    """What passes with the right load fails the state, and the work or the conserved energy."""
+    scene, rates, named = TWINS[twin]
+    scene = with_rows(scene)
     right = written(tmp_path / "right.csv", scene, by_steps(scene, of_text(scene)))
-    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, TWINS[twin](scene)))
+    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, rates(scene)))
     assert check(scene, right, partial=True, tolerance=TOLERANCE).passed
+    assert named <= failures(scene, wrong)
+
+
+def test_a_weight_counted_twice_leaves_the_vertical_momentum(tmp_path: Path) -> None:
+    """T + V fails where the potential is doubled, and the momentum along the vertical passes."""
+    scene = with_rows(TOP)
+    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, of_text(twice(scene))))
     judged = check(scene, wrong, partial=True, tolerance=TOLERANCE)
-    failed = {v.quantity for v in judged.verdicts if v.verdict is Status.FAIL}
-    assert {"omega", "T"} <= failed
-    assert not judged.causes
+    by_name = {v.quantity: v for v in judged.verdicts}
+    assert by_name["H_along"].verdict is Status.PASS
+    assert "polynomial zero" in str(by_name["T+V"].reason)
 
 
-def test_explain_and_tradeoff_refuse_written_loads() -> None:
-    """One sentence says what they do not know, and what does."""
-    for ask in (explain, tradeoff):
-        with pytest.raises(Refused, match="loads that its scene writes down"):
-            ask(BY_CLOCK)
+def test_work_and_precision_are_measured_under_loads() -> None:
+    """A finer tolerance has a smaller error, and what the loads conserve has a drift as small."""
+    settings = [setting(f"scipy:DOP853?rtol={t}&atol={t}", rung("f64")) for t in ("1e-5", "1e-9")]
+    coarse, fine = trade_off(TOP, settings, repeats=1).points
+    assert 0 < fine.error < coarse.error / 100
+    assert fine.accuracy.drift is not None
+    assert fine.accuracy.drift < 100 * fine.error
 
 
 def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Path) -> None:
@@ -190,4 +221,16 @@ def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Pat
     judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
     assert judged.passed
     assert NO_BALANCES in judged.remarks
-    assert "T" not in {verdict.quantity for verdict in judged.verdicts}
+    assert NOTHING_CONSERVED in judged.remarks
+    names = {verdict.quantity for verdict in judged.verdicts}
+    assert "T" in names
+    assert names.isdisjoint(("H2", "H_space"))
+
+
+def test_energy_without_balance_is_the_exact_work(tmp_path: Path) -> None:
+    """T against T of the exact motion fails where the work is wrong, though no arc can begin at a row."""
+    scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
+    right = written(tmp_path / "right.csv", scene, by_steps(scene, of_text(scene)))
+    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, of_text(wrong_sign(scene))))
+    assert check(scene, right, partial=True, tolerance=TOLERANCE).passed
+    assert "T" in failures(scene, wrong)

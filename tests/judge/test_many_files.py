@@ -24,7 +24,7 @@ from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting import order as order_picture
 from taylor_verify.plotting.picture import plotting
-from taylor_verify.records.answers import Order, Stall
+from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
@@ -136,22 +136,6 @@ def test_an_attitude_of_a_lower_order_is_seen(scene: Path, tmp_path: Path) -> No
     assert any(
         "attitude has a lower order (1.0) than omega (4.0)" in note for note in judgement.notes
     )
-
-
-def test_in_float32_the_best_step_is_not_the_smallest(scene: Path, tmp_path: Path) -> None:
-    """Judged as float32 it is roundoff that takes over; judged as float64 it is something else."""
-    steps = [0.5 * 2.0**-k for k in range(9)]
-    made = [
-        write(tmp_path / f"h{step}.csv", rows_of(scene, rk4, step, np.float32)[:, :3])
-        for step in steps
-    ]
-    honest = order_of(taylor_verify.check(scene, made, "f32", partial=True), "omega")
-    assert honest.best_step is not None
-    assert honest.best_step > steps[-1]
-    assert honest.stall is Stall.ROUNDOFF
-    assert "roundoff takes over" in honest.sentence
-    leak = order_of(taylor_verify.check(scene, made, "f64", partial=True), "omega")
-    assert leak.stall is Stall.OTHER
 
 
 def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> None:
@@ -295,21 +279,6 @@ def test_a_list_of_files_has_one_judgement(judged: FilesJudgement, files: list[s
     assert "omega: order 4.0" in judged._repr_html_()
 
 
-def test_a_file_in_a_list_is_judged_as_it_is_alone(
-    scene: Path, judged: FilesJudgement, files: list[str]
-) -> None:
-    """The verdicts of the third file are those of `check` of this file."""
-    alone = taylor_verify.check(scene, files[2], partial=True)
-    assert judged.files[2].verdicts == alone.verdicts
-
-
-def test_one_file_in_a_list_shows_no_order(scene: Path, files: list[str]) -> None:
-    """It is judged, and a sentence says why there is no order."""
-    judgement = taylor_verify.check(scene, files[:1], partial=True)
-    assert judgement.order == ()
-    assert judgement.notes == ("no order of convergence: one file alone shows none",)
-
-
 @pytest.mark.parametrize(
     ("asked", "options", "sentence"),
     [
@@ -383,14 +352,6 @@ def test_the_command_says_the_order_first(scene: Path, files: list[str], capsys:
     places = [out.index(file) for file in files]
     assert places == sorted(places)
     assert "the steps are from the names of the files; --steps says others" in out
-
-
-def test_files_may_stand_on_both_sides_of_the_options(
-    scene: Path, files: list[str], capsys: Captured
-) -> None:
-    """argparse takes them in one place alone."""
-    _, out, _ = called(capsys, files[0], "--scene", scene, *files[1:], "--json")
-    assert [one["file"]["name"] for one in json.loads(out)["files"]] == files
 
 
 def test_the_worst_file_decides_the_exit_status(

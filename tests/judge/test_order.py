@@ -130,15 +130,6 @@ def test_steps_that_are_not_asymptotic_are_no_wrong_steps() -> None:
     assert " at larger steps)" in measured.sentence
 
 
-def test_a_lower_order_that_shows_at_small_steps_is_the_order() -> None:
-    """h^4 with a little of h: the larger steps look like 4, and the order is 1."""
-    steps = [0.8 * 2.0**-k for k in range(14)]
-    measured = read([h**4 + 1e-6 * h for h in steps], steps, floor=1e-30)
-    assert measured.order == pytest.approx(1, abs=0.1)
-    assert "(4.0, 4.0" in measured.sentence
-    assert measured.smallest == steps[-1]
-
-
 def test_disagreement_without_one_culprit_has_no_order() -> None:
     """Errors that zigzag from file to file: all local orders are listed, and none is the order."""
     errors = [e * (5 if k % 2 else 1) for k, e in enumerate(power(4))]
@@ -186,11 +177,6 @@ def test_an_answer_without_any_error_has_no_order() -> None:
         measured = read(errors)
         assert measured.order is None
         assert measured.sentence.endswith("because the error is near roundoff at every step")
-
-
-def test_an_attitude_is_told_in_radians() -> None:
-    """Digits belong to a relative error; an angle has radians."""
-    assert "with an error of 3.0e-09 rad" in read([1e-6, 1e-7, 3e-9], unit="rad").sentence
 
 
 def test_more_steps_than_rows_raise_the_floor() -> None:

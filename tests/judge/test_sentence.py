@@ -172,14 +172,6 @@ def test_a_loss_of_energy_is_told_from_a_gain(tmp_path: Path) -> None:
     assert "a steady gain" in gained.sentence
 
 
-def test_a_file_that_conserves_is_told_so() -> None:
-    """The conserved quantities of a late file are right, and the sentence counts their digits."""
-    assert re.fullmatch(
-        r"T: 15 digits are kept up to t = 100 \(largest error \S+\); what is left is roundoff",
-        judged("delayed")["T"].sentence,
-    )
-
-
 def test_a_printed_start_is_no_wrong_start() -> None:
     """A first row that is wrong by the digits of the file alone is no wrong start."""
     start = judged("float32")[INITIAL]
@@ -204,13 +196,6 @@ def test_since_is_the_first_sample_above_its_bound() -> None:
     assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in verdict.sentence
     passed = replace(verdict, verdict=Status.PASS, since=None)
     assert "within the tolerance of 0.025" in passed.sentence
-
-
-def test_a_lost_number_is_above_every_bound() -> None:
-    """NaN begins the time since when an answer is wrong."""
-    errors = np.array([0.0, np.nan, 0.0])
-    verdict = diagnosed(row(Status.FAIL, max=None), np.arange(3.0), 0.0, errors, np.ones(3))
-    assert (verdict.since, verdict.error_kind) == (1.0, ErrorKind.NOT_FINITE)
 
 
 def test_a_truth_that_is_too_wide_has_no_digits() -> None:
@@ -238,35 +223,6 @@ def test_a_power_of_time_is_read_from_the_errors(power: float, scale: float) -> 
     assert not is_bounded(elapsed, scale * swing * elapsed**power)
     assert power_of_time(elapsed, scale * swing) is None
     assert power_of_time(elapsed, scale * np.where(elapsed < 100, 1.0, 1e4)) is None
-
-
-def test_an_error_that_vanishes_for_a_while_has_no_power() -> None:
-    """Zeros have no logarithm: a part of the time without an error shows no power."""
-    elapsed = np.linspace(0, 200, 401)
-    assert power_of_time(elapsed, np.where(elapsed < 50, 0.0, elapsed)) is None
-
-
-@pytest.mark.parametrize(("spread", "expected"), [(1.05, 1.0), (1.25, None)])
-def test_a_power_is_told_where_its_interval_is_narrow(
-    spread: float, expected: float | None
-) -> None:
-    """Five sizes that lie alternately above and below a line leave 95 % of the slope within 0.2, or not."""
-    elapsed = np.geomspace(1 / 32, 1, 101)
-    part = np.minimum(np.arange(101) // 20, 4)
-    power = power_of_time(elapsed, elapsed * spread ** ((-1.0) ** part))
-    assert power == (expected if expected is None else pytest.approx(expected, abs=0.1))
-
-
-def test_a_constant_error_never_falls_below_nine_tenths_of_its_largest() -> None:
-    """An error that reaches nine tenths is constant, one that falls below them is not."""
-    assert is_constant(np.array([1.0, 0.9, 1.0, 0.95, 1.0]))
-    assert not is_constant(np.array([1.0, 0.9 - 2**-52, 1.0, 0.95, 1.0]))
-
-
-def test_five_samples_in_each_quarter_show_a_bound() -> None:
-    """Twenty equal errors are bounded; of nineteen, a quarter has four."""
-    assert is_bounded(np.linspace(0, 1, 20), np.ones(20))
-    assert not is_bounded(np.linspace(0, 1, 19), np.ones(19))
 
 
 def test_few_samples_show_no_course() -> None:

@@ -22,7 +22,7 @@ from taylor_verify.check import check
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.errors.shift import LEAVES, Shift, time_shifts
+from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
@@ -201,17 +201,6 @@ def test_a_drift_is_fitted_without_the_rows_that_do_not_share_it() -> None:
         )
 
 
-def test_a_shift_that_few_rows_share_is_no_cause() -> None:
-    """No shift is constant if a quarter of the rows is late."""
-
-    def course(t: float) -> Fraction:
-        return Fraction(1, 1000) if t % 2 == 0 else Fraction(0)
-
-    shift = shifts_of("euler/with-attitude", course, samples=41)["omega"]
-    assert shift is not None
-    assert shift.kind is Kind.WANDERING
-
-
 def test_a_third_of_an_error_along_the_orbit_is_no_clock() -> None:
     """An error of which a shift leaves a third is a wrong equation, and not a clock that runs fast."""
     scene, exact = asked("euler/generic", 41)
@@ -219,16 +208,6 @@ def test_a_third_of_an_error_along_the_orbit_is_no_clock() -> None:
     error = late["omega"] - exact.motion(scene.clock.elapsed, DIGITS)["omega"]
     third = max(np.linalg.norm(error.astype(float), axis=1)) / 3
     shift = judged(scene, exact, pushed(scene, late, third))["omega"]
-    assert shift is not None
-    assert shift.kind is Kind.NONE
-
-
-def test_an_answer_that_stands_still_has_no_clock() -> None:
-    """An omega that never changes is not called a clock that runs slow by 1."""
-    scene, exact = asked("euler/generic", 41)
-    truth = exact.motion(scene.clock.elapsed, DIGITS)
-    still = np.array([truth["omega"][0]] * len(truth.radius), dtype=object)
-    shift = judged(scene, exact, Motion({"omega": still}, truth.radius))["omega"]
     assert shift is not None
     assert shift.kind is Kind.NONE
 
@@ -300,13 +279,6 @@ def test_where_omega_rests_no_shift_explains_anything(name: str) -> None:
     assert shift is not None
     assert (shift.kind, shift.time_shift) == (Kind.NONE, 0.0)
     assert shift.residual > 0
-
-
-def test_the_truth_itself_has_no_error_and_no_shift() -> None:
-    """The truth has no shift and no residual to explain."""
-    for shift in shifts_of("kirchhoff/whole-motion", lambda t: Fraction(0)).values():
-        assert shift is not None
-        assert (shift.kind, shift.time_shift, shift.residual) == (Kind.NONE, 0.0, 0.0)
 
 
 def test_no_number_has_no_shift() -> None:
@@ -429,13 +401,6 @@ def test_every_route_knows_the_width_of_each_quantity(route: str) -> None:
     assert any(a != b for a, b in zip(*widths, strict=True))
 
 
-def test_a_motion_without_widths_of_its_own_has_that_of_its_rows() -> None:
-    """`radius_of` falls back to `radius`."""
-    rows = np.array([[mpf(1)] * 3], dtype=object)
-    motion = Motion({"omega": rows}, np.array([mpf(2)], dtype=object))
-    assert list(motion.radius_of("omega")) == [2]
-
-
 @pytest.mark.parametrize("stray", [False, True])
 def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     stray: bool, tmp_path: Path
@@ -458,13 +423,6 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual is not None
     # Rounding to doubles is left, of Omega and of the times.
     assert omega.residual == omega.remains <= 1e-13
-
-
-@pytest.mark.parametrize(("first", "begins"), [(LEAVES, None), (1.01 * LEAVES, 1.01 * LEAVES)])
-def test_a_drift_that_begins_near_zero_begins_right(first: float, begins: float | None) -> None:
-    """Up to a tenth of the largest shift, the first one is not told."""
-    shift = Shift(1.0, 0.0, Kind.DRIFTING, 0.0, 1.0, (0.0, 1.0), (first, 1.0), (first, 1.0))
-    assert shift.terms().begins == begins
 
 
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])

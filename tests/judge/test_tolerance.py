@@ -6,7 +6,6 @@ import json
 import math
 import sys
 from dataclasses import replace
-from fractions import Fraction
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -22,13 +21,10 @@ from taylor_verify.batch.expectations import compare_with_expectations
 from taylor_verify.cli import main
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.gates import GATE_FACTOR, judge
-from taylor_verify.judge.tolerances import tolerances
-from taylor_verify.records import store
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
 from taylor_verify.testing.plugin import SolverGate
-from taylor_verify.words.page import counts
 
 Captured = pytest.CaptureFixture[str]
 COARSE = "scipy:RK45?rtol=1e-6"
@@ -145,12 +141,6 @@ def gate(
     return judge(*plain(errors, width, attainable), tolerance)
 
 
-def test_a_nan_meets_no_tolerance() -> None:
-    """A single sample that is no number fails, however large the tolerance."""
-    assert gate([0.0, math.nan, 0.0], tolerance=0.9).status is Status.FAIL
-    assert gate([0.0, math.inf], tolerance=0.9).status is Status.FAIL
-
-
 def test_a_truth_wider_than_a_sixteenth_of_the_tolerance_is_undecided() -> None:
     """The row is undecided, whether the error is within the tolerance or not."""
     assert gate([0.0], width=1e-8 / 16).status is Status.PASS
@@ -235,15 +225,6 @@ def test_a_name_that_is_no_quantity_is_refused_with_those_there_are(
     assert words in capsys.readouterr().err
 
 
-def test_of_several_scenes_a_name_is_that_of_any() -> None:
-    """`omega` of a rigid body and `impulse` of a solid in a fluid may be named together."""
-    scenes = [taylor_verify.load(name) for name in SCENES]
-    asked = tolerances({"omega": 1e-8, "impulse": Fraction(1, 1000), "y3": 1e-9}, scenes)
-    assert [asked.of(name) for name in ("omega", "impulse", "y3", "T")] == [1e-8, 1e-3, 1e-9, None]
-    with pytest.raises(ValueError, match=r"expected some of omega, .*, got impulse @ tolerance"):
-        tolerances({"impulse": 1e-8}, scenes[:1])
-
-
 # All ways agree.
 
 PROGRAM = """
@@ -314,21 +295,6 @@ def test_the_expected_verdicts_are_those_of_the_ordinary_bounds() -> None:
     agreement = compare_with_expectations([failed])
     assert agreement.mismatches == ()
     assert agreement.exit_status == 1
-
-
-def test_a_page_says_that_a_tolerance_has_judged() -> None:
-    """The pages of a report explain the bounds of the arithmetic: rows without them are counted."""
-    (row, *others) = taylor_verify.run("euler/rest").verdicts
-    assert "tolerance" not in counts([row, *others])
-    tolerated = replace(row, tolerance=1e-8)
-    assert "**1** of them were judged by a tolerance" in counts([tolerated, *others])
-
-
-def test_what_is_stored_of_an_ordinary_row_names_no_tolerance() -> None:
-    """Published rows stay what they were; a row with a tolerance has it."""
-    (row, *_) = taylor_verify.run("euler/rest").verdicts
-    assert "tolerance" not in store.row(row)
-    assert store.row(replace(row, tolerance=1e-8))["tolerance"] == 1e-8
 
 
 @pytest.mark.parametrize(

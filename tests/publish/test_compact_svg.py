@@ -85,14 +85,6 @@ def test_what_is_referred_to_keeps_its_name(drawn: str) -> None:
     assert {a or b for a, b in used} == set(targets)
 
 
-def test_words_keep_their_numbers() -> None:
-    """A label is text and no coordinate: none of its digits goes."""
-    svg = f'{HEAD}<title>0.123456</title><text x="1.23456">0.98765</text></svg>'
-    for made in (compact(svg), smaller(compact(svg))):
-        assert "0.123456" in made
-        assert '<text x="1.23">0.98765</text>' in made
-
-
 @given(st.lists(st.tuples(st.floats(-999, 999), st.floats(-999, 999)), min_size=2, max_size=9))
 def test_a_path_keeps_its_corners(corners: list[tuple[float, float]]) -> None:
     """Whatever the numbers, large, small or in powers of ten, each corner is where it was."""

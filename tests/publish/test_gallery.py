@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
-from math import floor, inf, log, nan
+from math import floor, inf, log
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +20,6 @@ from matplotlib.ticker import FixedLocator
 from taylor_verify.cli import main
 from taylor_verify.plotting import log_axes
 from taylor_verify.plotting.picture import Picture, plotting
-from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery import page as gallery
@@ -44,12 +42,6 @@ def shown() -> tuple[gallery.Shown, ...]:
 
 
 # Errors
-
-
-def test_the_line_is_the_largest_error_so_far() -> None:
-    """The line never falls, has values of errors, and ends at the largest."""
-    points = [(1.0, 2.0), (2.0, 0.5), (3.0, 4.0), (4.0, 1.0)]
-    assert errors_over_time.so_far(points) == [(1.0, 2.0), (2.0, 2.0), (3.0, 4.0), (4.0, 4.0)]
 
 
 def test_what_a_logarithm_cannot_show_is_left_out() -> None:
@@ -77,39 +69,6 @@ def test_the_powers_are_those_of_brouwers_law() -> None:
     assert slopes == pytest.approx([0.5, 1.5])
 
 
-def test_a_record_of_the_state_alone_has_one_panel() -> None:
-    """A record without gates on conserved quantities has a single panel."""
-    record = stored().records("manufactured/euler-resonance")["f64"]
-    alone = {**record, "gates": [g for g in record["gates"] if g["quantity"] == "omega"]}
-    panels = errors_over_time.panels_of(errors_over_time.series([alone]))
-    assert [panel.quantity for panel in panels] == ["omega"]
-
-
-def test_shifts_are_those_of_rows_that_have_one() -> None:
-    """No number, no shift or a shift that explains nothing: no line. The best explained comes first."""
-    row = Verdict(
-        "euler/a",
-        "a",
-        "f64",
-        "control",
-        "omega",
-        Status.FAIL,
-        "reached the last sample",
-        **{"max": 1e-3, "residual": 1e-4, "time_shift": 0.5, "shift": "constant"},
-    )
-    rows = [
-        row,
-        replace(row, solver="b", residual=1e-9),
-        replace(row, solver="c", shift="none"),
-        replace(row, solver="d", max=None),
-        replace(row, solver="e", residual=nan),
-        replace(row, solver="f", residual=None, time_shift=None, shift=None),
-    ]
-    assert [one["solver"] for one in shifts.series(rows)] == ["b", "a"]
-    with pytest.raises(ValueError, match="expected an error with its shift of time"):
-        shifts.picture(rows[2:], "controls")
-
-
 def test_the_half_millisecond_is_found() -> None:
     """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
     rows = {row["solver"]: row for row in shifts.series(CONTROLS.load(stored().folder).verdicts)}
@@ -131,12 +90,6 @@ def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
             assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
         assert (np.diff(z) > 0).all()
         assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
-
-
-def test_a_body_without_a_quartic_is_refused() -> None:
-    """Only Clebsch's free body has one."""
-    with pytest.raises(ValueError, match=r"expected a quartic .* @ kirchhoff/general-body"):
-        potential.picture([reports.portrait_without_run("kirchhoff/general-body")], "general-body")
 
 
 # The whole gallery

@@ -1,6 +1,5 @@
 """Pictures: every solver is told from the others, nothing false is joined, no name hides another."""
 
-import json
 import subprocess
 import sys
 from base64 import b64decode
@@ -26,11 +25,8 @@ from taylor_verify.plotting.style import (
     PAGE_WIDTH,
     kind_of,
     look_of,
-    look_of_line,
     look_of_rung,
 )
-from taylor_verify.plotting.wording import power_of_ten
-from taylor_verify.records.precisions import bits_of, place_of_rung
 from taylor_verify.tradeoff.pictures import trade
 from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
 
@@ -133,25 +129,6 @@ def test_every_family_has_its_own_colour_and_marker() -> None:
     assert len(pairs) == len(styles) >= 24
 
 
-def test_neighbours_differ_in_grey() -> None:
-    """Families next to each other in one panel, and rungs on the ladder, differ by 10 in lightness.
-
-    Ten of CIE lightness is one step of value in Munsell's scale, on which neighbours are told apart.
-    """
-    ladder = [look_of_rung(rung).colour for rung in RUNGS[:4]]
-    kinds = [[entry[1] for entry in kind.entries] for kind in KINDS]
-    lines = [look_of_line(i).colour for i in range(12)]
-    for colours in (ladder, *kinds, lines):
-        for one, other in pairwise(colours):
-            assert abs(lightness(one) - lightness(other)) >= 10
-
-
-def test_a_longer_rung_is_darker() -> None:
-    """Lightness falls along the ladder of precision."""
-    shades = [lightness(look_of_rung(rung).colour) for rung in RUNGS]
-    assert shades == sorted(shades, reverse=True)
-
-
 def test_lines_and_text_stand_out_from_paper() -> None:
     """Lines have the contrast of 3 and text that of 4.5, which WCAG 2.1 asks for (1.4.11, 1.4.3)."""
     names = [*OTHERS, *(f"unknown {i}" for i in range(50))]
@@ -188,12 +165,6 @@ def test_a_solver_looks_the_same_however_it_is_set(name: str, same: str) -> None
     assert kind_of(name) == kind_of(same)
 
 
-def test_a_longer_name_is_another_solver() -> None:
-    """moser-veselov is not taken for its preprocessed kin, whose name contains it."""
-    plain, preprocessed = "geometric moser-veselov", "geometric preprocessed-moser-veselov"
-    assert look_of(plain, "f64") != look_of(preprocessed, "f64")
-
-
 def test_a_program_of_ones_own_borrows_no_look() -> None:
     """A command that names taylor or SciPy is still somebody's program."""
     known = {(look.colour, look.marker) for look in (look_of(n, "f64") for n in OTHERS)}
@@ -222,12 +193,6 @@ def test_an_unknown_look_is_the_same_in_every_process() -> None:
     }
     assert len(printed) == 1
     assert "Look(" in printed.pop()
-
-
-def test_rungs_are_in_order_of_their_bits() -> None:
-    """The ladder's order and the bits of a significand agree, and what is no rung has no bits."""
-    assert sorted(RUNGS, key=place_of_rung) == sorted(RUNGS, key=bits_of) == list(RUNGS)
-    assert bits_of("double") == bits_of("mp") == 0
 
 
 # What is joined
@@ -434,17 +399,6 @@ def test_two_drawings_are_the_same_bytes(tmp_path: Path) -> None:
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
 
 
-def test_a_trade_off_has_two_pictures_in_two_formats(tmp_path: Path) -> None:
-    """The pictures are SVG and PDF with the name of the scene."""
-    files = trade.draw(document(family("taylor f64", "f64", 0.01, 9.0)), tmp_path)
-    assert [path.name for path in files] == [
-        f"euler-generic-{what}.{ending}"
-        for what in ("time", "evaluations")
-        for ending in ("svg", "pdf")
-    ]
-    assert sorted(files) == sorted(tmp_path.iterdir())
-
-
 def test_a_file_is_text_without_a_date(tmp_path: Path) -> None:
     """The SVG parses, its words are text, it tells what it shows; neither it nor the PDF has a date."""
     picture = trade.pictures(few("taylor", "scipy"))[0]
@@ -503,18 +457,6 @@ def test_without_matplotlib_the_error_says_what_to_install(
     assert not (tmp_path / "there").exists()
 
 
-def test_alt_texts_need_no_matplotlib() -> None:
-    """A page can be made anew where matplotlib is missing: names and alt texts are without it."""
-    rows = json.dumps(document(family("taylor f64", "f64", 0.01, 9.0)))
-    code = (
-        "import sys, json; sys.modules['matplotlib'] = None\n"
-        "from taylor_verify.tradeoff.pictures import trade\n"
-        f"print([p.alt for p in trade.pictures(json.loads({rows!r}))])"
-    )
-    made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "taylor f64" in made.stdout
-
-
 def test_the_alt_text_has_the_numbers() -> None:
     """The alternative text names the fastest and the most accurate setting, and counts failures."""
     time = trade.pictures(many())[0].alt
@@ -522,25 +464,3 @@ def test_the_alt_text_has_the_numbers() -> None:
     assert front[0].label in time
     assert front[-1].label in time
     assert time.endswith("Marked at the border: 1 false success, 2 failed.")
-
-
-def test_a_document_without_an_answer_is_refused() -> None:
-    """A document without sound answers raises an error that names the document."""
-    rows = [fallen("scipy RK45", "f64", 3, "failed")]
-    with pytest.raises(
-        ValueError, match=r"expected a sound point, got none @ euler/generic\.points"
-    ):
-        trade.pictures(document(rows))
-
-
-def test_uncounted_work_makes_no_picture() -> None:
-    """A solver that counts nothing has a picture of its time, and none of its evaluations."""
-    rows = [one | {"steps": 0, "evaluations": 0} for one in family("other", "f64", 0.1, 4.0)]
-    stems = [picture.stem for picture in trade.pictures(document(rows))]
-    assert stems == ["euler-generic-time"]
-
-
-@pytest.mark.parametrize(("value", "text"), [(1.0, "10⁰"), (1e-33, "10⁻³³"), (1e12, "10¹²")])
-def test_a_decade_is_plain_text(value: float, text: str) -> None:
-    """A power of ten has a raised exponent in plain text."""
-    assert power_of_ten(value) == text

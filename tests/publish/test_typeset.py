@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from taylor_verify.words.markdown import plain, prose, table
-from taylor_verify_reports.typesetting.paper import formulas, images, latex, latex_table, pdf
+from taylor_verify.words.markdown import prose, table
+from taylor_verify_reports.typesetting.paper import formulas, latex, latex_table, pdf
 
 # Signs that look like others are what it is about.
 HOSTILE = "a_b^c 50% #1 {x} \\y ~z & \"q\" 'r' <b> |v| $w$ @p * ` é – ²"  # noqa: RUF001
@@ -43,12 +43,6 @@ def citation(tmp_path: Path) -> Path:
 def test_powers_of_ten_are_formulas(text: str, expected: str) -> None:
     """Numbers of tables are set as they are printed in journals; names and code stay as they are."""
     assert formulas(text) == expected
-
-
-def test_words_without_marks_are_what_they_were() -> None:
-    """`plain` undoes `prose`, and leaves out bold and code."""
-    assert plain(prose(HOSTILE)) == HOSTILE
-    assert plain("**2.5** `a/b` *c*") == "2.5 a/b c"
 
 
 def test_a_table_is_a_tabular_that_any_journal_takes() -> None:
@@ -85,10 +79,3 @@ def test_a_pdf_is_the_same_every_time(citation: Path, tmp_path: Path) -> None:
     assert made == pdf(TEXT, citation, tmp_path)
     fonts = set(re.findall(rb"/FontName /[A-Z]+\+([A-Za-z]+)", made))
     assert fonts <= {b"NewCM", b"NewCMMath", b"DejaVuSansMono"}
-
-
-def test_pages_can_be_counted(citation: Path, tmp_path: Path) -> None:
-    """A page is a picture, however few there are."""
-    assert len(images(TEXT, citation, tmp_path)) == 1
-    (first, second) = images(TEXT + "\n\n".join(["Words."] * 50), citation, tmp_path)
-    assert [page[:4] for page in (first, second)] == [b"\x89PNG"] * 2

@@ -11,9 +11,9 @@ import pytest
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.imported.rotation import matrix
 from taylor_verify.scenes.motion import IDENTITY, Quaternion, Spin
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.turns import matrix
 
 # A tenth of omega is told from it in any file.
 VISIBLE = Fraction(1, 10)

@@ -19,8 +19,9 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Refused
 from taylor_verify.run import run
+from taylor_verify.scenes import turns
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.imported import import_scene, rotation
+from taylor_verify.scenes.imported import import_scene
 from taylor_verify.scenes.imported.document import DEEPEST, MOST_BYTES, MOST_ELEMENTS
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.reading.reader import read
@@ -305,7 +306,7 @@ QUATERNIONS: list[Quaternion] = [
 @pytest.mark.parametrize("q", QUATERNIONS)
 def test_the_matrix_of_a_quaternion_is_orthogonal_exactly(q: Quaternion) -> None:
     """R R^T = 1 and R keeps the axis, for a quaternion of any length."""
-    R = rotation.matrix(q)
+    R = turns.matrix(q)
     assert tensors.product(R, tensors.transpose(R)) == LINK_AXES
     assert tensors.apply(R, q[1:]) == q[1:]
     assert tensors.dot(R[0], tensors.cross(R[1], R[2])) == 1

@@ -184,12 +184,3 @@ def test_the_cache_has_a_largest_size(folder: Path, monkeypatch: pytest.MonkeyPa
     compile_afresh("f32", tolerance=Fraction(1, 10))
     assert oldest in files(folder)
     assert younger not in files(folder)
-
-
-def test_a_folder_that_cannot_be_written_stores_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The run goes on without a cache."""
-    (tmp_path / "file").write_text("in the way")
-    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "file"))
-    assert compile_afresh() is not None

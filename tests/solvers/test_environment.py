@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -94,16 +93,6 @@ def test_to_name_and_to_list_makes_no_environment(script: Script, cache: Path) -
     assert not cache.exists()
 
 
-def test_a_folder_is_the_registry(script: Script) -> None:
-    """A script that is put there is a solver, and one without methods has the name of its file."""
-    script(text=TINY.replace("# [tool.taylor-verify.methods]\n# still", "# [tool.other]\n# still"))
-    assert list(engines()) == ["tiny"]
-    assert solver_named("outside:tiny?order=second").settings[-1] == ("order", "second")
-    script().unlink()
-    engines.cache_clear()
-    assert not engines()
-
-
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -139,15 +128,6 @@ def test_an_environment_is_made_once(script: Script) -> None:
     prepare(NAME, messages.append)
     assert mark.exists()
     assert messages == []
-
-
-def test_uv_beside_the_interpreter_is_enough(
-    script: Script, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where no uv is on the PATH, that of the package beside this interpreter makes it."""
-    monkeypatch.setattr(python.shutil, "which", lambda name: None)
-    script()
-    assert interpreter().exists()
 
 
 def test_without_uv_it_is_unavailable(script: Script, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -247,20 +227,4 @@ def test_a_python_that_does_not_fit_is_told(script: Script) -> None:
     assert trajectory.outcome is Outcome.NO_PACKAGE
     assert ">=3.99" in trajectory.detail
     with pytest.raises(NotMade, match=r">=3\.99"):
-        prepare("tiny-still")
-
-
-def test_a_uv_that_cannot_be_started_is_told(
-    script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A broken uv is a reason like any other."""
-    uv = tmp_path / "uv"
-    uv.write_text("no program")
-    monkeypatch.setattr(python, "_uv", lambda: str(uv))
-    script()
-    with pytest.raises(NotMade, match="uv: Permission denied"):
-        prepare("tiny-still")
-    uv.write_text(f"#!{sys.executable}\nraise SystemExit(3)\n")
-    uv.chmod(0o700)
-    with pytest.raises(NotMade, match="uv: exit status 3"):
         prepare("tiny-still")

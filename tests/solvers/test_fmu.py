@@ -89,14 +89,6 @@ def test_the_error_falls_with_the_fourth_power_of_the_step(built: Build) -> None
     assert all(3.8 <= order <= 4.2 for order in orders), orders
 
 
-def test_steps_are_counted_between_samples(built: Build) -> None:
-    """Whole steps of equal length go from sample to sample, no longer than the one that is asked for."""
-    clock = taylor_verify.load(SCENE).clock
-    distance = float(clock.instants[1] - clock.instants[0])
-    omega = judged(built("sound"), "step=0.3")["omega"]
-    assert omega.steps == math.ceil(distance / 0.3) * (len(clock.instants) - 1)
-
-
 def test_a_missing_gyroscopic_term_is_caught(built: Build) -> None:
     """A twin without a term of the first axis is as near at the start, and far off later."""
     sound, broken = (judged(built(twin), "step=0.01") for twin in ("sound", "no gyroscopic term"))
@@ -151,21 +143,6 @@ def test_what_the_fmu_cannot_be_told_is_said(
     assert fault in verdict.because
 
 
-def test_what_is_built_in_is_not_set(built: Build) -> None:
-    """The FMU's own numbers are taken under ?fixed=, and are those of another body."""
-    omega = judged(built("sound"), "step=0.1&fixed=inertia")
-    assert omega["initial state"].verdict is Status.PASS
-    assert omega["omega"].max > 0.1
-
-
-def test_a_broken_file_is_said(tmp_path: Path) -> None:
-    """A file that is no FMU ends in a sentence of the library, without a traceback."""
-    (tmp_path / "no.fmu").write_bytes(b"no archive")
-    (verdict,) = judged(tmp_path / "no.fmu").values()
-    assert "File is not a zip file" in verdict.because
-    assert "Traceback" not in verdict.because
-
-
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
@@ -208,19 +185,6 @@ def test_the_command_runs_it(built: Build, capsys: pytest.CaptureFixture[str]) -
 
 
 # Names and steps, without an FMU.
-
-
-def test_every_number_of_a_question_has_a_name() -> None:
-    """Indices count from 1, row before column, and those of a quaternion from 0."""
-    hexes = {"text": "", "hex": ["0x1p+0", "0x0p+0", "0x0p+0", "0x0p+0"]}
-    matrix = {"text": "", "hex": [["0x1p+1", "0x0p+0"], ["0x0p+0", "0x1p+2"]]}
-    question = {"body": {"inertia": matrix, "rotor": hexes}, "initial": {"attitude": hexes}}
-    values = fmu_runner.values_to_set(question)
-    assert values["inertia"] == {"I11": 2.0, "I12": 0.0, "I21": 0.0, "I22": 4.0}
-    assert list(values["rotor"]) == ["rotor1", "rotor2", "rotor3", "rotor4"]
-    assert list(values["attitude_start"]) == [f"q{i}_start" for i in range(4)]
-    assert fmu_runner.neutral("attitude_start", values["attitude_start"])
-    assert not fmu_runner.neutral("inertia", values["inertia"])
 
 
 def test_communication_points_meet_every_sample() -> None:

@@ -130,21 +130,6 @@ def test_a_number_that_is_none_is_turned_to_none(shared: Any) -> None:
     assert all(map(math.isnan, shared.to_space((1, 0, 0, 0), (math.inf, 0, 0))))
 
 
-def test_a_diagonal_tensor_keeps_its_axes(shared: Any) -> None:
-    """Principal axes in any order are left as they are, and no remark is made of them."""
-    body = asked(pose(load("euler/with-attitude"), rung("f64")), shared)
-    assert body.in_principal_axes() == body
-    assert body.in_principal_axes().remark == ""
-    assert asked(pose(oblique(time=BACKWARDS), rung("f64")), shared).in_principal_axes().remark
-
-
-def test_full_axes_have_no_moments(shared: Any) -> None:
-    """The moments of a body in other than principal axes are refused."""
-    body = asked(pose(oblique(time=BACKWARDS), rung("f64")), shared)
-    with pytest.raises(SystemExit, match="expected principal axes, got products of inertia"):
-        _ = body.moments
-
-
 def test_a_step_that_divides_no_instant_is_refused(shared: Any) -> None:
     """Samples are multiples of the step, and the first instant that is none is named."""
     body = asked(pose(load("euler/with-attitude"), rung("f64")), shared)
@@ -155,12 +140,6 @@ def test_a_step_that_divides_no_instant_is_refused(shared: Any) -> None:
         body.steps(0.03)
     with pytest.raises(SystemExit, match=r"divides t = 0\.5, got 7\.0 @ step"):
         body.steps(7.0)
-
-
-def test_a_step_of_float32_divides_instants_of_float32(shared: Any) -> None:
-    """Instants that are rounded to the rung are multiples of a decimal step all the same."""
-    body = asked(pose(load("euler/with-attitude"), rung("f32")), shared)
-    assert body.steps(0.01)[:3] == [0, 50, 100]
 
 
 @pytest.mark.parametrize("scene", ["euler/constant-moment", "euler/gyrostat", "kirchhoff/screw"])

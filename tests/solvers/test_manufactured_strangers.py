@@ -143,7 +143,7 @@ def test_a_program_follows_the_loads_with_order_four(name: str, end: int) -> Non
     scene = replace(short(name, Fraction(end)), track=frozenset())
     errors = []
     for step in (0.05, 0.025):
-        verdicts = run(scene, Callback(partial(runge_kutta, step=step))).verdicts
+        verdicts = run(scene, Callback(partial(runge_kutta, step=step)), causes=False).verdicts
         (state,) = [v for v in verdicts if v.quantity in ("omega", "impulse")]
         assert state.verdict is Status.FAIL
         errors.append(state.max or 0.0)
@@ -188,19 +188,6 @@ def test_a_file_that_drifts_in_one_row_fails_by_its_balances(tmp_path: Path) -> 
     judgement = taylor_verify.check(scene, write_csv(tmp_path / "file.csv", columns))
     failed = {v.quantity for v in judgement.verdicts if v.verdict is Status.FAIL}
     assert failed == {"omega", "T", "H2"}
-
-
-def test_a_late_file_is_said_to_be_late(tmp_path: Path) -> None:
-    """Loads have a time of their own: a file whose clock is late by 1e-6 is told so, and does not pass."""
-    scene = load(EULER)
-    columns = columns_at(scene, [*scene.clock.instants[:-1:4], scene.clock.instants[-1]])
-    late = taylor_verify.check(
-        scene,
-        write_csv(tmp_path / "file.csv", {**columns, "t": [t + 1e-6 for t in columns["t"]]}),
-    )
-    omega = next(v for v in late.verdicts if v.quantity == "omega")
-    assert omega.verdict is Status.FAIL
-    assert omega.time_shift == pytest.approx(1e-6, rel=1e-3)
 
 
 @pytest.mark.parametrize("on", ["f32", "f64"])

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import operator
-from fractions import Fraction
 
-import gmpy2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,7 +12,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
-from taylor_verify.scenes.mpfr import in_mpfr, precision, real, sqrt, to_mpf, to_mpfr
+from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.reading.reader import load
 
 OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
@@ -58,36 +56,11 @@ def test_every_operation_rounds_as_mpmath_does(a: mpf, b: mpf, bits: int) -> Non
         assert to_mpf(root)[0]._mpf_ == mp.sqrt(abs(a))._mpf_
 
 
-@given(st.fractions(), st.integers(2, 400))
-def test_a_rational_is_rounded_as_mpmath_rounds_it(value: Fraction, bits: int) -> None:
-    """A rational becomes the same number of either kind."""
-    with mp.workprec(bits), precision():
-        (quick,) = to_mpf(real([value], like=to_mpfr(column(mpf(1)))))
-        (slow,) = real([value], like=column(mpf(1)))
-    assert quick._mpf_ == slow._mpf_
-
-
 def test_what_is_not_finite_stays_so() -> None:
     """NaN and both infinities keep what they are, there and back."""
     nan, up, down = to_mpf(to_mpfr(column(mp.nan, mp.inf, -mp.inf)))
     assert mp.isnan(nan)
     assert (up, down) == (mp.inf, -mp.inf)
-
-
-def test_no_rows_stay_no_rows() -> None:
-    """Of no numbers there are none, in the same shape."""
-    nothing = np.empty((0, 3), dtype=object)
-    assert to_mpfr(nothing).shape == to_mpf(nothing).shape == sqrt(nothing).shape == (0, 3)
-
-
-def test_the_precision_of_either_is_left_as_it_was() -> None:
-    """What is computed in between changes no ambient precision."""
-    before = gmpy2.get_context().precision, mp.prec
-    with mp.workprec(777), precision():
-        assert gmpy2.get_context().precision == 777
-        to_mpfr(column(exactly(2**900 + 1, 0)))
-        assert gmpy2.get_context().precision == 777
-    assert (gmpy2.get_context().precision, mp.prec) == before
 
 
 @pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])

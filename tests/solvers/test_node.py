@@ -208,16 +208,6 @@ def test_without_node_or_npm_it_is_unavailable(
         prepare("tiny")
 
 
-def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
-    """A file where the folder should be is a reason like any other."""
-    script()
-    cache.parent.mkdir(parents=True)
-    cache.write_text("")
-    trajectory = solver_named(NAME).solve(three_instants())
-    assert trajectory.outcome is Outcome.NO_PACKAGE
-    assert str(cache) in trajectory.detail
-
-
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
@@ -235,14 +225,6 @@ def test_metadata_that_is_wrong_is_refused(
         text = text.replace(old, new, 1)
     with pytest.raises(ValueError, match=f"{words} @ with_tiny.mjs"):
         read_script(script(text))
-
-
-@pytest.mark.parametrize("version", ["latest", "1.0", "1.0.0 || 2.0.0", "1.0.0;x"])
-def test_a_version_is_that_of_npm(version: str, script: Script) -> None:
-    """One version can be asked for, and no range and no tag."""
-    script()
-    with pytest.raises(ValueError, match=r"expected a version such as 1\.2\.0"):
-        named(f"{NAME}&version={version}")
 
 
 # The scripts that are shipped.

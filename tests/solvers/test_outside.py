@@ -66,14 +66,6 @@ def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
         solver_named(name)
 
 
-def test_the_absolute_tolerance_follows_the_relative_one() -> None:
-    """The absolute tolerance is rtol if it is not set."""
-    solver = named("outside:cvode-bdf?rtol=1e-7")
-    assert solver.settings == (("rtol", "1e-07"), ("atol", "1e-07"))
-    solver = named("outside:cvode-bdf?rtol=1e-7&atol=1e-3")
-    assert solver.settings == (("rtol", "1e-07"), ("atol", "0.001"))
-
-
 def test_a_version_replaces_the_pin_of_its_package() -> None:
     """The metadata differ in the version of the library alone, and without one not at all."""
     as_pinned = named("outside:diffrax-tsit5")
@@ -81,15 +73,6 @@ def test_a_version_replaces_the_pin_of_its_package() -> None:
     assert as_pinned.block == as_pinned.engine.script.block
     assert solver.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
     assert solver.block != as_pinned.block
-
-
-def test_packages_that_go_together_take_one_version() -> None:
-    """A version of MJX is that of MuJoCo beside it, and no other pin changes."""
-    pinned = named("outside:mjx").block
-    expected = pinned.replace("mujoco-mjx==3.17.0", "mujoco-mjx==3.8.0").replace(
-        '"mujoco==3.17.0"', '"mujoco==3.8.0"'
-    )
-    assert named("outside:mjx?version=3.8.0").block == expected != pinned
 
 
 def test_the_command_line_lists_them_all() -> None:
@@ -334,11 +317,3 @@ def test_a_script_that_is_wrong_is_refused(blocks: list[str], fault: str, tmp_pa
         read_script(file)
     with pytest.raises(Refused, match=re.escape(fault)):
         read_scripts(tmp_path)
-
-
-def test_a_script_without_a_library_has_no_version(tmp_path: Path) -> None:
-    """A program of the standard library alone is an engine too, and no version of it can be asked for."""
-    script = read_script(written(tmp_path, TITLED))
-    assert script.package == ""
-    with pytest.raises(ValueError, match=r"expected no version: with_mine\.py has no library"):
-        script.at_version("1.0")

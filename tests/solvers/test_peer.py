@@ -128,16 +128,6 @@ def test_what_a_library_prints_is_no_answer(fake: Made) -> None:
     )
 
 
-def test_a_peer_without_its_environment_is_unavailable(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It says why, and is asked on f64 alone."""
-    one = Peer(named("outside:dop853"))
-    assert "f64 alone" in one.unavailable(rung("f80"))
-    monkeypatch.setattr("taylor_verify.solvers.engines.python._uv", lambda: None)
-    trajectory = one.solve(posed("euler/generic"))
-    assert trajectory.outcome is Outcome.NO_PACKAGE
-    assert "uv is not installed" in trajectory.detail
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_a_real_peer_keeps_near_its_tolerance(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.acted import ACTED
 from builders.oblique import oblique
 from builders.other_equations import WITHOUT_GYROSCOPIC_TERM, has_other_equations
 from builders.processes import PATIENCE
@@ -20,11 +21,12 @@ from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome
 
 STEP = 1 / 32
 # Settings that exclude each other: the explicit methods of Exudyn have no constraint.
@@ -89,6 +91,32 @@ def test_an_engine_is_right_under_every_setting(name: str, monkeypatch: pytest.M
     assert comes_nearer is not has_other_equations(name)
 
 
+def pushed() -> list[str]:
+    """The engines that take all that acts on a body."""
+    return [one.name for one in engines().values() if one.script.about.loads == "written"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", pushed())
+def test_an_engine_is_given_loads_and_states(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the step leaves two thirds of the error or less, with loads, wheels and a sampled controller."""
+    monkeypatch.setenv("UV_OFFLINE", "1")
+    try:
+        prepare(f"outside:{name}")
+    except NotMade as reason:
+        pytest.skip(str(reason))
+    asked, errors = read(ACTED.replace("END", "5"), "acted"), []
+    for step in (STEP, STEP / 2):
+        solver = solver_named(f"outside:{name}?step={step}")
+        on = next(rung(on) for on in ("f64", "f32") if not solver.unavailable(rung(on)))
+        answered = solver.solve(solver.problem(asked, on))
+        assert answered.outcome is Outcome.FINISHED, answered.detail
+        exact = solver_named("taylor").solve(pose(asked, on))
+        errors.append(np.abs(answered.quantities["omega"] - exact.quantities["omega"]).max())
+    assert errors[1] <= errors[0] / 1.5
+    assert errors[0] < 0.1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in WITHOUT_GYROSCOPIC_TERM if n[:4] != "brax"])
 def test_an_engine_without_the_gyroscopic_term_keeps_omega_in_space(
@@ -122,24 +150,6 @@ def test_rodrigues_parameters_are_the_attitude(
     assert sigma @ sigma <= 1
     back = np.array(basilisk.quaternion(sigma))
     assert abs(abs(back @ attitude) - 1) <= 4 * 2**-53
-
-
-def test_a_step_of_basilisk_is_whole_nanoseconds(sibling: Callable[[str], Any]) -> None:
-    """A decimal step is counted in nanoseconds, and one between two of them is refused."""
-    basilisk = sibling("with_basilisk")
-    assert basilisk.nanoseconds(0.003) == 3_000_000
-    for step in (1 / 3, 4e-10):
-        with pytest.raises(SystemExit, match="expected a step of whole nanoseconds"):
-            basilisk.nanoseconds(step)
-
-
-def test_explicit_methods_of_exudyn_take_no_constraint(sibling: Callable[[str], Any]) -> None:
-    """Euler parameters with an explicit method are refused before anything is loaded."""
-    settings = sibling("free_body").Settings(
-        coordinates="EulerParameters", integrator="RK44", step=0.1
-    )
-    with pytest.raises(SystemExit, match="got RK44 @ integrator"):
-        sibling("with_exudyn").solve(None, settings)
 
 
 NOISY = """

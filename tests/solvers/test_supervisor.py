@@ -60,7 +60,7 @@ HIDES = QUESTION + HIDING
 HANG = "time.sleep(600)\n"
 ENDINGS = [
     (TELL, Outcome.FINISHED),
-    (HANG, Outcome.TIMED_OUT),
+    pytest.param(HANG, Outcome.TIMED_OUT, marks=pytest.mark.slow),
     ("os.abort()\n", Outcome.CRASHED),
     ("print('x' * 10**7)\n", Outcome.MISANSWERED),
 ]
@@ -94,7 +94,7 @@ def solve(program: Path, text: str, limit: float = 60) -> Trajectory:
     return process.Process(name(program), time_limit=limit).solve(three_instants())
 
 
-@pytest.mark.parametrize(("ending", "outcome"), ENDINGS, ids=[o.name for _, o in ENDINGS])
+@pytest.mark.parametrize(("ending", "outcome"), ENDINGS)
 def test_processes_that_left_the_session_end_with_the_run(
     program: Path, hidden: Path, ending: str, outcome: Outcome
 ) -> None:
@@ -166,18 +166,13 @@ def supervised_by(folder: Path, changes: str, monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(conversation, "_SUPERVISOR", file)
 
 
-@pytest.mark.parametrize(("ending", "outcome"), ENDINGS[:2], ids=["answers", "hangs"])
 def test_a_system_that_cannot_says_so(
-    program: Path,
-    hidden: Path,
-    ending: str,
-    outcome: Outcome,
-    monkeypatch: pytest.MonkeyPatch,
+    program: Path, hidden: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The session ends where nobody adopts orphans, and the detail says what may be left."""
     supervised_by(program.parent, "sys.platform = 'other'", monkeypatch)
-    trajectory = solve(program, HIDES + ending, limit=10 if ending == HANG else PATIENCE)
-    assert trajectory.outcome is outcome
+    trajectory = solve(program, HIDES + TELL)
+    assert trajectory.outcome is Outcome.FINISHED
     assert conversation._UNKNOWN in trajectory.detail
     assert all(map(is_alive, numbers(hidden)))
 

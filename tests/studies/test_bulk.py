@@ -55,16 +55,16 @@ def without_bulk(place: Path) -> dict[str, bytes]:
 
 
 def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) -> None:
-    """Records, portraits, JSON and tables of gates come back byte for byte, and nothing else changes."""
+    """Records, portraits, JSON and tables come back byte for byte, and nothing else changes."""
     removed = without_bulk(report)
     assert missing(report).data == (
-        "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
+        "4 tables for searching, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
     )
     committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
     assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
     out, messages = capsys.readouterr()
     assert (
-        "2 tables of gates, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
+        "4 tables for searching, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
         in messages
     )
     assert {Path(name) for name in json.loads(out)["written"]} == {report / n for n in removed}

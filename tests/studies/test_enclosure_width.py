@@ -65,9 +65,3 @@ def test_what_is_drawn_is_what_is_stored(tmp_path: Path) -> None:
             assert {name: list(map(tuple, points)) for name, points in drawn.items()} == lines
     once, again = (save([pictures.picture(stored)], tmp_path / part) for part in ("a", "b"))
     assert [file.read_bytes() for file in once] == [file.read_bytes() for file in again]
-
-
-def test_a_document_without_rows_is_refused() -> None:
-    """A document without rows raises an error instead of an empty picture."""
-    with pytest.raises(ValueError, match="expected widths and errors above zero"):
-        pictures.picture(EnclosureStudy(140, ()))

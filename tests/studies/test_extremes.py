@@ -17,11 +17,9 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
-from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
@@ -52,12 +50,6 @@ def distance(a: Any, b: Any) -> Any:
 
 
 # The files
-
-
-def test_there_are_enough_of_both_models() -> None:
-    """Each model has at least twenty-five extremes, so that an empty folder fails."""
-    for model in ("euler", "kirchhoff"):
-        assert sum(name.startswith(f"extremes/{model}-") for name in NAMES) >= 25
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -107,14 +99,6 @@ def test_the_distance_from_the_unstable_axis_is_as_named(name: str) -> None:
     onto = {"omega": axis} if isinstance(scene.initial, Spin) else {"linear": axis}
     steady = elements(replace(scene, initial=replace(scene.initial, **onto)), 10)
     assert any("unstable" in sentence for sentence in steady.sentences)
-
-
-@pytest.mark.parametrize("name", [n for n in NAMES if "separatrix" in n])
-@pytest.mark.parametrize("on", LADDER)
-def test_a_separatrix_is_exact_on_every_rung(name: str, on: str) -> None:
-    """The rounded data, too, lie exactly between the two families: the regime says so in rationals."""
-    regime = solution(pose(load(name), rung(on)).given).regime
-    assert regime == ("separatrix" if "euler" in name else "hyperbolic")
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if "modulus" in n])
@@ -191,19 +175,6 @@ def test_the_closed_form_agrees_with_the_recursion(name: str) -> None:
     with mp.workdps(_DIGITS + 10):
         for quantity, value in closed.items():
             assert distance(value, stepped[quantity]) <= 4 * mpf(10) ** -_DIGITS
-
-
-@pytest.mark.parametrize("name", ["euler-unstable-axis-1e-20", "kirchhoff-unstable-spin-1e-8"])
-def test_the_small_component_itself_is_right(name: str) -> None:
-    """Half way to the flip the component along the unstable axis agrees by itself to 15 digits."""
-    scene = extreme(name)
-    half = [scene.clock.elapsed[-1] / 4]
-    closed = solution(scene).evaluate(half, 50)
-    stepped = TaylorSolution(scene).evaluate(half, 60)
-    quantity = "omega" if scene.model == "euler" else "linear_impulse"
-    with mp.workdps(50):
-        for a, b in zip(closed[quantity][0], stepped[quantity][0], strict=True):
-            assert abs(a - b) <= mpf("1e-15") * abs(b)
 
 
 SCALED = [
@@ -283,7 +254,8 @@ class Flushed(Solver):
 def test_a_body_that_never_flips_has_no_green_state(name: str) -> None:
     """Its state fails, or the gate says that it sees nothing there; it is never a pass."""
     verdicts = {
-        v.quantity: v.verdict for v in taylor_verify.run(f"extremes/{name}", Flushed()).verdicts
+        v.quantity: v.verdict
+        for v in taylor_verify.run(f"extremes/{name}", Flushed(), causes=False).verdicts
     }
     states = {"omega", "impulse", "attitude"}.intersection(verdicts)
     assert states

@@ -76,19 +76,6 @@ def test_what_cannot_be_followed_is_refused(changed: dict[str, Any], message: st
         question(**changed)
 
 
-@pytest.mark.parametrize("on", ["f64", "f80"])
-def test_the_end_of_a_piece_is_no_sample(on: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each piece is reported as it ends, and samples are those of the instants alone."""
-    several_pieces(monkeypatch)
-    asked, ended = question(on=on, lanes=3), list[tuple[str, int, int]]()
-    followed = course(asked, lambda *piece: ended.append(piece))
-    count = len(asked.pieces)
-    assert ended == [(asked.label, done, count) for done in range(1, count + 1)]
-    assert len(followed.samples) == len(asked.counts) < count
-    for sample, lane in zip(followed.samples[-1], followed.lanes, strict=True):
-        assert sample == (lane.state, lane.steps)
-
-
 # Errors
 
 
@@ -117,18 +104,6 @@ def test_the_phase_is_the_shift_of_time(late: float) -> None:
     # The states are rounded: u over the slowest rate, of which this orbit has a tenth per unit of time.
     rounding = 2 * pi / asked.period * 10 * float(problem.rung.unit_roundoff) * 10
     assert phase == pytest.approx(2 * pi * late / asked.period, rel=2e-6, abs=rounding)
-
-
-def test_drifts_have_their_sign() -> None:
-    """A momentum that is larger by 2^-20 has T and H2 larger by 2^-19 + 2^-40; one smaller, smaller."""
-    problem = question("euler/generic", lanes=2).problems[0]
-    for factor in (1 + Fraction(1, 2**20), 1 - Fraction(1, 2**20)):
-        state = tuple(factor * value for value in problem.initial_momenta)
-        drifts = by_name(problem, [state], 1.0)
-        for name in ("T", "H2"):
-            # Drifts are relative to the larger of both values, as a gate has them.
-            expected = float((factor**2 - 1) / max(factor**2, 1))
-            assert drifts[name] == pytest.approx([expected], rel=1e-12)
 
 
 def test_what_a_lane_did_not_reach_is_no_number() -> None:

@@ -84,21 +84,6 @@ def test_every_lane_is_near_the_truth(name: str, on: str) -> None:
         assert worst <= 32 * lane.steps * float(problem.rung.unit_roundoff)
 
 
-@pytest.mark.parametrize("on", ["f32", "f64", "f80"])
-def test_lanes_hold_numbers_of_the_rung(on: str) -> None:
-    """Nothing is rounded on the way out: a state is made of numbers that the rung holds, as it stood."""
-    asked = problems("euler/generic", on, 3)
-    ensemble = Ensemble(asked)
-    lanes = ensemble.advance(ensemble.start(), ends(asked))
-    for problem, lane in zip(asked, lanes, strict=True):
-        assert lane.time == problem.times[-1]
-        assert all(problem.rung.holds(value) for value in lane.state)
-    # No step, no change: what goes in comes out.
-    again = ensemble.advance(lanes, ends(asked))
-    assert [lane.state for lane in again] == [lane.state for lane in lanes]
-    assert [lane.steps for lane in again] == [lane.steps for lane in lanes]
-
-
 def test_a_lane_that_is_not_finite_stops_no_other() -> None:
     """Lanes that blow up on the way are taken out one by one; the others end as if they were alone."""
     asked, lives = with_fates(until=10)
@@ -117,19 +102,6 @@ def test_a_lane_that_is_not_finite_stops_no_other() -> None:
         assert abs(lanes[i].state[0] / exact - 1) <= 2.0**-53 * 200 * abs(
             exact / asked[i].initial_momenta[0]
         )
-
-
-def test_a_lost_lane_stays_lost_and_the_others_go_on() -> None:
-    """A lost lane keeps its last state after a stop, and does not change the others."""
-    asked, lives = with_fates(until=10)
-    ensemble = Ensemble(asked)
-    half = ensemble.advance(ensemble.start(), [Fraction(10)] * LANES)
-    lanes = ensemble.advance(half, [Fraction(12)] * LANES)
-    living = [i for i, lane in enumerate(lanes) if lane.goes_on]
-    assert all(lanes[i] == half[i] for i in range(LANES) if not lives[i])
-    alone = Ensemble([asked[i] for i in living])
-    expected = alone.advance([half[i] for i in living], [Fraction(12)] * len(living))
-    assert [lanes[i] for i in living] == list(expected)
 
 
 @pytest.mark.parametrize(

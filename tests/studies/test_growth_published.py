@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import random
 from pathlib import Path
 from typing import Any
 
@@ -73,13 +72,6 @@ def test_a_coarse_tolerance_is_a_bias() -> None:
     assert np.all(np.sign(drift) == np.sign(drift[0]))
 
 
-def test_one_lane_alone_is_the_same_lane() -> None:
-    """The errors of a lane do not change with the ensemble around it."""
-    few, many = (errors(question("euler/about-max-axis", lanes=lanes)) for lanes in (2, 5))
-    for name, values in few.items():
-        assert np.array_equal(values, many[name][:2])
-
-
 @pytest.mark.slow
 def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
     """Three decades of f64: drifts grow as the root of time, the phase as its three halves."""
@@ -89,33 +81,6 @@ def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
         # Half way to the next word. The slopes of sixteen lanes have a mean that scatters by 0.04, and
         # another processor draws other roundings.
         assert abs(of(result, name).exponent - power) <= 0.25
-
-
-def mean_rounding(coefficient: float, part: int) -> float:
-    """Return the mean rounding of products with random 53-bit numbers of one quarter of their range."""
-    whole, draw = coefficient.as_integer_ratio()[0], random.Random(part)
-    quarter, errors = 2**50, []
-    for _ in range(20_000):
-        exact = whole * draw.randrange(2**52 + part * quarter, 2**52 + (part + 1) * quarter)
-        unit = 1 << (exact.bit_length() - 53)
-        quotient, rest = divmod(exact, unit)
-        is_up = rest > unit // 2 or (rest == unit // 2 and quotient % 2)
-        errors.append(((unit - rest) if is_up else -rest) / unit)
-    return sum(errors) / len(errors)
-
-
-def test_products_with_a_small_fraction_lean_to_one_side() -> None:
-    """The mean rounding of products with 1/6 is a tenth of a last place; of other numbers it is zero."""
-    # One rounding is uniform within half a unit: the mean of 20000 is known to 0.29/sqrt(20000).
-    noise = 4.5 * 0.29 / 20_000**0.5
-    for coefficient in (0.1683725917, np.pi / 20, 2**0.5 / 8):
-        assert max(abs(mean_rounding(coefficient, part)) for part in range(4)) <= noise
-    # 1/6 as f64 has it, and as the difference of its 1/3 and 1/2, which lies on the other side.
-    for sixth in (1 / 6, 1 / 2 - 1 / 3):
-        leans = [abs(mean_rounding(sixth, part)) for part in range(4)]
-        assert max(leans) >= 0.1
-        # Three equal remainders have a mean that is off by half their distance at most.
-        assert max(leans) <= 1 / 6 + noise
 
 
 # What is published
@@ -180,13 +145,3 @@ def test_a_number_that_is_not_finite_is_stored_as_none(monkeypatch: pytest.Monke
     (row,) = lost.quantities
     assert row.rms == (None,) * len(asked.counts)
     assert row.exponent is row.in_walks is row.gate.chance is None
-
-
-def test_a_file_of_something_else_is_named(tmp_path: Path) -> None:
-    """Stored ensembles without their runs are a ValueError that names file and key."""
-    file = tmp_path / pages.GROWTH.name
-    file.parent.mkdir()
-    file.write_text('{"runs": [{"scene": "euler/generic"}], "left_out": []}', encoding="utf-8")
-    message = r"expected a key digest, got none @ runs\[0\] @ .*growth\.json"
-    with pytest.raises(ValueError, match=message):
-        STUDY.pages(tmp_path)

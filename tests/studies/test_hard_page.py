@@ -6,7 +6,7 @@ import csv
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, nan
+from math import nan
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +17,6 @@ from builders.studies.hard import (
     DRIFT,
     MISMATCH,
     REACH,
-    VACUOUS,
     WHY,
     row,
     study,
@@ -27,18 +26,13 @@ from builders.studies.stored import publish_document
 from builders.verdicts import passed
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from taylor_verify.cli import main
-from taylor_verify.plotting.picture import plotting
-from taylor_verify.plotting.style import PAGE_WIDTH
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
-from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.hard import measure, reach, search
 from taylor_verify_reports.studies.hard import page as pages
-from taylor_verify_reports.studies.hard import picture as diagram
 from taylor_verify_reports.studies.hard.document import HARD, last_value
 from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
 
@@ -106,23 +100,6 @@ def test_a_mismatch_stands_out(page: str) -> None:
     assert MISMATCH in page
 
 
-def test_a_pass_that_was_not_expected_is_told_too(tmp_path: Path) -> None:
-    """A row that was foreseen to be vacuous and passed is a mismatch, with its reason."""
-    lucky = replace(VACUOUS, verdict=Status.PASS)
-    (_, reason) = lines(pages.page(study((lucky,), ("a mismatch",)), tmp_path), "`long`")
-    assert "| pass" in reason
-    assert "**vacuous**" in reason
-
-
-def test_what_was_not_run_and_what_made_it_are_told(page: str) -> None:
-    """A run that is left out has its reason; versions, processor and command end the page."""
-    assert "`extremes/endless`, mp237: it takes a week" in page
-    end = page.rpartition("## ")[2]
-    for part in ("heyoka 7.13.0", "Machine: A chip", "By `taylor-verify run`", "extremes"):
-        assert part in end
-    assert page.splitlines()[0] == MADE_BY
-
-
 def test_the_sheet_has_every_quantity() -> None:
     """A row for each verdict with every digit, what was expected and whether it came."""
     rows = csv.DictReader(pages.sheet(study()).splitlines())
@@ -178,18 +155,6 @@ def test_the_command_fails_at_a_mismatch(
 # The worst
 
 
-def test_the_worst_family_stands_first(tmp_path: Path, page: str) -> None:
-    """Families stand in the order of their ratios, those of the stored rows alone."""
-    assert page.index("worst/euler-b") < page.index("worst/euler-a")
-    assert "Of 14 scenes the worst is `extremes/worst/euler-b`: 2.50 in `omega`." in page
-    assert "--runs 60 --seed 3" in page
-    first, second = study().worst
-    changed = replace(study(), worst=(replace(first, ratio=7.75), second))
-    text = pages.page(changed, tmp_path)
-    assert text.index("worst/euler-a") < text.index("worst/euler-b")
-    assert "7.75" in text
-
-
 def test_a_search_replaces_the_stored_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`publish hard --runs` stores the new worst rows, and its scenes in place of the shipped ones."""
     shipped, asked = tmp_path / "cases" / library.WORST, []
@@ -239,38 +204,3 @@ def test_each_rung_has_its_reach(page: str) -> None:
     assert "figures/hard-reach.svg" in page
     assert "axis 1e-2, f32: the run stopped: too many steps. It counts as lost." in page
     assert "6 runs. In 1 of them the rung could not represent the motion" in page
-
-
-def test_a_family_of_periods_has_the_most_periods() -> None:
-    """A family without a symbol counts periods."""
-    (axis,) = study().families
-    long = diagram.Line(replace(axis, symbol=""), "f64", [row("1", "f64", 1e-14, 1e-8, 1e-2)])
-    assert [pages.far(long, digits) for digits in (1, 6, 12)] == [
-        "100 \N{RIGHTWARDS ARROW}",
-        "10",
-        "1",
-    ]
-
-
-def test_each_rung_is_a_line_beside_its_floor() -> None:
-    """Digits achieved and attainable stand over the distance; a value without a run has no point."""
-    (picture,) = diagram.pictures(study())
-    with plotting():
-        figure = picture.figure()
-        everything = figure.get_tightbbox(FigureCanvasAgg(figure).get_renderer())
-    drawn = {line.get_gid(): line for line in figure.axes[0].get_lines()}
-    assert list(drawn["f32"].get_xdata()) == [1e-1, 1e-2]
-    assert list(drawn["f32"].get_ydata()) == pytest.approx([6, 3])
-    assert list(drawn["f32 floors"].get_ydata()) == pytest.approx([7, 4])
-    assert list(drawn["f64"].get_ydata()) == pytest.approx([14, 13, 12])
-    assert everything.x0 >= 0
-    assert everything.y0 >= 0
-    assert everything.x1 <= PAGE_WIDTH
-    assert "a body beside something, f32: six digits up to 1e-1" in picture.alt
-
-
-@given(st.floats(0.01, 70))
-def test_digits_left(digits: float) -> None:
-    """An error of 10^-n leaves n digits; what is no number, or 1 and more, leaves none."""
-    assert diagram.digits_left(10.0**-digits) == pytest.approx(digits)
-    assert {diagram.digits_left(error) for error in (None, nan, inf, 1.0, 7.0)} == {0.0}

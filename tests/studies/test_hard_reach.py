@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from math import inf, log10, nan
+from math import inf, log10
 
-import numpy as np
 import pytest
 from mpmath import mp
 
@@ -15,7 +14,6 @@ import taylor_verify
 from taylor_verify.exact.elements import elements
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
-from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify_reports.studies.hard import reach
 from taylor_verify_reports.studies.hard.document import ReachRow
@@ -89,12 +87,6 @@ def test_instants_are_the_quarters_of_the_periods_named() -> None:
     assert list(instants) == sorted(set(instants))
 
 
-def test_an_orbit_without_a_period_is_refused() -> None:
-    """A separatrix has none, and it is said."""
-    with pytest.raises(ValueError, match="expected a periodic orbit, got a separatrix one"):
-        period_of(load("euler/separatrix"))
-
-
 # The measurement
 
 
@@ -122,14 +114,6 @@ def axis() -> dict[str, dict[str, ReachRow]]:
     """Two members beside the unstable axis, by value and rung."""
     one = short("unstable-axis", {"f32": 3, "f64": 3, "f80": 3})
     return {value: measured(one, value) for value in ("1e-2", "1e-10")}
-
-
-def test_a_wider_rung_leaves_more(axis: dict[str, dict[str, ReachRow]]) -> None:
-    """Floors are as the roundoffs, but for the steps that each rung takes; and so are the errors."""
-    f64, f80 = axis["1e-2"]["f64"], axis["1e-2"]["f80"]
-    ratio = f80.floors[0] / f64.floors[0] * 2**11
-    assert ratio == pytest.approx((f80.steps / f64.steps) ** 0.5, rel=0.05)
-    assert f80.errors[0] < f64.errors[0] < axis["1e-2"]["f32"].errors[0]
 
 
 def test_solvers_come_near_the_floor(axis: dict[str, dict[str, ReachRow]]) -> None:
@@ -162,12 +146,3 @@ def test_another_orbit_is_not_followed(name: str, value: str, why: str) -> None:
     row = measured(named(name), value, "f32")["f32"]
     assert row.errors == row.floors == ()
     assert why in row.why
-
-
-def test_nan_is_lost_for_ever() -> None:
-    """The largest of numbers with a NaN among them is NaN, from there on; JSON has null for it."""
-    errors = reach.up_to(np.array([1e-9] * 5 + [nan] + [1e-9] * 6))
-    assert errors[0] == 1e-9
-    assert all(error != error for error in errors[1:])
-    row = reach.stored(ReachRow("a", "1", "f64", (1, 3, 10), errors, errors, 9, ""))
-    assert row.errors == row.floors == (1e-9, None, None)

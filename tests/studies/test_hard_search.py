@@ -9,7 +9,6 @@ from builders.studies.hard import searched_family, verdict
 from hypothesis import HealthCheck, example, given, settings, target
 from hypothesis import strategies as st
 
-from taylor_verify.cli import main
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
@@ -72,24 +71,6 @@ def test_a_budget_is_a_number_of_runs(monkeypatch: pytest.MonkeyPatch, runs: int
     assert runs * 0.6 < result.judged <= runs
 
 
-def test_a_search_can_be_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every place follows from seed and family; another seed has others."""
-    asked: list[list[float]] = []
-
-    def noted(searched: Family, points: Sequence[Sequence[float]]) -> list[Candidate | None]:
-        asked.extend(map(list, points))
-        return _peaks(searched, points)
-
-    monkeypatch.setattr(hunt, "candidates_at", noted)
-    rounds = []
-    for seed in (1, 1, 2):
-        asked.clear()
-        search(searched_family("euler-hill", 2), "hills", 60, seed)
-        rounds.append([*asked])
-    assert rounds[0] == rounds[1]
-    assert rounds[0][0] != rounds[2][0]
-
-
 def test_a_family_without_a_judged_scene_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """The search raises an error that names a family without a gate that is not vacuous."""
     monkeypatch.setattr(hunt, "candidates_at", lambda searched, points: [None] * len(points))
@@ -128,9 +109,3 @@ def test_the_worst_runs_with_the_extremes() -> None:
     """The folder holds one scene for each family and nothing else, and `run extremes` runs them."""
     assert sorted(STORED) == sorted(f"extremes/worst/{name}" for name in SEARCHED)
     assert set(STORED) <= set(library.named(library.EXTREMES))
-
-
-def test_a_wrong_budget_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    """No runs are a wrong call, which changes nothing."""
-    assert main(["publish", "hard", "--runs", "0"]) == 2
-    assert "expected a whole number of at least 10, got 0 @ --runs" in capsys.readouterr().err

@@ -11,14 +11,9 @@ from builders import reports
 from builders.studies.hard import study as hard_study
 from builders.studies.prices import study as prices_study
 
-from taylor_verify.records.provenance import Provenance
-from taylor_verify.report import tables
-from taylor_verify_reports.claims.document import ClaimResiduals, ClaimRow, ClaimsStudy, Verdict
-from taylor_verify_reports.studies import registry, report
-from taylor_verify_reports.studies.claims import page as claims
+from taylor_verify_reports.studies import registry
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.prices import page as prices
 from taylor_verify_reports.studies.prices.document import PRICES
 
 
@@ -62,37 +57,6 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
-def test_prices_have_a_row_for_every_variant() -> None:
-    """A row has the interval of its ratio."""
-    study = PRICES.load(measured_report())
-    lines = read(prices.sheet(study))
-    assert len(lines) == len(study.rows)
-    for cells, row in zip(lines, study.rows, strict=True):
-        ends = tuple(number(cells[f"step_{end}"]) for end in ("ratio", "low", "high"))
-        assert ends == row.step_ratio
-
-
-def test_claims_have_a_row_for_every_entry() -> None:
-    """Statement, verdict and both residuals; text over several lines is on one."""
-    row = ClaimRow(
-        id="hydromechanics 49 (17)",
-        statement="a,\n b",
-        domain="all",
-        verdict=Verdict.FALSE,
-        recorded=Verdict.FALSE,
-        method="expansion",
-        mutations=("one", "two"),
-        residual=ClaimResiduals(0.0, 4.3),
-        bound=1e-35,
-        because="it is",
-    )
-    (cells,) = read(claims.sheet(ClaimsStudy(Provenance(), {}, (row,))))
-    assert (cells["id"], cells["statement"]) == (row.id, "a, b")
-    assert (cells["verdict"], cells["remark"]) == ("false as transcribed", "")
-    assert (cells["residual"], cells["residual_transcribed"]) == ("0.0", "4.3")
-    assert cells["mutations"] == "one; two"
-
-
 @pytest.mark.parametrize("name", ["growth", "prices", "hard"])
 def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
@@ -102,13 +66,3 @@ def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     end = "".join(pages[study.path].split("\n## ")[-2:])
     assert "heyoka 7." in end or "Made with unknown versions" in end
     assert "`taylor-verify publish" in end
-
-
-def test_the_index_links_to_the_sheets_that_are_there(tmp_path: Path) -> None:
-    """A page with a sheet has a link to it, one without has none."""
-    made = {"tables/growth.md", "tables/growth.csv", "claims.md", "tables/claims.csv"}
-    besides = report.entries(tmp_path, {*made, "tables/hard.md"})
-    text = tables.readme([], besides)
-    assert "| [growth.md](growth.md)       | [csv](growth.csv) |" in text
-    assert "| [../claims.md](../claims.md) | [csv](claims.csv) |" in text
-    assert "[csv](hard.csv)" not in text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import shutil
 from collections.abc import Callable
@@ -16,7 +15,6 @@ from taylor_verify.cli import main
 from taylor_verify_reports.studies import bulk
 from taylor_verify_reports.studies.paper import findings, pack
 from taylor_verify_reports.studies.paper.sources import Sources, read
-from taylor_verify_reports.studies.paper.table import tables
 from taylor_verify_reports.typesetting.paper import images
 
 TEXT = (Path(pack.__file__).parent / "text.md").read_text(encoding="utf-8")
@@ -139,15 +137,6 @@ def test_every_source_is_cited() -> None:
     assert "doi" not in listed.lower()
 
 
-def test_a_sheet_has_the_cells_of_its_table(sources: Sources) -> None:
-    """Read back, a CSV has the headings and as many rows; no mark of Markdown is left in it."""
-    for one in tables(sources):
-        heads, *rows = csv.reader(one.csv.splitlines())
-        assert heads == [heading.removesuffix(":") for heading in one.headings]
-        assert len(rows) == len(one.rows)
-        assert not re.search(r"[*`\\]", one.csv)
-
-
 @pytest.mark.slow
 def test_the_pack_is_whole_and_the_same_every_time(tmp_path: Path) -> None:
     """PDF, LaTeX, tables and pictures are written and no longer missing; a second run changes nothing."""
@@ -178,17 +167,3 @@ def test_a_report_without_a_study_has_no_paper(
     assert "expected what `publish controls engines hard tradeoff` writes" in errors
     assert [file for file in sorted(tmp_path.rglob("*")) if file not in before] == []
     assert bulk.missing(tmp_path, {}).renderings == ()
-
-
-def test_compiled_rivals_have_rows_and_a_sentence(sources: Sources) -> None:
-    """Integrators of other libraries stand in the table and in the finding where they were measured."""
-    numbers = sources.trades.numbers
-    points = tuple(
-        replace(p, family="outside dop853") if p.family == "scipy DOP853" else p
-        for p in numbers.points
-    )
-    other = replace(
-        sources, trades=replace(sources.trades, numbers=replace(numbers, points=points))
-    )
-    assert "DOP853 in numba" in tables(other)[-1].csv
-    assert "The fastest compiled integrator of another library takes" in findings.trade(other)

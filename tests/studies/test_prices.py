@@ -32,14 +32,6 @@ def rates_at(problem: Problem, state: Mapping[str, Fraction]) -> dict[str, Any]:
     return dict(zip(form.states, rates, strict=True))
 
 
-def test_each_variant_is_held_against_one_that_comes_before_it() -> None:
-    """The barest form of each model is its own unit, and every name is there once."""
-    assert len(set(NAMES)) == len(NAMES)
-    for place, variant in enumerate(variants()):
-        assert variant.against in NAMES[: place + 1]
-        assert named(variant.against).against == variant.against
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_a_variant_is_another_form_of_the_same_body(name: str) -> None:
     """The rates of a variant are those of the general equations, in rationals at random points."""
@@ -67,13 +59,6 @@ def test_variants_of_one_scene_take_the_same_steps(name: str) -> None:
 @pytest.fixture(scope="module")
 def measured() -> PricesStudy:
     return study()
-
-
-def test_the_barest_form_costs_one(measured: PricesStudy) -> None:
-    """The ratio of the barest form to itself is 1 in every round, so that its interval is exactly 1."""
-    for row in measured.rows:
-        if row.variant == row.against:
-            assert row.step_ratio == (1.0, 1.0, 1.0)
 
 
 def test_rows_count_what_is_built(measured: PricesStudy) -> None:

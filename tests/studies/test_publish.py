@@ -29,14 +29,12 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.records import store
-from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.store import load, write
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report import tables
 from taylor_verify.words.cells import NOTHING, figure
-from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.report import publish
 
@@ -273,23 +271,6 @@ def test_every_link_of_the_front_page_leads_somewhere(report: Path) -> None:
     assert "reference" not in links
 
 
-def test_the_front_page_links_to_the_reference_where_there_is_one(report: Path) -> None:
-    """A folder of reference motions is linked to, and left alone."""
-    file = report / "reference" / "README.md"
-    file.parent.mkdir()
-    file.write_text("mine", encoding="utf-8")
-    publish(report)
-    assert "](reference/README.md)" in front_page(report)
-    assert file.read_text(encoding="utf-8") == "mine"
-
-
-def test_the_anchor_of_the_front_page_is_a_heading_of_the_tables(report: Path) -> None:
-    """The link to the meanings of the verdicts names a heading that exists."""
-    (anchor,) = re.findall(r"tables/README\.md#([a-z-]+)", front_page(report))
-    headings = re.findall(r"^## (.*)$", (report / "tables/README.md").read_text("utf-8"), re.M)
-    assert anchor in {heading.lower().replace(" ", "-") for heading in headings}
-
-
 def test_the_headline_numbers_are_those_of_the_verdicts(tmp_path: Path) -> None:
     """Scenes, runs and verdicts are counted; a rung's line has its median and its largest error."""
     u = UNIT["f64"]
@@ -383,28 +364,6 @@ def test_a_run_that_never_began_is_shown(report: Path, scene: str, rung: str, wo
     assert f"- `{scene}`, {rung}: **{word}**, the reason why {scene} has no number" in text
 
 
-def test_a_drift_beyond_its_bound_stands_out(report: Path) -> None:
-    """The cell of a failed quantity says so beside its numbers, and so does the line's verdict."""
-    (line,) = lines(report, "conserved.md", "euler/long")
-    assert cells(line)[2:] == ["**3.00, 2.00 @ 7 fail**", "50.0 (`T`)", "**fail**"]
-
-
-def test_a_quantity_that_a_scene_does_not_have_is_a_dash(report: Path) -> None:
-    """A column of another scene's quantity holds a dash, whether the run was scored or not."""
-    generic = passed("kirchhoff/general", "f64", "T")
-    lost = unscored("kirchhoff/general", "f80", "impulse", Status.UNAVAILABLE, "not started")
-    main = passed("kirchhoff/general", "f64", "impulse")
-    write(report, [*MIXED, main, generic, lost], [])
-    publish(report)
-    (scored,) = lines(report, "conserved.md", "kirchhoff/general", "f64")
-    assert cells(scored)[2:5] == ["3.00, 2.00 @ 7", NOTHING, NOTHING]
-    by_run = {(row["scene"], row["rung"]): row for row in rows(report, "conserved.csv")}
-    sheet = by_run["kirchhoff/general", "f80"]
-    assert (sheet["T_max_u"], sheet["F2_max_u"], sheet["y3_verdict"]) == ("unavailable", "", "")
-    (not_scored,) = lines(report, "conserved.md", "kirchhoff/general", "f80")
-    assert cells(not_scored)[2:5] == ["**unavailable**", NOTHING, NOTHING]
-
-
 def test_the_numbers_of_a_cell_are_the_verdicts(report: Path) -> None:
     """Errors appear in their unit and in u, with the time, the ratio, the bound and the steps."""
     (line,) = lines(report, "accuracy.md", "euler/generic", "f64")
@@ -435,36 +394,6 @@ def test_every_csv_holds_a_row_for_every_verdict_or_run(report: Path) -> None:
     state = [v for v in MIXED if v.quantity in {"omega", "impulse"}]
     assert len(rows(report, "accuracy.csv")) == len(state)
     assert len(rows(report, "conserved.csv")) == len({key(v) for v in MIXED})
-
-
-def test_rows_are_in_reading_order(report: Path) -> None:
-    """Euler comes before Kirchhoff, scenes by name, rungs up the ladder."""
-    extra = [passed("euler/generic", "f32", "omega")]
-    write(report, [*MIXED, *extra], [])
-    publish(report)
-    order = [(row["scene"], row["rung"]) for row in rows(report, "accuracy.csv")]
-    assert [rung for scene, rung in order if scene == "euler/generic"] == [
-        "f32",
-        "f64",
-        "f80",
-        "mp237",
-    ]
-    scenes = [scene for scene, _ in order]
-    assert scenes == [*sorted(s for s in scenes if s.startswith("euler")), "kirchhoff/screw"]
-
-
-def test_the_ladder_goes_up_by_bits() -> None:
-    """IEEE formats come first, then MPFR by its number of bits and not by its name."""
-    ladder = ["f32", "f64", "f80", "f128", "mp64", "mp237", "mp1000"]
-    assert sorted(sorted(ladder), key=place_of_rung) == ladder
-
-
-def test_the_summary_counts_every_verdict(report: Path) -> None:
-    """The counts of the gates page are those of the verdicts, and the worst is named and timed."""
-    counted = lines(report, "gates.md")[2]
-    assert cells(counted) == ["8", "**4**", "0", "1", "1", "1"]
-    text = (report / "tables" / "gates.md").read_text(encoding="utf-8")
-    assert "attainable: **50.0**, `T` of `euler/long` on f64 at t = 5." in text
 
 
 def pages(report: Path) -> Iterable[str]:
@@ -525,12 +454,3 @@ def test_a_figure_has_three_significant_digits(value: float) -> None:
     # rounding.
     assert abs(float(text) - value) <= value * (0.005 + 1e-12)
     assert [figure(0.0), figure(None)] == ["0", NOTHING]
-
-
-def test_prose_and_code_cannot_be_markdown() -> None:
-    """Bars, backticks and line ends do not survive in a form that ends a cell or a span."""
-    assert prose("a|b\n*c*") == r"a\|b \*c\*"
-    assert code("a|b c") == r"`a\|b c`"
-    assert code("a`b|c") == r"a\`b\|c"
-    assert code("a\\|b") == r"a\\\|b"
-    assert prose("y_space") == "y_space"

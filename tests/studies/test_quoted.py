@@ -41,13 +41,6 @@ def test_another_folder_is_not_quoted(tmp_path: Path) -> None:
     assert quoted.requoted(tmp_path / "local", VERDICTS) == {}
 
 
-def test_a_scene_that_was_not_run_has_no_number() -> None:
-    """A cell without a verdict says so, and is not left out."""
-    verdicts = [v for v in VERDICTS if v.scene != "euler/generic"]
-    line = next(n for n in quoted.accuracy(verdicts).splitlines() if "euler/generic" in n)
-    assert line.count("no number") == 5
-
-
 def test_a_block_without_its_end_is_refused(tmp_path: Path) -> None:
     """A page that lost the second mark would lose all that follows."""
     (tmp_path / "README.md").write_text(PAGE.replace(END, ""))

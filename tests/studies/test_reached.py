@@ -17,7 +17,6 @@ from mpmath import mp, mpf
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.exact import taylor
 from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.route import QuickerSolution
@@ -60,16 +59,6 @@ def test_a_person_sees_the_rows_that_were_reached(capsys: pytest.CaptureFixture[
     assert "t = 20 " in out
     assert "1e5" not in out
     assert "t = 100000" in error
-
-
-def test_a_time_is_named_as_the_clock_shows_it(capsys: pytest.CaptureFixture[str]) -> None:
-    """A scene that begins at t = 1e16 has no time of its own called 1."""
-    later = "extremes/euler-start-1e16"
-    start = taylor_verify.load(later).clock.start
-    status, document, _ = asked(capsys, later, f"{start + 1},{start + 10**9}")
-    assert status == 3
-    assert [row["t"] for row in document["rows"]] == [str(start + 1)]
-    assert f"t = {start + 10**9}" in document["because"]
 
 
 def test_python_raises_and_hands_over_the_rows() -> None:
@@ -120,14 +109,6 @@ def test_rows_are_certified_once_they_have_their_digits(monkeypatch: pytest.Monk
     assert tries[0] == times
     assert all(later == times[1:] for later in tries[1:])
     assert len(tries) > 1
-
-
-def test_a_precision_that_does_not_suffice_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The nearest time that lacks digits is named where the bits are few."""
-    monkeypatch.setattr(taylor, "_MOST_BITS", 0)
-    with pytest.raises(Unsettled, match="does not shrink to a radius of 2") as raised:
-        TaylorSolution(taylor_verify.load(UNSTABLE)).motion(list(map(Fraction, (75, 1, 0))), 12)
-    assert raised.value.places == (1, 2)
 
 
 class _Balls(Enclosed):

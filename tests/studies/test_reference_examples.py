@@ -19,7 +19,6 @@ from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import reference
 
 MOMENTS = ("1", "2", "3")
-U = 2.0**-53
 
 
 @cache
@@ -77,17 +76,6 @@ def test_the_example_converges_to_the_reference(example: Path) -> None:
     assert len(errors_by_step) >= 3
     assert errors_by_step[-1] <= 1e-10
     assert all(abs(a / b / 16 - 1) <= 0.1 for a, b in pairwise(errors_by_step))
-
-
-def test_the_example_says_how_well_the_reference_is_known(example: Path) -> None:
-    """The printed radius is that of the CSV, and below the roundoff of doubles."""
-    _, printed = run(example, generic(), MOMENTS, "1e-6")
-    (radius,) = re.findall(r"the reference is known to ([0-9.e-]+)", printed)
-    rows = generic().read_text(encoding="utf-8").splitlines()
-    known = max(float(row.rpartition(",")[2]) for row in rows[1:])
-    # Two digits are printed.
-    assert abs(float(radius) / known - 1) <= 0.05
-    assert float(radius) <= U
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies import bulk, registry
-from taylor_verify_reports.studies.registry import STUDIES, UnknownStudy, find
+from taylor_verify_reports.studies.registry import STUDIES
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.study import (
     Bulk,
@@ -175,24 +175,10 @@ def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
     assert (folder / SMALLEST.path).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
     assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
     index = (folder / "tables" / "README.md").read_text(encoding="utf-8")
-    assert "| [smallest.md](smallest.md) | [csv](smallest.csv) |" in index
+    assert "| [smallest.md](smallest.md) | `smallest.csv` |" in index
     (folder / SUM.name).unlink()
     assert call(folder) == 0
     assert not (folder / SMALLEST.path).exists()
-
-
-def test_the_index_is_made_anew_after_a_measurement(folder: Path) -> None:
-    """A report that has verdicts links to the page of a study as soon as it is measured."""
-    store.write(folder, [], [])
-    assert call(folder, "smallest", "--terms", "2") == 0
-    assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
-
-
-def test_pictures_are_those_of_stored_documents(folder: Path) -> None:
-    """The paper and the archive draw every study's."""
-    assert registry.pictures(folder) == []
-    SUM.write(folder, Sum(5, 1.0))
-    assert [picture.stem for picture in registry.pictures(folder)] == ["smallest-5"]
 
 
 def test_files_that_are_not_committed_are_made_when_they_are_missing(
@@ -280,13 +266,6 @@ def test_every_study_has_a_name_of_its_own() -> None:
     for kind in ("path", "options"):
         values = [value for study in STUDIES if (value := getattr(study, kind))]
         assert len(set(values)) == len(values)
-
-
-def test_a_study_is_found_once() -> None:
-    """A study that is named twice is run once, in the order of the names."""
-    assert [study.name for study in find(["hard", "claims", "hard"])] == ["hard", "claims"]
-    with pytest.raises(UnknownStudy):
-        find(["hard", "nothing"])
 
 
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 from collections.abc import Collection, Mapping
@@ -18,11 +17,10 @@ from builders.reports import SCENES
 from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
-from taylor_verify.records.schema import schema
 from taylor_verify.solvers.files.file import read
+from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
-from taylor_verify_reports.studies.site.links import relinked
 from taylor_verify_reports.studies.site.scene_page import scene_page
 from taylor_verify_reports.studies.site.stage import Stage
 from taylor_verify_reports.studies.source import Report
@@ -201,23 +199,6 @@ def test_a_page_of_docs_reaches_the_rest(
 
 
 @building
-def test_names_become_links(pages: dict[str, Page]) -> None:
-    """The name of a scene leads to its page, and a link that is a path shows the page's title."""
-    text = pages["docs/method.html"].text
-    assert '"../reports/scenes/euler-with-attitude.html"' in text
-    assert re.search(r'tables/README.html">(?:<[^>]*>)*Tables<', text)
-    assert "reports/tables/README.md" not in text
-
-
-@building
-def test_formulas_need_no_script(pages: dict[str, Page]) -> None:
-    """A formula in a line and one of a scene are MathML in the page itself."""
-    assert re.search(r"<math[^>]*>.*<msup>", pages["docs/method.html"].text)
-    assert pages[place_of("kirchhoff/whole-motion")].text.count("<math") >= 3
-    assert not [load for page in pages.values() for load in page.loads if "mathjax" in load.lower()]
-
-
-@building
 def test_anchors_are_one_of_a_kind(pages: dict[str, Page]) -> None:
     """No page has an id twice: links and labels would go to the first."""
     for name, page in pages.items():
@@ -286,22 +267,13 @@ def test_markdown_links_lead_within_the_site(tmp_path: Path) -> None:
     assert stage.files["reports/data/hard.json"] == b"# A title\n"
 
 
-def test_a_heading_keeps_its_words_and_its_link() -> None:
-    """Sphinx takes no link to a file in a heading: it stands below it."""
-    text = relinked("## [a.py](a.py) (T1)\n\nb\n", "", "", lambda place: place)
-    assert text == "## a.py (T1)\n\n[a.py](a.py)\n\nb\n"
-
-
-def test_somebody_elses_html_is_text(report: Path, tmp_path: Path) -> None:
+def test_somebody_elses_html_is_text(tmp_path: Path) -> None:
     """Markup in the words of a scene is shown and never taken for a part of the page."""
-    place = tmp_path / "report"
-    shutil.copytree(report, place)
-    file = place / "data" / "portraits" / "euler-with-attitude.json"
-    portrait = json.loads(file.read_text("utf-8"))
     markup = "<script>alert(1)</script>"
-    portrait |= {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
-    file.write_text(json.dumps(portrait), encoding="utf-8")
-    page = scene_page("euler/with-attitude", Report(place), ())
+    words = {"title": markup, "why": [markup], "toml": f"# {markup}\n# ```\n{markup}"}
+    reports.write_runs(tmp_path, [("euler/with-attitude", "f64")])
+    PORTRAITS.write(tmp_path, [reports.portrait_without_run("euler/with-attitude") | words])
+    page = scene_page("euler/with-attitude", Report(tmp_path), ())
     html = MarkdownIt("commonmark").enable("table").render(page)
     assert html.count("alert(1)") >= 4
     assert "<script>alert" not in html
@@ -336,18 +308,12 @@ def test_a_fault_of_a_page_is_an_error(report: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "site").exists()
 
 
-def test_what_is_not_installed_is_named(report: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_installed_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing package is named as pip knows it, before anything is done."""
     monkeypatch.setattr(builder, "_NEEDED", ("no_such_package",))
     with pytest.raises(ImportError) as raised:
-        contents(report)
+        contents(tmp_path)
     assert raised.value.name == "no-such-package"
-
-
-@building
-def test_the_schema_of_verdicts_lies_at_the_top(site: dict[str, str | bytes]) -> None:
-    """A program finds what `list --schema` prints under a name that stays."""
-    assert json.loads(site["verdicts.schema.json"]) == schema()
 
 
 @building
@@ -356,12 +322,12 @@ def test_the_site_is_the_same_every_time(checkout: Path, site: dict[str, str | b
     assert contents(checkout / "reports") == site
 
 
-def test_a_folder_of_somebody_else_is_left_alone(report: Path, tmp_path: Path) -> None:
+def test_a_folder_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     """A target with other files is refused, and what is in it stays."""
     mine = tmp_path / "notes.txt"
     mine.write_text("mine", encoding="utf-8")
     with pytest.raises(ValueError, match="expected a folder that is empty or has an earlier site"):
-        build(report, tmp_path)
+        build(tmp_path, tmp_path)
     assert mine.read_text(encoding="utf-8") == "mine"
 
 
@@ -384,7 +350,7 @@ def test_a_site_of_committed_files_alone_is_whole(
     shutil.copytree(report, place, ignore=shutil.ignore_patterns(*BULK))
     assert main(["publish", "--from", str(place), "--site", str(tmp_path / "site")]) == 0
     errors = capsys.readouterr().err
-    assert "without 2 tables of gates, 10 records of runs, 5 portraits of scenes" in errors
+    assert "without 2 tables for searching, 10 records of runs, 5 portraits of scenes" in errors
     assert "`taylor-verify publish --missing` makes" in errors
     target = tmp_path / "site"
     files = {file.relative_to(target).as_posix(): file for file in target.rglob("*.*")}

@@ -14,22 +14,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.batch.runs import run_all
 from taylor_verify.cli import main
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.engines.peer import Peer
 from taylor_verify.solvers.solver import Solver
-from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.setting import setting as real_setting
 from taylor_verify.tradeoff.timing import (
     CONFIDENCE,
-    clock_resolution,
     coverage,
     estimate,
     in_rounds,
@@ -37,7 +33,6 @@ from taylor_verify.tradeoff.timing import (
 )
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
-    PROCESSES,
     SCENES,
     published_settings,
     scene_named,
@@ -69,13 +64,6 @@ def test_the_rank_is_the_largest_that_has_the_confidence(count: int) -> None:
     assert not coverage(count, rank + 1) >= CONFIDENCE
     between = sum(comb(count, below) for below in range(rank, count - rank + 1)) / 2**count
     assert isclose(between, coverage(count, rank), abs_tol=1e-12)
-
-
-def test_the_published_number_of_processes_is_the_smallest_that_suffices() -> None:
-    """One process fewer is too few for 95 %, even for the interval between the extremes."""
-    assert place(PROCESSES, CONFIDENCE) == 1
-    assert place(PROCESSES - 1, CONFIDENCE) == 0
-    assert estimate(range(PROCESSES - 1)).low is None
 
 
 # The rounds of a process.
@@ -185,30 +173,6 @@ def test_what_fails_is_left_out(machine: Machine, scene: Scene) -> None:
     assert machine.solved.count("broken:0.01") == 1
 
 
-def test_what_is_dear_is_solved_once(
-    machine: Machine, scene: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The only solve of a dear setting is divided by the yardstick of all rounds."""
-    monkeypatch.setattr(rounds, "_SLOWEST_IN_ROUNDS", -1.0)
-    ratios = measured(scene, names("dear:0.3"), 1, 3, 1e-9, machine.clock)
-    assert machine.solved.count("dear:0.3") == 1
-    assert machine.solved.count(YARDSTICK[0]) == 4
-    (one,) = ratios.values()
-    assert 0.3 / 0.02 / 1.01**6 <= one.ratio <= 0.3 / 0.02
-
-
-def test_the_resolution_is_the_smallest_step_of_the_clock() -> None:
-    """The resolution of a clock that ticks in quarters is a quarter."""
-    asked = 0
-
-    def clock() -> float:
-        nonlocal asked
-        asked += 1
-        return (asked // 3) * 0.25
-
-    assert clock_resolution(clock) == 0.25
-
-
 # What is measured, and what is stored of it.
 
 
@@ -223,15 +187,6 @@ def test_every_published_setting_can_be_named_again(name: str) -> None:
         again = real_setting(one.solver.name, one.rung)
         assert again.solver == one.solver
         assert again.family == one.family
-
-
-def test_the_compiled_integrators_of_other_libraries_are_known() -> None:
-    """All names that are published with --outside are known solvers."""
-    scene = load("kirchhoff/general-body")
-    extra = set(published_settings(scene, with_outside=True)) - set(published_settings(scene))
-    peers = {one for one in extra if isinstance(one.solver, Peer)}
-    assert len(peers) == len(measurement.PEERS) * len(measurement._FOR_THE_COLUMNS)
-    assert {one.family for one in extra - peers} == {"taylor f64 optimised"}
 
 
 def test_a_scene_beyond_its_end_has_the_solvers_of_the_columns_alone() -> None:
@@ -268,21 +223,6 @@ def test_numbers_and_times_are_apart(monkeypatch: pytest.MonkeyPatch, scene: Sce
     # Two processes are too few for an interval, and none is claimed.
     assert timed[YARDSTICK].low is None
     assert len(finished) == 4
-
-
-def test_the_yardstick_is_what_everybody_gets() -> None:
-    """The yardstick is the default driver of `run`."""
-    assert real_setting("taylor", F64).solver == Taylor()
-
-
-def test_a_process_of_its_own_measures_the_same_settings(scene: Scene) -> None:
-    """Only names and numbers are sent between processes."""
-    short = replace(scene, clock=replace(scene.clock, instants=scene.clock.instants[:3]))
-    asked = [(short, names("taylor", "taylor?tol=1e-6"))]
-    (ratios,) = run_all(measurement.one_process, [(asked, 1, 1)], workers=1)
-    assert set(ratios) == {short.name}
-    assert set(ratios[short.name]) == set(names("taylor", "taylor?tol=1e-6"))
-    assert all(one.seconds > 0 for one in ratios[short.name].values())
 
 
 def test_the_verb_writes_data_and_page(

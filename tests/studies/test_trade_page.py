@@ -10,13 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.tradeoff import NUMBERS_MADE, POINTS, SCENE, TIMES_MADE
+from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
-from taylor_verify.tradeoff.pictures.trade import floors_of
 from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.tradeoff.page import page
 from taylor_verify_reports.studies.tradeoff.stored import (
-    NUMBERS,
     Trades,
     load,
     write,
@@ -98,31 +96,6 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
     assert twelve[2:] == ["taylor, alone", "**1.00**", "0.500", "not reached"]
 
 
-def test_without_peers_the_page_says_how_to_measure_them(tmp_path: Path) -> None:
-    """The section has a command in place of a table."""
-    points = tuple(p for p in POINTS if not p.solver.startswith("outside"))
-    made = Trades(replace(NUMBERS_MADE, points=points), TIMES_MADE)
-    text = section(page(made, tmp_path), "Beside compiled integrators of other libraries")
-    assert "publish tradeoff --outside" in text
-    assert "|" not in text
-
-
-def test_a_wider_number_has_its_price(folder: Path) -> None:
-    """A column for each rung of taylor at its own tolerance, narrow ones first."""
-    table = section(text_of(folder), "What a wider number costs")
-    assert table.index("f64") < table.index("f128")
-    assert "**40.0** [36.0, 48.0], 32.0 digits" in table
-
-
-def test_what_rounding_alone_leaves_stands_beside_it(tmp_path: Path) -> None:
-    """A line of digits on each rung for which the measurement has them."""
-    scene = replace(SCENE, attainable={"f64": 2e-16, "f128": None})
-    made = Trades(replace(NUMBERS_MADE, scenes=(scene,)), TIMES_MADE)
-    table = section(page(made, tmp_path), "What a wider number costs")
-    assert line(table, "| *attainable*")[1:] == ["15.7 digits", NOTHING]
-    assert floors_of(made.trades[0].document()) == {"f64": 2e-16}
-
-
 def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
     """A false success is no digit and no cell of a cost; its reason cannot break the table."""
     text = text_of(folder)
@@ -134,16 +107,6 @@ def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
     assert "false success" in line(section(text, "Asked for and achieved"), "SciPy RK45")
 
 
-def test_too_few_processes_give_no_interval(tmp_path: Path) -> None:
-    """The page says so, and shows no brackets."""
-    method = replace(TIMES_MADE.method, processes=2, coverage=0.5)
-    bare = tuple(replace(timing, low=None, high=None) for timing in TIMES_MADE.timings)
-    made = Trades(NUMBERS_MADE, replace(TIMES_MADE, method=method, timings=bare))
-    text = page(made, tmp_path)
-    assert "No interval is given" in text
-    assert "**12.0** @ 1e-09" in text
-
-
 def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
     """The sheet has every setting with every digit, the failed ones included."""
     text = (folder / "tables" / "tradeoff.csv").read_text(encoding="utf-8")
@@ -151,11 +114,3 @@ def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
     assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
     assert rows[1]["ratio"] == "1.0"
     assert rows[6]["standing"] == "false success"
-
-
-def test_a_file_of_something_else_is_told(tmp_path: Path) -> None:
-    """The refusal names the file."""
-    write(tmp_path, NUMBERS_MADE, TIMES_MADE)
-    (tmp_path / NUMBERS.name).write_text("{}", encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected a key versions, got none @ .*tradeoff\.json"):
-        load(tmp_path)

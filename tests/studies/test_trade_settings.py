@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -41,15 +39,6 @@ def short(name: str) -> Scene:
 
 
 # Names.
-
-
-def test_checking_a_tolerance_loads_no_heyoka() -> None:
-    """A wrong name is told before anything heavy is imported."""
-    program = (
-        "import sys; from taylor_verify.solvers.registry import solver_named; "
-        "solver_named('taylor?tol=1e-6'); sys.exit('heyoka' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
 
 def test_a_tolerance_that_the_rung_cannot_hold_is_unavailable() -> None:
@@ -104,15 +93,6 @@ def test_the_chosen_stand_beside_the_yardstick() -> None:
     ]
     taylor = {one.rung.name for one in asked_settings if one.solver == Taylor()}
     assert taylor == {"f64", "f128"}
-
-
-def test_a_solver_that_knows_none_of_the_rungs_says_so() -> None:
-    """A solver without any of the rungs is in the trade with its reason."""
-    asked_settings = chosen(["closed-form:ellipj"], ["f80", "f128"])
-    (one,) = [one for one in asked_settings if not one.is_integrator]
-    (p,) = trade_off(short("euler/generic"), [one], repeats=1).points
-    assert p.standing is Standing.NOT_RUN
-    assert "f64 alone" in p.because
 
 
 def test_the_integrators_of_other_libraries_are_asked_for_by_name() -> None:

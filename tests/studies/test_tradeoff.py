@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from math import inf, log10, nan
+from math import inf, nan
 from pathlib import Path
 
 import pytest
@@ -37,8 +37,6 @@ from taylor_verify.tradeoff.solves import Timed, cold_caches
 from taylor_verify.tradeoff.starts import STARTS, nearby
 from taylor_verify.tradeoff.trade_off import (
     front,
-    front_sentences,
-    request_sentences,
     trade_off,
 )
 
@@ -160,17 +158,6 @@ def test_a_lost_or_failed_run_is_never_on_the_front(scene: Scene) -> None:
     assert recommended(trade, 1e-6).solver.name == "slow"
 
 
-def test_the_trade_is_the_same_again(scene: Scene) -> None:
-    """Equal clocks and seeds give equal documents."""
-    asked = [setting_of(Scripted(f"s{k}", 10.0**-k, f"1e-{12 - k}")) for k in range(1, 6)]
-    first, second = (
-        trade_off(scene, asked, 3, seed=5, clock=lambda: 0.0).document() for _ in range(2)
-    )
-    assert first == second
-    # Faster is coarser here, so each of them is on the front, the fastest first.
-    assert first["front"] == [f"s{k} f64" for k in range(5, 0, -1)]
-
-
 def test_a_trade_says_what_rounding_alone_leaves(scene: Scene) -> None:
     """The floor of the judge, one rounding a sample, is told for each rung, finer on the wider one."""
     asked = [
@@ -236,16 +223,6 @@ def test_the_recommended_setting_meets_the_target(scene: Scene, target: float) -
     assert omega.max <= target
 
 
-def test_the_cheapest_that_reaches_it_is_recommended(scene: Scene) -> None:
-    """The fastest setting that reaches the target is taken; one too coarse is not, though faster."""
-    asked = [
-        setting_of(Scripted("coarse", 0.1, "1e-3")),
-        setting_of(Scripted("fine", 0.3, "1e-12")),
-        setting_of(Scripted("dear", 0.5, "1e-12")),
-    ]
-    assert recommend(scene, 1e-8, asked).solver.name == "fine"
-
-
 @dataclass(frozen=True)
 class Fitted(Solver):
     """Accurate from one start and no other, as a step tuned to one orbit is."""
@@ -268,15 +245,6 @@ def test_a_setting_that_fails_from_a_near_start_is_passed_over(scene: Scene) -> 
     recommendation = recommended(trade, 1e-10)
     assert recommendation.solver.name == "steady"
     assert recommendation.starts == 1 + STARTS
-
-
-def test_nothing_drifts_under_loads() -> None:
-    """A loaded body conserves nothing, so that its points have errors and no drift."""
-    whole = load("euler/constant-moment")
-    short = replace(whole, clock=replace(whole.clock, instants=whole.clock.instants[:4]))
-    (p,) = trade_off(short, [setting_of(Taylor())], repeats=1).points
-    assert p.standing is Standing.SOUND
-    assert p.accuracy.drift is None
 
 
 def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -313,20 +281,6 @@ def test_starts_are_near_and_drawn_from_the_seed(scene: Scene) -> None:
     for start in starts:
         for moved, own in zip(start.initial.omega, flat.initial.omega, strict=True):
             assert abs(moved - own) <= abs(own) / 100
-
-
-def test_a_request_is_held_against_what_came_of_it() -> None:
-    """The digits asked for and those achieved are the logarithms of tolerance and error."""
-    p = made_up(1e-7, 1.0)
-    (sentence,) = request_sentences([p])
-    assert f"{-log10(1e-9):.1f} digits asked for, {-log10(1e-7):.1f} got" in sentence
-    assert "1e+02 times the tolerance" in sentence
-    assert request_sentences([made_up(nan, 1.0)]) == []
-
-
-def test_no_sound_answer_is_said() -> None:
-    """A front of nothing is a sentence."""
-    assert front_sentences([made_up(nan, 1.0)]) == ["No setting gave an answer that is sound."]
 
 
 # The command

@@ -118,22 +118,6 @@ def test_what_a_callable_raises_is_shown_where_it_rose(pytester: pytest.Pytester
     )
 
 
-def test_a_program_is_judged_by_its_name(pytester: pytest.Pytester) -> None:
-    """A solver may be a name, of a program too; one that crashes fails with its outcome."""
-    tests = """
-def test_taylor(verify_solver):
-    verify_solver("euler/spherical", "taylor")
-
-def test_program(verify_solver):
-    verify_solver("euler/spherical", "process:false")
-"""
-    result = session(pytester, tests)
-    result.assert_outcomes(passed=1, failed=1)
-    result.stdout.fnmatch_lines(
-        ["*fail  euler/spherical f64 omega: *ended by a signal or with an exit status*"]
-    )
-
-
 @pytest.mark.parametrize(
     "call",
     [
@@ -268,13 +252,6 @@ samples = 61
     assert all(is_met(row) for row in demanded_rows(judgement, only="conserved"))
 
 
-def test_a_tolerance_below_the_floor_is_said_to_be_so() -> None:
-    """Where perfect rounding would leave more than is allowed, the message does not blame the step."""
-    judgement = run("euler/tennis-racket", "taylor", "f64", tolerance=1e-17)
-    text = report(judgement, demanded_rows(judgement))
-    assert "the tolerance is finer than the roundings of this precision" in text
-
-
 # The marker.
 
 
@@ -296,16 +273,6 @@ class TestOfAClass:
     result.assert_outcomes(passed=6)
     names = ["spherical-f32", "rest-f32", "spherical-f64", "rest-f64"]
     result.stdout.fnmatch_lines([f"*::test_it?euler/{name}? PASSED*" for name in names])
-
-
-def test_a_word_of_a_marker_is_that_of_the_command_line(pytester: pytest.Pytester) -> None:
-    """A pattern fits scenes beyond the standard set, and a folder stands for its scenes."""
-    tests = """
-@pytest.mark.verify_scenes("engines/full*", "extremes/worst")
-def test_it(verify_scene): pass
-"""
-    result = session(pytester, tests, "--collect-only", "-q")
-    result.stdout.fnmatch_lines(["*::test_it?engines/full*", "*::test_it?extremes/worst/*"])
 
 
 @pytest.mark.parametrize(
@@ -355,12 +322,6 @@ def test_it(verify_scene):
     assert verify_scene == 17
 """
     session(pytester, tests).assert_outcomes(passed=1)
-
-
-def test_the_marker_is_registered(pytester: pytest.Pytester) -> None:
-    """`pytest --markers` lists it, and --strict-markers accepts it."""
-    result = session(pytester, "", "--markers", "--strict-markers")
-    result.stdout.fnmatch_lines(["@pytest.mark.verify_scenes(*"])
 
 
 def test_a_test_that_judges_nothing_is_no_pass(pytester: pytest.Pytester) -> None:

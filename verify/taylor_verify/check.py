@@ -121,5 +121,7 @@ def check(
     wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
     is_path = isinstance(solve_or_file, str | PathLike)
-    file = read(solve_or_file, wanted) if is_path else trajectory(solve_or_file, scene, wanted)
+    file = (
+        read(solve_or_file, wanted, scene) if is_path else trajectory(solve_or_file, scene, wanted)
+    )
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)

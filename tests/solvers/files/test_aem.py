@@ -133,13 +133,6 @@ def test_text_of_version_2_has_the_scalar_last(name: str, tmp_path: Path) -> Non
     )
 
 
-def test_derivatives_are_angular_velocities(tmp_path: Path) -> None:
-    """A message with q' = q (0, w) / 2 tells w = 2 conj(q) q' / |q|^2, exactly."""
-    state = "2024-061T00:00:00 0 0 0 2 0.5 -0.25 1 0"
-    table = read(written(tmp_path, text(state, ATTITUDE_TYPE="QUATERNION/DERIVATIVE")))
-    assert table.groups["omega"] == ((Fraction(1, 2), Fraction(-1, 4), Fraction(1)),)
-
-
 @pytest.mark.parametrize(("order", "numbers"), [("FIRST", "4 1 2 -3"), ("LAST", "1 2 -3 4")])
 @pytest.mark.parametrize(("direction", "sign"), [("A2B", 1), ("B2A", -1)])
 def test_version_1_says_order_and_direction(
@@ -159,17 +152,6 @@ def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Pa
     table = read(written(tmp_path, content))
     assert set(table.groups) == {"quaternion"}
     assert table.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
-
-
-def test_a_segment_is_named_by_its_number(tmp_path: Path) -> None:
-    """Two segments are each read by their number, from their own START_TIME; none is taken unasked."""
-    second = text(START_TIME="2024-061T00:00:00.125").split("ORIGINATOR = X\n")[1]
-    file = written(tmp_path, text() + second)
-    with pytest.raises(Refused, match=r"expected one segment, got 2 @ .*FILE#1 \.\.\. FILE#2"):
-        read(file)
-    assert [read(f"{file}#{n}").times for n in (1, 2)] == [(Fraction(1, 4),), (Fraction(1, 8),)]
-    with pytest.raises(Refused, match="expected a segment from 1 to 2, got `#3`"):
-        read(f"{file}#3")
 
 
 FAULTS: Mapping[str, tuple[str, str]] = {

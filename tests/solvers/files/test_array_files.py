@@ -7,11 +7,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-import pyarrow as pa
 import pytest
 import scipy.io
 from builders.recordings import OMEGA
-from pyarrow import parquet
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
@@ -58,19 +56,6 @@ def test_several_trajectories_in_groups_are_asked_for(tmp_path: Path) -> None:
         read(f"{tmp_path / 'run.h5'}#d")
 
 
-def test_what_is_no_column_is_named_in_a_note(tmp_path: Path) -> None:
-    """Text, and arrays of another length than the times, are left out and named."""
-    with h5py.File(tmp_path / "run.h5", "w") as content:
-        for name in ("t", *OMEGA):
-            content[name] = np.arange(4.0)
-        content["inertia"], content["title"], content["step"] = np.eye(3), "a run", 0.1
-    table = read(tmp_path / "run.h5")
-    assert table.notes == (
-        "not read, because they have no 4 rows: inertia, step",
-        "not read, because they hold no real numbers: title",
-    )
-
-
 def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
     """A file of version 7.3 is HDF5 with the axes the other way round; SciPy ships one of MATLAB's."""
     data = Path(scipy.io.matlab.__file__).parent / "tests" / "data" / "testhdf5_7.4_GLNX86.mat"
@@ -110,12 +95,3 @@ def test_objects_of_matlab_are_refused_with_the_way_to_save_them(tmp_path: Path)
     expected = "got the object `run` of class timeseries .*save the numbers: s.t = run.Time"
     with pytest.raises(Refused, match=expected):
         read(tmp_path / "run.mat")
-
-
-def test_structs_in_parquet_are_dotted_names(tmp_path: Path) -> None:
-    """A column of structs is a column for each of its numbers."""
-    rows = [{"a": {"x": 1.0, "b": {"y": 2}}, "t": 0.0}, {"a": {"x": 3.0, "b": {"y": 4}}, "t": 1.0}]
-    parquet.write_table(pa.Table.from_pylist(rows), tmp_path / "run.parquet")
-    table = read_table(tmp_path / "run.parquet")
-    columns = {column.name: list(column.values) for column in table.columns}
-    assert columns == {"a.x": [1.0, 3.0], "a.b.y": [2, 4], "t": [0.0, 1.0]}

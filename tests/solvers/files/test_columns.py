@@ -144,11 +144,6 @@ def test_usual_forms_of_names(names: str, group: str) -> None:
     assert file.times == (Fraction(0), Fraction(7))
 
 
-def test_a_quaternion_and_a_centre_share_no_letters() -> None:
-    """Of w x y z two groups would take x y z: the caller is asked."""
-    assert "say which" in refusal("t w x y z")
-
-
 def test_blanks_and_a_mark_at_the_beginning_of_a_name_are_no_part_of_it() -> None:
     """Names with blanks around them, and with a byte order mark, are the names."""
     assert set(made(["\ufefftime", " wx", "wy ", '"wz"']).groups) == {"omega"}
@@ -249,14 +244,6 @@ def test_degrees_are_degrees_to_400_bits(form: str) -> None:
         assert abs(mp.mpf(value.numerator) / value.denominator - right) < mp.mpf(10) ** -119
 
 
-def test_each_column_has_its_own_unit() -> None:
-    """Columns in degrees and in radians of one file are each read in their own unit."""
-    file = made(["t", "wx [deg/s]", "wy [rad/s]", "wz"])
-    degree = in_brackets("deg/s", "omega")
-    assert degree is not None
-    assert file.groups["omega"][0] == (10 * degree.factor, 20, 30)
-
-
 @pytest.mark.parametrize(
     ("names", "unit"),
     [
@@ -280,12 +267,6 @@ def test_a_unit_nobody_uses_is_refused_with_those_that_are_known(
     assert f"--columns {ours}='{name}'" in message
 
 
-def test_a_unit_of_another_kind_ends_no_name() -> None:
-    """x_dps is no position: degrees per second are no length."""
-    file = made("t w1 w2 w3 x_dps y_dps z_dps")
-    assert set(file.groups) == {"omega"}
-
-
 # What is asked for.
 
 
@@ -306,11 +287,6 @@ def test_a_group_is_asked_for_by_its_first_word() -> None:
         assert made(names, {"omega": "g"}).groups["omega"][0] == (10, 20, 30)
     message = refusal("t g_x g_y w1 w2 w3", {"omega": "g"})
     assert "name each of w1 w2 w3" in message
-
-
-def test_a_part_of_a_group_may_be_asked_for() -> None:
-    """w3 by request, w1 and w2 by their own names."""
-    assert made("t w1 w2 W_3x", {"w3": "W_3x"}).groups["omega"][0] == (10, 20, 30)
 
 
 def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
@@ -368,15 +344,6 @@ def test_a_longer_row_of_numbered_columns_is_no_group(names: str) -> None:
     assert file.notes[-1] == "ignored: " + " ".join(f"`{name}`" for name in names.split())
 
 
-def test_our_own_names_come_before_usual_ones() -> None:
-    """w1 w2 w3 beside gyro_x gyro_y gyro_z: ours are taken, the others are named."""
-    file = made("t gyro_x gyro_y gyro_z w1 w2 w3")
-    assert file.groups["omega"][0] == (40, 50, 60)
-    assert file.notes == ("ignored: `gyro_x` `gyro_y` `gyro_z`",)
-    both = made("t w1 w2 w3 q0 q1 q2 q3 " + " ".join(n.upper() for n in MATRIX))
-    assert set(both.groups) == {"omega", "quaternion"}
-
-
 @pytest.mark.parametrize(
     "names", ["t w1 w2 w3 u v w", "t w1 w2 w3 acceleration.x acceleration.y acceleration.z"]
 )
@@ -427,42 +394,6 @@ def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) 
         Refused, match=r"got t alone @ .*ignored: `roll` `pitch`; .*--columns w1=NAME"
     ):
         taylor_verify.check(SCENE, file)
-
-
-def test_columns_that_are_ignored_may_hold_anything(tmp_path: Path) -> None:
-    """Words and arrays of other lengths do not matter where they are not read."""
-    (tmp_path / "mine.json").write_text(
-        '{"t": [0, 1], "w1": [0, 1], "w2": [0, 1], "w3": [0, 1], "who": ["me"], "n": [1, 2, 3]}'
-    )
-    file = read(tmp_path / "mine.json")
-    assert file.notes == ("ignored: `who` `n`",)
-
-
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        ("time,wx,wy,wz\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column wy"),
-        (
-            "time,wx,wy,wz\n0,1,2,3\n0,1,2,3\n",
-            "expected no time twice, got 0 again @ .*, column time",
-        ),
-        (
-            "t [ms],w1,w2,w3\n1,1,2,3\n6,1,2,3\n2,1,2,3\n",
-            "got 2 after 6 @ .* row 3, column t .ms.",
-        ),
-        (
-            "time,wx,wy,wz\n2024-01-01T00:00:00,1,2,3\n",
-            "got '2024-01-01T00:00:00' @ .* column time",
-        ),
-    ],
-)
-def test_faults_of_numbers_name_the_columns_of_the_file(
-    text: str, fault: str, tmp_path: Path
-) -> None:
-    """The place of a fault is the file's own name of the column."""
-    (tmp_path / "mine.csv").write_text(text)
-    with pytest.raises(Refused, match=fault):
-        read(tmp_path / "mine.csv")
 
 
 @pytest.mark.parametrize(("encoding", "mark"), [("utf-16", "UTF-16"), ("utf-16-be", "other bytes")])

@@ -162,14 +162,6 @@ def test_members_that_are_no_columns_are_refused(
         read(archive(tmp_path / "mine.npz", **members))
 
 
-def test_an_array_that_is_no_archive_is_refused(tmp_path: Path) -> None:
-    """One array under the suffix of an archive is refused as such."""
-    file = tmp_path / "mine.npz"
-    file.write_bytes(npy(np.zeros((3, 4))))
-    with pytest.raises(Refused, match="got a fault in it: one array, and no archive"):
-        read(file)
-
-
 def test_an_archive_of_many_members_is_refused(tmp_path: Path) -> None:
     """The members are counted before any is looked at."""
     many = {f"a{i}__npy": b"" for i in range(COLUMNS.most)}
@@ -185,15 +177,6 @@ def test_a_key_twice_is_refused_in_json(tmp_path: Path) -> None:
         read(file)
 
 
-def test_a_column_twice_is_refused_in_parquet(tmp_path: Path) -> None:
-    """Two columns of one name are told as in every other format."""
-    file = tmp_path / "mine.parquet"
-    table = pa.table({name: [0.0, 1.0] for name in (*NAMES, "again")})
-    parquet.write_table(table.rename_columns([*NAMES, "w3"]), file)
-    with pytest.raises(Refused, match="expected every column once, got `w3` again"):
-        read(file)
-
-
 def test_a_long_text_that_many_rows_repeat_is_refused(tmp_path: Path) -> None:
     """A dictionary holds a text once; a thousand rows of it are not made a thousand texts."""
     file = tmp_path / "mine.parquet"
@@ -203,16 +186,6 @@ def test_a_long_text_that_many_rows_repeat_is_refused(tmp_path: Path) -> None:
     parquet.write_table(pa.table(columns), file)
     with pytest.raises(Refused, match="expected at most 4000 characters in a number, got 5000"):
         read(file)
-
-
-def test_types_that_are_no_numbers_are_refused_in_parquet(tmp_path: Path) -> None:
-    """Lists, bytes and times of the day are told by their type, column by column."""
-    file = tmp_path / "mine.parquet"
-    parquet.write_table(pa.table({"t": [0.0], "w1": [[1]], "w2": [b"x"], "w3": [0.0]}), file)
-    with pytest.raises(Refused) as refused:
-        read(file)
-    assert len(refused.value.faults) == 2
-    assert "expected a column of numbers, got the type binary @" in str(refused.value)
 
 
 def test_a_line_without_end_is_refused(tmp_path: Path) -> None:

@@ -161,15 +161,6 @@ def test_matrices_are_attitudes(shape: tuple[int, ...]) -> None:
         assert asked.groups == file.groups
 
 
-def test_a_quaternion_of_another_name_is_asked_for() -> None:
-    """quat (n, 4) does not say where its scalar is; quaternion=quat says that it is as ours."""
-    motion = of_vectors()
-    given = {"t": motion["t"], "quat": motion["attitude"]}
-    with pytest.raises(Refused, match="the scalar is the first of them or the last"):
-        made(given)
-    assert made(given, quaternion="quat").groups["quaternion"] == plain().groups["quaternion"]
-
-
 def test_all_groups_of_a_solid_in_a_fluid() -> None:
     """Impulses, attitude and centre by our names of groups, and the states of a solver in their order."""
     columns = exact_columns(WHOLE)
@@ -296,24 +287,6 @@ def test_what_is_no_trajectory_is_refused(answer: Any) -> None:
     """A matrix without names, a list and a Rotation alone have no times."""
     with pytest.raises(ValueError, match=r"expected a callable solve\(problem\), a trajectory"):
         taylor_verify.check(SCENE, answer)
-
-
-def test_a_mapping_that_is_none_is_refused() -> None:
-    """`columns` is a dict."""
-    with pytest.raises(ValueError, match="expected a dict of our names and the file's"):
-        taylor_verify.check(SCENE, frame(), columns="w1=wx")  # type: ignore[arg-type]
-
-
-def test_columns_of_a_callable_are_refused() -> None:
-    """A callable answers in the order of a state: it has no names."""
-    with pytest.raises(ValueError, match="expected `columns` with a trajectory"):
-        taylor_verify.check(SCENE, lambda problem: None, columns={"w1": "wx"})
-
-
-def test_limits_hold_for_objects() -> None:
-    """A table of more columns than a file may have is refused likewise."""
-    with pytest.raises(Refused, match="expected at most 1000 columns"):
-        made({f"c {k}": [0.0] for k in range(1001)})
 
 
 def test_no_library_is_imported_for_it() -> None:

@@ -23,13 +23,12 @@ from mcap.writer import CompressionType
 from rosbags import rosbag1, rosbag2
 
 import taylor_verify
-from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.formats.reading import FORMATS, parted, read_table
+from taylor_verify.solvers.files.formats.reading import FORMATS, read_table
 
 SCENE = "euler/with-attitude"
 NAMES = ("t", *OMEGA, *QUATERNION)
@@ -184,15 +183,6 @@ def test_a_topic_is_named_behind_the_file(columns: Columns, tmp_path: Path) -> N
         read(f"{file}#/right")
 
 
-def test_a_name_with_a_number_sign_is_a_file(columns: Columns, tmp_path: Path) -> None:
-    """A file whose name has a # in it is read by that name."""
-    file = tmp_path / "run#2.mcap"
-    recordings.write_mcap(file, columns)
-    assert parted(str(file)) == (file, "")
-    assert parted(f"{file}#/imu") == (file, "/imu")
-    assert len(read(f"{file}#/imu").times) == len(columns["t"])
-
-
 @pytest.mark.parametrize(("start", "first"), [(CLOCK, 0), (0, 0), (5, 5)])
 def test_stamps_of_a_clock_count_from_the_first(
     start: int, first: int, columns: Columns, tmp_path: Path
@@ -284,26 +274,3 @@ def test_a_missing_package_is_named_in_the_message(
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(Exception, match=rf"pip install 'taylor-verify\[{extra}\]'"):
         read(tmp_path / name)
-
-
-def test_csv_needs_none_of_the_packages(columns: Columns, tmp_path: Path) -> None:
-    """Without all of them a CSV file and a MATLAB file are judged as ever."""
-    packages = ["h5py", "mcap", "mcap_ros2", "rosbags", "pyarrow", "fmpy", "ccsds_ndm"]
-    write_csv(tmp_path / "run.csv", columns)
-    recordings.write_mat(tmp_path / "run.mat", columns)
-    for name in ("run.csv", "run.mat"):
-        call = ("-m", "taylor_verify", "check", name, "--scene", SCENE, "--partial")
-        done = lacking(tmp_path, packages, *call)
-        assert done.returncode == 0, done.stderr
-
-
-def test_the_command_takes_a_part_of_a_file(
-    columns: Columns, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """`check run.mcap#/imu` judges that topic and says how it was read."""
-    recordings.write_mcap(tmp_path / "run.mcap", columns, topics=("/imu", "/other"))
-    file = f"{tmp_path / 'run.mcap'}#/imu"
-    assert main(["check", file, "--scene", SCENE, "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert document["file"]["name"] == file
-    assert "q0 ... are orientation, w1 ... are angular_velocity" in document["file"]["notes"]

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.trajectories import exact_columns
+from builders.trajectories import exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.run import run
 from taylor_verify.solvers.files.single_precision import are_single_precision
 
 HINT = "judge them on f32 (--rung f32)"
@@ -59,37 +58,17 @@ def test_doubles_are_not_taken_for_them(numbers: str, digits: int) -> None:
     assert not are_float32([f"{v:.{digits}f}" for v in NUMBERS[numbers]])
 
 
-def test_numbers_of_any_precision_tell_nothing() -> None:
-    """Zeros, whole numbers, few digits and powers of two are float32 numbers by chance."""
-    plain = [0.0, 1.0, -3.0, 0.5, 0.1, 12.25, 2.0**-20, 1e-7, 65536.0, float("nan")]
-    assert not are_float32(plain * 40)
-    assert not are_float32([f"{v:.9f}" for v in plain] * 40)
-    # One number that is repeated tells as much as one.
-    assert not are_float32([f"{np.float32(0.3):.9g}"] * 400)
-    # The numbers that tell must be all there are.
-    single = [f"{v:.9g}" for v in NUMBERS["wide"].astype(np.float32)]
-    assert not are_float32([*single, "0.300000013"])
-
-
-@pytest.mark.parametrize("form", ["%.9g", "shortest", "binary"])
 @pytest.mark.parametrize("door", ["csv", "npz", "object"])
-def test_every_file_of_float32_has_the_hint(form: str, door: str, tmp_path: Path) -> None:
+def test_every_file_of_float32_has_the_hint(door: str, tmp_path: Path) -> None:
     """A file or a dict of float32 numbers, judged on f64, says on which precision to judge it."""
-    columns = {name: list(values) for name, values in exact_columns(SCENE).items()}
+    columns = {name: values[:12] for name, values in exact_columns(SCENE).items()}
     rows = {name: np.array(values, np.float32) for name, values in columns.items() if name != "t"}
+    file: Any = {"t": columns["t"], **rows}
     if door == "csv":
-        file: Any = tmp_path / "mine.csv"
-        table = {"t": columns["t"], **{n: map(FORMS[form], v) for n, v in rows.items()}}
-        lines = [
-            ",".join(table),
-            *(",".join(map(str, r)) for r in zip(*table.values(), strict=True)),
-        ]
-        file.write_text("\n".join(lines), encoding="utf-8")
+        file = write_csv(tmp_path / "mine.csv", file, FORMS["%.9g"])
     elif door == "npz":
+        np.savez(tmp_path / "mine.npz", **file)
         file = tmp_path / "mine.npz"
-        np.savez(file, t=np.array(columns["t"]), **rows)
-    else:
-        file = {"t": columns["t"], **rows}
     judged = taylor_verify.check(SCENE, file)
     assert not judged.passed
     assert any(note.endswith(HINT) for note in judged.notes)
@@ -116,8 +95,14 @@ print(json.dumps({"t": times, **columns}))
 """
 
 
-@pytest.mark.parametrize("form", ["float", "lambda v: float(f'{v:.9g}')", "lambda v: f'{v:.9g}'"])
-@pytest.mark.parametrize("kind", ["np.float32", "np.float64"])
+@pytest.mark.parametrize(
+    ("kind", "form"),
+    [
+        ("np.float32", "float"),
+        ("np.float32", "lambda v: f'{v:.9g}'"),
+        ("np.float64", "lambda v: float(f'{v:.9g}')"),
+    ],
+)
 def test_a_program_in_float32_has_the_hint(
     kind: str, form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -126,9 +111,6 @@ def test_a_program_in_float32_has_the_hint(
     script.write_text(ENGINE.replace("TYPE", kind).replace("FORM", f"({form})"), encoding="utf-8")
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{script}"\n', encoding="utf-8")
     program.chmod(0o755)
-    judged = run(SCENE, f"process:{program}")
-    assert not judged.passed
-    is_single = kind == "np.float32"
-    assert any(note.endswith(HINT) for note in judged.notes) is is_single
     assert main(["run", SCENE, "--solver", f"process:{program}"]) == 1
+    is_single = kind == "np.float32"
     assert (HINT in " ".join(capsys.readouterr().out.split())) is is_single

@@ -39,17 +39,6 @@ def test_the_page_lists_every_script() -> None:
     assert len(SCRIPTS) >= 3
 
 
-def test_a_script_in_javascript_is_a_report_too(tmp_path: Path) -> None:
-    """The paragraphs of a script in JavaScript are those of its first comment."""
-    file = tmp_path / "it.mjs"
-    words = ["A title", "", *(f"{part}: of {part}\n" for part in PARTS)]
-    comment = "\n".join(words).replace("\n", "\n// ")
-    file.write_text(f"// {comment}\nimport it from 'it';\n// Came: not this.\n", encoding="utf-8")
-    report = read(file)
-    assert report.title == "A title"
-    assert report.parts == {part: f"of {part}" for part in PARTS}
-
-
 def test_a_script_without_a_part_is_named(tmp_path: Path) -> None:
     """The fault has the parts that lack, and the file."""
     file = tmp_path / "it.py"

@@ -53,12 +53,6 @@ def test_as_shipped_is_run_where_the_scene_asks_for_it() -> None:
     assert all(run.solver.endswith("defaults=shipped&step=0.005") for run in runs)
 
 
-def test_a_solver_without_steps_is_run_once() -> None:
-    """The name of a solver without steps has no setting."""
-    (run,) = Entry("it", "It", "outside:it").runs(SCENES[:1])
-    assert run.solver == "outside:it"
-
-
 def test_every_run_of_the_list_is_a_solver() -> None:
     """Each solver, setting and word is known, and each run is asked for once."""
     runs = entry_list().runs()

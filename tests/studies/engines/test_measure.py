@@ -18,7 +18,7 @@ from taylor_verify_reports.studies.engines import stored, trajectories
 from taylor_verify_reports.studies.engines.answer import Answer, answered
 from taylor_verify_reports.studies.engines.document import Standing
 from taylor_verify_reports.studies.engines.entry import Asked, EntryList
-from taylor_verify_reports.studies.engines.measure import answers_of, judged_again, measure
+from taylor_verify_reports.studies.engines.measure import answers_of, measure
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 
@@ -66,14 +66,6 @@ def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> N
     assert len(store.answers()) == len(measured) == len(ENTRIES.runs())
     store.forget()
     assert store.answers() == []
-
-
-def test_one_engine_is_measured_alone(ran: list[str], tmp_path: Path) -> None:
-    """The rows of the others stay as they are."""
-    others = {key: answer for key, answer in known().items() if answer.row.engine != "spinner"}
-    measured = measure(ENTRIES, others, Unfinished(tmp_path), lambda words: None, only=["spinner"])
-    assert {key.partition("?")[0] for key in ran} == {SPINNER.solver}
-    assert len(measured) == len(known())
 
 
 @pytest.mark.parametrize(
@@ -150,16 +142,6 @@ def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> No
         assert measuring._judged_again(answer).row == answer.row
 
 
-def test_a_changed_trajectory_has_other_errors(tmp_path: Path) -> None:
-    """The errors follow from the states in the file alone."""
-    answer = answers()[0]
-    assert answer.states is not None
-    states = answer.states.copy()
-    states[-1, 0] += 0.5
-    again = measuring._judged_again(replace(answer, states=states))
-    assert again.row.errors["omega"] > 0.1 > answer.row.errors["omega"]
-
-
 def test_the_file_of_trajectories_is_the_same_every_time() -> None:
     """Its bytes depend on the numbers alone, and float32 takes half of the place."""
     rows, file = trajectories.packed(answers())
@@ -183,17 +165,3 @@ def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
     (tmp_path / stored.TRAJECTORIES).write_bytes(b"none")
     with pytest.raises(ValueError, match="expected an NPZ of trajectories, got another file @ "):
         trajectories.load(tmp_path)
-
-
-def test_all_are_judged_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every answer is judged in the pool, and reported as it ends."""
-    messages: list[str] = []
-
-    def run_all(work: Any, asked: list[Answer], **options: Any) -> list[Answer]:
-        for one in asked:
-            options["ended"](one, one)
-        return list(asked)
-
-    monkeypatch.setattr(measuring, "run_all", run_all)
-    assert judged_again(answers(), messages.append) == list(answers())
-    assert messages[-1].startswith(f"{len(answers())}/{len(answers())} ")

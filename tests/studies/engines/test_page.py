@@ -26,7 +26,6 @@ from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
-from taylor_verify_reports.studies.engines.ranking import settings
 from taylor_verify_reports.studies.engines.study import STUDY
 
 
@@ -84,13 +83,6 @@ def test_a_method_that_loses_the_motion_is_warned_of() -> None:
     ) in sentences
 
 
-def test_an_engine_that_follows_no_motion_is_warned_of() -> None:
-    """The warning names engines of which no setting follows the motion."""
-    sentences = advised(*with_errors(SPINNER, 0.9, 0.8, 0.7))
-    assert sentences[-1].startswith("Not for free rotation, with the least error at any step")
-    assert sentences[-1].endswith(": **Spinner** (0.700, drift of the energy 1.00e-7).")
-
-
 def test_what_is_shipped_is_warned_of() -> None:
     """A warning is given if the shipped settings are far worse than the board's at the same step."""
     row = replace(SPINNER, shipped={"defaults": "shipped"}, warning="its damping switched off")
@@ -110,13 +102,6 @@ def test_steps_that_make_it_worse_are_warned_of() -> None:
         "No smaller step than 0.05 in **Spinner** (1.00e-5 becomes 1.00e-4 with 0.025)."
         in sentences[-1]
     )
-
-
-def test_without_an_engine_there_is_no_advice() -> None:
-    """A board of plain solvers, or of runs that failed, advises nothing."""
-    assert advised(*with_errors(PLAIN, 1e-12)) == []
-    lost = made_up(SPINNER, {}, standing=Standing.UNAVAILABLE, floors={})
-    assert advised(*lost) == []
 
 
 # The pages.
@@ -181,23 +166,6 @@ def test_the_page_of_an_engine_has_its_commands() -> None:
     assert re.search(r"splitting\. omega: order (1\.9|2\.0)", other)
 
 
-def test_a_table_as_shipped_stands_beside_what_is_set(tmp_path: Path) -> None:
-    """The error with what the adapter sets is in the same line."""
-    row = replace(SPINNER, shipped={"defaults": "shipped"})
-    page_entries = replace(ENTRIES, entry=(row,))
-    usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
-    bare = [
-        replace(one, shipped=True, variant=f"{one.variant}, shipped", errors={"omega": 0.25})
-        for one in usual
-    ]
-    document = board_with(*usual, *bare)
-    every = settings(document.study)
-    text = "\n".join(page._as_shipped(document, page_entries, every))
-    assert re.search(
-        r"\| Spinner \| lie-rk4 +\| `oblique` \| +0\.1 \| +0\.250 \| .* 1\.00e-3 \|", text
-    )
-
-
 # The pictures.
 
 
@@ -212,20 +180,6 @@ def test_a_picture_has_a_line_for_each_engine() -> None:
     (steps,) = work.panels(document, ENTRIES, SCENE, work._step, 1.0)
     assert [x for x, _ in steps.lines[0].points] == [0.1, 0.05, 0.025]
     assert [line.name for line in steps.lines] == ["Spinner", "Wobbler"]
-
-
-def test_engines_in_float32_have_a_panel_of_their_own() -> None:
-    """The plain solvers are in both panels."""
-    single = [replace(row, rung="f32") for row in with_errors(SPINNER, 1e-3, 1e-4, 1e-5)]
-    document = board_with(
-        *single, *with_errors(WOBBLER, 0.05, 0.01, 1e-3), *with_errors(PLAIN, 1e-9)
-    )
-    drawn = work.panels(document, ENTRIES, SCENE, document.pace, 1e6)
-    assert [panel.heading for panel in drawn] == ["float64", "float32"]
-    assert [[line.name for line in panel.lines] for panel in drawn] == [
-        ["Wobbler", "SciPy"],
-        ["Spinner", "SciPy"],
-    ]
 
 
 def test_energy_stands_beside_the_motion() -> None:

@@ -41,7 +41,7 @@ from taylor_verify.judge.series.files import (
 )
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
-from taylor_verify.records.quantities import GATE_FACTOR, STATES
+from taylor_verify.records.quantities import GATE_FACTOR, states_among
 from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
@@ -111,7 +111,7 @@ def _asked(
     scene = attempt(read_scene, options.scene)
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
-    files = [attempt(lambda name: read(name, request(columns)), name) for name in names]
+    files = [attempt(lambda name: read(name, request(columns), scene), name) for name in names]
     if faults:
         raise WrongCall("\n".join(faults))
     return scene, files, steps
@@ -265,7 +265,7 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
 def _print_files(page: Page, judged: FilesJudgement) -> None:
     """Print the largest error of each state quantity in each file, the largest step first."""
     compared = {v.quantity for v in judged.verdicts if v.is_compared}
-    states = [name for name in STATES if name in compared]
+    states = states_among(sorted(compared))
     headings = ["file", ">step", ">rows", *(f">{name}" for name in states), "verdicts"]
     pairs = zip(judged.files, judged.steps, strict=True)
     rows = []

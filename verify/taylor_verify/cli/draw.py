@@ -78,7 +78,9 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
     scene = attempt(lambda: read_scene(options.scene))
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
-    files = [attempt(partial(lambda name: read(name, request(columns)), name)) for name in names]
+    files = [
+        attempt(partial(lambda name: read(name, request(columns), scene), name)) for name in names
+    ]
     if faults:
         raise WrongCall("\n".join(faults))
     return scene, files

@@ -59,11 +59,12 @@ def _text(content: Mapping[str, Any]) -> str:
     return page.text()
 
 
-def _print_quantity(page: Page, name: str, value: Sequence[Any]) -> None:
-    rows = [row if isinstance(row, list) else [row] for row in value]
+def _print_quantity(page: Page, name: str, value: Sequence[Any] | str) -> None:
+    entries = [value] if isinstance(value, str) else value
+    rows = [row if isinstance(row, list) else [row] for row in entries]
     # A column for the sign, so that digits stand below digits.
     signed = [[text if text.startswith("-") else f" {text}" for text in row] for row in rows]
     width = max(len(text) for row in signed for text in row)
     for i, row in enumerate(signed):
-        entries = " ".join(text.ljust(width) for text in row).rstrip()
-        page.line(f"  {name if i == 0 else '':15} {entries}")
+        line = " ".join(text.ljust(width) for text in row).rstrip()
+        page.line(f"  {name if i == 0 else '':15} {line}")

@@ -71,6 +71,8 @@ def _print_problem(page: Page, content: Mapping[str, Any]) -> None:
     page.line("  " + ", ".join(f"{name} {value}" for name, value in units.items()))
     page.line()
     _print_orbit(page, content)
+    if content["loads"] is not None:
+        _print_loads(page, content["loads"])
     page.line(bold("truth"), f"  route {content['route']}, {content['truth_digits']} digits")
     page.indented("chosen   ", *cost["because"])
     page.line(
@@ -114,6 +116,33 @@ def _print_orbit(page: Page, content: Mapping[str, Any]) -> None:
     if content["condition"] is not None:
         page.line(bold("conditioning"))
         page.indented("  ", *content["condition"]["sentences"])
+
+
+def _print_loads(page: Page, loads: Mapping[str, Any]) -> None:
+    """Print what the loads conserve, and the size, the work and the price of each term."""
+    page.line(bold("loads"), f"  {loads['switches']} switches" if loads["switches"] else "")
+    page.indented("  ", *loads["conserved"])
+    for vector, sizes in loads["free"].items():
+        page.line(f"  {vector}, all terms but the loads: {_sized(sizes)}")
+    for term in loads["terms"]:
+        page.line(f"  {term['place']:9}  {term['text']}")
+        for vector in loads["free"]:
+            if term[vector]["largest"]:
+                page.line(f"             {vector}: {_sized(term[vector])}")
+        page.line(
+            f"             work until the end {term['work']:.3g}; {_operations(term)}, "
+            f"{1e9 * term['seconds']:.2g} ns a row"
+        )
+    page.line(f"  work of all loads {loads['work']:.3g}; {_operations(loads)}")
+
+
+def _sized(sizes: Mapping[str, float]) -> str:
+    return f"{sizes['largest']:.3g} at most (t = {sizes['at']:g}), {sizes['mean']:.3g} in the mean"
+
+
+def _operations(term: Mapping[str, Any]) -> str:
+    counted = {name: count for name, count in term["operations"].items() if count}
+    return ", ".join(f"{count} {name}" for name, count in counted.items()) or "no operations"
 
 
 def _print_gate(page: Page, gate: Mapping[str, Any]) -> None:

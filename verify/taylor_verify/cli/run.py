@@ -31,7 +31,7 @@ from taylor_verify.cli.streams import say
 from taylor_verify.judge.costs import sentence
 from taylor_verify.records.answers import Against
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import is_state
 from taylor_verify.records.showing import counts
 from taylor_verify.records.status import gravest
 from taylor_verify.records.verdict import Verdict
@@ -221,7 +221,7 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
-    state = max((v for v in compared if v.quantity in STATES), key=_ratio)
+    state = max((v for v in compared if is_state(v.quantity)), key=_ratio)
     drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
     return (
         status,

@@ -6,9 +6,10 @@ flip time 2K/lam of its orbit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import cycle
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -35,6 +36,11 @@ LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#1C8578", "linewidth": 1.5, "dashes": (1.4, 1.2)},
 )
 SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
+_LETTERS: Final = {
+    "moment": ("M", "moment, body axes"),
+    "force": ("X", "force, body axes"),
+    "couple": ("L", "couple, body axes"),
+}
 _FLIP: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.8, "gid": "flip"}
 # Room beyond the values, in parts of their extent; the flip time above them takes more.
 _ROOM: Final = 0.06
@@ -45,11 +51,15 @@ _ASIDE: Final = 0.03
 
 @dataclass(frozen=True)
 class Panel:
-    """Three components (n, 3) of one vector, with its letter and its name."""
+    """The components (n, m) of one vector, with its letter and its name.
+
+    Values that are held stay the same from one instant to the next.
+    """
 
     letter: str
     name: str
     rows: Numbers
+    is_held: bool = False
 
 
 @dataclass(frozen=True)
@@ -79,7 +89,7 @@ def series(document: Document) -> Series:
             Panel("x", "linear impulse", np.array(course["linear_impulse"])),
             Panel("y", "angular impulse", np.array(course["angular_impulse"])),
         )
-        return Series(times, panels, (), None)
+        return Series(times, (*panels, *_acting(document)), (), None)
     rows = np.array(course["omega"]) @ np.array(body["axes"]).T
     panel = Panel("\N{GREEK SMALL LETTER OMEGA}", "angular velocity, principal axes", rows)
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
@@ -88,7 +98,14 @@ def series(document: Document) -> Series:
     if document["is_free"] and not document["rotor"] and "saddle_rate" in numbers:
         flips = _zeros(times, rows[:, int(np.argsort(body["principal_moments"])[1])])
     flip_time = None if document["damping"] else numbers.get("flip_time")
-    return Series(times, (panel,), flips, flip_time)
+    return Series(times, (panel, *_acting(document)), flips, flip_time)
+
+
+def _acting(document: Document) -> Iterator[Panel]:
+    """Yield the panels of loads and own states."""
+    for each in document["acting"]:
+        letter, name = _LETTERS.get(each["name"], (each["name"], f"state {each['name']}"))
+        yield Panel(letter, name, np.array(each["rows"]), each["is_held"])
 
 
 def _zeros(times: Numbers, values: Numbers) -> tuple[float, ...]:
@@ -116,10 +133,8 @@ def picture(document: Document) -> Picture:
 
 
 def _figure(components: Series, words: str) -> Figure:
-    names = [panel.letter for panel in components.panels]
     entries: list[Entry] = [
-        (dict(look), ", ".join(f"{name}{subscript}" for name in names))
-        for look, subscript in zip(LINES, SUBSCRIPTS, strict=True)
+        (dict(look), ", ".join(_components_named(components, k))) for k, look in enumerate(LINES)
     ]
     entries += [(_FLIP, "flip: the middle component is 0")] if components.flips else []
     figure, places = sheet(len(components.panels), entries, words, _HEIGHT)
@@ -130,11 +145,21 @@ def _figure(components: Series, words: str) -> Figure:
     return figure
 
 
+def _components_named(components: Series, k: int) -> Iterator[str]:
+    """Yield the names of the components that the line k shows."""
+    for panel in components.panels:
+        if panel.rows.shape[1] == 1 and not k:
+            yield panel.letter
+        elif panel.rows.shape[1] > max(k, 1):
+            yield f"{panel.letter}{SUBSCRIPTS[k]}"
+
+
 def _draw(axes: Axes, components: Series, panel: Panel) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    for look, values in zip(LINES, panel.rows.T, strict=True):
-        axes.plot(components.times, values, gid="course", zorder=3, **look)
+    way = "steps-post" if panel.is_held else "default"
+    for look, values in zip(cycle(LINES), panel.rows.T, strict=False):
+        axes.plot(components.times, values, gid="course", zorder=3, drawstyle=way, **look)
     for flip in components.flips:
         axes.axvline(flip, zorder=1, **_FLIP)
     low, high = float(panel.rows.min()), float(panel.rows.max())

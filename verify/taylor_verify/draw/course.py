@@ -2,6 +2,7 @@
 
     document["course"]["omega"]      the motion at dense times
     document["body"]                 principal moments and axes, and the momentum of wheels
+    document["acting"]               loads and own states at the same times, of a scene that writes them
     document["analytic"]             the numbers of the orbit: period, flip time, steady spins
 
 Each number is the exact one, by closed form or enclosure, rounded to the figures of a picture.
@@ -18,6 +19,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
+from taylor_verify.draw.acting_loads import acting_on, own_names
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
@@ -51,7 +53,7 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     ``intervals`` is the number of intervals of time; a body that turns fast gets more. Raises Unsettled if
     the motion cannot be computed to the digits of a picture.
     """
-    whole = replace(scene, track=frozenset(TRACKED[scene.model]))
+    whole = replace(scene, track=frozenset(TRACKED[scene.model]), states=own_names(scene))
     exact, orbit = solution(whole), _orbit_of(scene)
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")
@@ -69,6 +71,7 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
         "evidence": exact.evidence,
         "analytic": _analytic(orbit),
         "course": course,
+        "acting": acting_on(whole, course),
         "body": _inertia_ellipsoid(scene),
         "axis": body.axis_of_symmetry if isinstance(body, ImmersedBody) else None,
         "semi_axes": None if shape is None else [float(a) for a in shape.semi_axes],

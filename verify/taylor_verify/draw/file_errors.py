@@ -23,7 +23,7 @@ from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import look_of_line
 from taylor_verify.plotting.wording import plain, power_of_ten
-from taylor_verify.records.quantities import STATES, is_conserved
+from taylor_verify.records.quantities import is_conserved, states_among
 from taylor_verify.records.record import Record
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def panels_of(records: Mapping[str, Record], start: float) -> Panels:
                 line = Line(name, times, errors, floor)
                 lines_of.setdefault(gate.quantity, []).append(line)
     conserved = [name for name in lines_of if is_conserved(name)][:1]
-    return {name: lines_of[name] for name in (*STATES, *conserved) if name in lines_of}
+    return {name: lines_of[name] for name in (*states_among(lines_of), *conserved)}
 
 
 def _above_zero(values: Sequence[float]) -> Numbers:

@@ -45,7 +45,7 @@ def moving(document: Document) -> dict[str, Any]:
         raise NotDrawn(f"expected a motion to animate, got a body at rest @ {document['scene']}")
     upright = _upright(document, attitudes)
     parts = components.series(document)
-    panel, times = parts.panels[0], course["t"]
+    times = course["t"]
     body = _body(document, centres)
     middle = (centres.min(axis=0) + centres.max(axis=0)) / 2
     away = float(np.linalg.norm(centres - middle, axis=1).max())
@@ -64,9 +64,7 @@ def moving(document: Document) -> dict[str, Any]:
         # The largest distance of anything from the middle, at any time.
         "reach": away + body.reach if "centre" in course else max(body.reach, 1.0),
         "inset": _inset(document),
-        "rows": _rounded(panel.rows),
-        "letter": panel.letter,
-        "heading": panel.name,
+        "panels": [_panel(panel) for panel in _shown(document, parts)],
         "flips": _rounded(parts.flips, 7),
         "seconds": _seconds(attitudes),
     }
@@ -93,6 +91,17 @@ def _body(document: Document, centres: Numbers) -> Mesh:
     if shape is not None:
         return mesh.ellipsoid(shape)
     return mesh.frame(_FRAME * float(np.ptp(centres, axis=0).max()) or 1.0)
+
+
+def _shown(document: Document, parts: components.Series) -> Sequence[components.Panel]:
+    """Return the first panel of the motion, and those of loads and own states."""
+    first = len(parts.panels) - len(document["acting"])
+    return (parts.panels[0], *parts.panels[first:])
+
+
+def _panel(panel: components.Panel) -> dict[str, Any]:
+    rows = {"rows": _rounded(panel.rows), "isHeld": panel.is_held}
+    return {**rows, "letter": panel.letter, "heading": panel.name}
 
 
 def _face(face: Face) -> dict[str, Any]:

@@ -41,7 +41,10 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     """
     scene = as_written(scene)
     if scene.body.loads is not None:
-        return Elements(NO_CLOSED_FORM, (), (_WRITTEN,))
+        top: Elements = function_at("taylor_verify.exact.euler.heavy_elements:elements")(
+            scene, digits
+        )
+        return top
     if scene.body.damping:
         return _damped(scene, digits)
     try:
@@ -51,9 +54,6 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     except Undecided as doubt:
         return Elements(NO_CLOSED_FORM, (), (f"The kind of motion is not decided: {doubt}.",))
     return result
-
-
-_WRITTEN: Final = "Loads that the scene writes down act: no closed form is built."
 
 
 def _damped(scene: Scene, digits: int) -> Elements:

@@ -17,6 +17,9 @@ Array = np.ndarray[Any, Any]
 class Invariant:
     """A quantity Q that a free motion conserves, for one body.
 
+    It ``is_conserved`` unless what acts on the body changes it; ``because`` is a formula that says why
+    written loads do not.
+
     ``value`` gives Q at every row of a motion, an object array (n,), or (n, 3) in space axes.
     ``scale`` gives a size of Q that vanishes with the motion only, and 1 there (then drift is
     absolute). ``sensitivity`` gives dQ/d(block) at every row, block by block: (n, 3) by component where
@@ -30,3 +33,5 @@ class Invariant:
     value: Callable[[Motion], Array]
     scale: Callable[[Motion], Any]
     sensitivity: Callable[[Motion], Mapping[str, Array]]
+    is_conserved: bool = True
+    because: str = ""

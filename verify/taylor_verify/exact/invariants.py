@@ -1,7 +1,10 @@
-"""Conserved quantities of a free motion, each with its value, its scale and its sensitivity."""
+"""Conserved quantities of a motion, each with its value, its scale and its sensitivity."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from taylor_verify.exact.conserved.integrals import under_loads
 from taylor_verify.exact.invariant import Invariant
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.scenes.motion import Motion
@@ -17,9 +20,13 @@ def invariants(scene: Scene) -> tuple[Invariant, ...]:
     for a body of Clebsch's form (``y1`` or ``y2`` where that is its axis, ``y_axis`` about any other
     direction) or the fourth integral of another family, by its word (without loads alone), ``x_space``
     with attitude, ``y_space`` with centre. Under loads they change, by the work and impulse of the
-    loads; their values are defined all the same.
+    loads; their values are defined all the same. Written loads may leave some of them unchanged, and
+    others, such as T + V: what is found of these is marked and added.
     """
-    return kind_of(scene.body).invariants(scene)
+    free = kind_of(scene.body).invariants(scene)
+    if scene.body.loads is not None:
+        return under_loads(scene, free)
+    return tuple(replace(each, is_conserved=scene.body.is_conservative) for each in free)
 
 
 def decisive(scene: Scene, motion: Motion) -> list[int]:

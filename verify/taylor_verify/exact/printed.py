@@ -40,9 +40,9 @@ def document(
 
     An entry has the digits that its own error bound proves, and is "0" where it proves none; ``absolute``
     bounds the entries of a quantity that are zero for that reason. ``radius`` bounds the error of every
-    vector by its norm, the rounding of the printed digits included, except those that are zero throughout.
-    The row at the start is the initial state itself. If some times are not reached, ``because``
-    says why, and ``rows`` has the other times.
+    vector by its norm, the rounding of the printed digits included, except those that are zero throughout,
+    and that of an own state by the largest norm that it has had. The row at the start is the initial state
+    itself. If some times are not reached, ``because`` says why, and ``rows`` has the other times.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None
@@ -53,16 +53,25 @@ def document(
     except Unsettled as doubt:
         motion, places, because = doubt.motion, doubt.places, f"undecided: {doubt} @ {scene.name}"
     start = _start(as_written(scene))
+    # An own state that is a number is its own column.
+    numbers = {group.name for group in scene.groups if group.columns == (group.name,)}
     # Half a unit in the last digit of a text, which the text of zero would not need.
     least = mpf(10) ** (1 - digits) / 2
     rows = []
     for k, place in enumerate(places):
         assert motion is not None
         printed = {
-            name: _printed(*_values(motion, name, k, start if not elapsed[place] else {}), digits)
+            name: _printed(
+                *_values(motion, name, k, start if not elapsed[place] else {}),
+                digits,
+                motion.peaks[name][k] if name in motion.peaks else None,
+            )
             for name in motion.quantities
         }
-        texts = {name: vector.text for name, vector in printed.items()}
+        texts = {
+            name: vector.text[0] if name in numbers else vector.text
+            for name, vector in printed.items()
+        }
         radius = max(least, *(vector.radius for vector in printed.values()))
         absolute = {
             name: _rounded_up(vector.absolute)
@@ -104,8 +113,11 @@ def _values(motion: Motion, name: str, k: int, start: Mapping[str, Array]) -> tu
     return values, 0 * errors if name in start else errors
 
 
-def _printed(values: Array, errors: Array, digits: int) -> _Printed:
-    """Return the text of a vector or matrix: of every entry the digits that its error leaves."""
+def _printed(values: Array, errors: Array, digits: int, peak: mpf | None = None) -> _Printed:
+    """Return the text of a vector or matrix: of every entry the digits that its error leaves.
+
+    ``peak`` is the size by which the error of an own state is counted.
+    """
     with mp.workprec(_BOUND_BITS):
         counts = [
             _proven_digits(v, e, digits) for v, e in zip(values.flat, errors.flat, strict=True)
@@ -117,6 +129,8 @@ def _printed(values: Array, errors: Array, digits: int) -> _Printed:
         rounding = [size * mpf(10) ** (1 - n) / 2 + error for size, error, n in entries if n]
         least = _norm([size - error for size, error, n in entries if n])
         radius = _norm([*rounding, hidden]) / least if least else mpf(0)
+        if peak:
+            radius = _norm([*rounding, hidden]) / peak
         text = np.array(texts, dtype=object).reshape(values.shape).tolist()
         return _Printed(text, radius, hidden)
 

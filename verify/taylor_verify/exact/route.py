@@ -95,13 +95,13 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:
-    if scene.body.loads is not None:
-        raise NoClosedForm("loads that a scene writes down")
-    if scene.body.damping:
+    if scene.body.damping and scene.body.loads is None:
         return _damped(scene, route)
     module = f"{kind_of(scene.body).room}.closed"
     if scene.body.manufactured is not None:
         module = "taylor_verify.exact.manufactured"
+    if scene.body.loads is not None:
+        module = "taylor_verify.exact.euler.heavy"
     try:
         closed: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     except Undecided as doubt:

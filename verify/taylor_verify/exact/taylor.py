@@ -18,18 +18,24 @@ from flint import arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import balls, largest_size, midpoint, radius, size, width
-from taylor_verify.exact.enclosure.course import MOST_STEPS, Coarse, Course, Row, Unreached
+from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.stopping import MOST_STEPS, Coarse, Unreached
 from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution, Unsettled
+from taylor_verify.numbers.tensors import Vector
+from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion, State
 from taylor_verify.scenes.scene import Scene
 
 _GUARD_BITS: Final = 40
 _MORE_BITS: Final = 16
+# A motion without instants takes about so many steps.
+_FEW_STEPS: Final = 50
 _ATTEMPTS: Final = 24
 # Bits that a motion may lose, beyond twice the bits of the digits asked for.
 _MOST_BITS: Final = 10_000
@@ -46,16 +52,20 @@ Times = Mapping[int, Fraction]
 
 @dataclass(frozen=True)
 class _Proven:
-    """A row: midpoints, the errors of all components, radii, and the bits that the widest one lacks."""
+    """A row: midpoints, the errors of all components, radii, and the bits that the widest one lacks.
+
+    ``peaks`` are lower bounds of the largest norms so far of the scene's own states.
+    """
 
     values: Mapping[str, Any]
     errors: Mapping[str, Any]
     radii: Mapping[str, mpf]
     lacking: int
+    peaks: Mapping[str, mpf]
 
 
 @dataclass(frozen=True)
-class _Enclosing(Solution):
+class Enclosing(Solution):
     """Motions in balls, at whatever precision makes them narrow enough."""
 
     scene: Scene
@@ -78,6 +88,17 @@ class _Enclosing(Solution):
     def _system(self) -> System:
         return posed(self.scene)
 
+    def _system_until(self, time: Fraction) -> System:
+        """The system as far as an elapsed time; stairs of floor are listed so far."""
+        loads = self.scene.body.loads
+        if loads is None or (further := loads.reaching(time)) is loads:
+            return self._system
+        try:
+            _ = further.switches
+        except ValueError as fault:
+            raise Unreached(str(fault), time) from None
+        return posed(replace(self.scene, body=self.scene.body.with_loads(further)))
+
     @final
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The midpoints, and the proven radius of every vector and matrix relative to its norm.
@@ -86,7 +107,8 @@ class _Enclosing(Solution):
         take, would be needed; with the rows of the times that lie before.
         """
         target = ceil(digits * log2(10))
-        first, most_bits = target + _GUARD_BITS, 2 * target + _MOST_BITS
+        first = target + _GUARD_BITS + self._rounding_bits(elapsed)
+        most_bits = 2 * target + _MOST_BITS
         proven: dict[int, _Proven] = {}
         doubts = []
         for is_later in (True, False):
@@ -108,6 +130,15 @@ class _Enclosing(Solution):
         if doubts:
             raise Unsettled("; ".join(doubts), motion if places else None, places)
         return motion
+
+    def _rounding_bits(self, elapsed: Sequence[Fraction]) -> int:
+        """The bits that are rounded away in the steps from instant to instant, beyond those of others."""
+        loads = self.scene.body.loads
+        if loads is None or not loads.held_values:
+            return 0
+        last = max((*elapsed, Fraction(0)))
+        count = sum(state.count(last) for state in loads.states if isinstance(state, Held))
+        return max(0, ceil(log2(max(count, 1) / _FEW_STEPS)))
 
     def _prove(
         self, proven: dict[int, _Proven], times: Times, target: int, bits: int, most_bits: int
@@ -143,51 +174,64 @@ class _Enclosing(Solution):
 
     def _measured(self, row: Row, target: int) -> _Proven:
         values, errors, radii, lacking = {}, {}, {}, 0
-        for name, (vector, largest) in self._vectors(row).items():
+        for name, (vector, counted) in self._vectors(row).items():
             balls = np.array(vector, dtype=object)
-            radii[name], missing = _radius(list(balls.flat), largest, target)
+            radii[name], missing = counted.radius(list(balls.flat), target)
             # A vector that may be zero has no known digit: the answer is zero.
             has_digits = mp.isfinite(width(list(balls.flat)))
             middles = np.frompyfunc(midpoint, 1, 1)(balls)
             values[name] = middles if has_digits else np.full(balls.shape, mpf(0), dtype=object)
             errors[name] = np.frompyfunc(radius if has_digits else largest_size, 1, 1)(balls)
             lacking = max(lacking, missing)
-        return _Proven(values, errors, radii, lacking)
+        return _Proven(values, errors, radii, lacking, self._peaks(row))
 
-    def _vectors(self, row: Row) -> dict[str, tuple[Any, float]]:
-        """Return the tracked quantities as balls, with log2 of their largest sizes so far."""
-        vectors: dict[str, tuple[Any, float]] = {
-            name: (row.state[3 * k : 3 * k + 3], row.largest[k])
+    def _vectors(self, row: Row) -> dict[str, tuple[Any, _Size | _SoFar]]:
+        """Return the tracked quantities as balls, with their largest sizes so far."""
+        vectors: dict[str, tuple[Any, _Size | _SoFar]] = {
+            name: (row.state[3 * k : 3 * k + 3], _Size(row.largest[k]))
             for k, name in enumerate(kind_of(self.scene.body).moving)
         }
         if row.turn:
-            vectors["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], 0.0
+            vectors["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], _Size(0.0)
         if row.centre is not None:
-            vectors["centre"] = row.centre, row.largest[-1]
+            vectors["centre"] = row.centre, _Size(row.largest[-1])
+        for name, peak in self._peaks(row).items():
+            places = self._system.own[name]
+            vectors[name] = row.state[places.start : places.stop], _SoFar(peak)
         return vectors
+
+    def _peaks(self, row: Row) -> dict[str, mpf]:
+        """Lower bounds of the largest norms so far of the tracked own states."""
+        return {name: midpoint(row.peaks[name]) for name in self._own}
+
+    @property
+    def _own(self) -> list[str]:
+        return [group.name for group in self.scene.groups if group.name in self.scene.states]
 
     def _gathered(self, rows: Sequence[_Proven]) -> Motion:
         """The rows as one motion; the radius of a row is that of its widest quantity."""
         track = self.scene.track
         frame = ["attitude"] * bool(track) + ["centre"] * ("centre" in track)
-        names = [*kind_of(self.scene.body).moving, *frame]
+        names = [*kind_of(self.scene.body).moving, *frame, *self._own]
         stacked = {n: np.array([row.values[n] for row in rows], dtype=object) for n in names}
         errors = {n: np.array([row.errors[n] for row in rows], dtype=object) for n in names}
         radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in names}
         widest = np.array([max(row.radii.values()) for row in rows], dtype=object)
-        return Motion(stacked, widest, radii, errors)
+        peaks = {n: np.array([row.peaks[n] for row in rows], dtype=object) for n in self._own}
+        return Motion(stacked, widest, radii, errors, peaks)
 
 
 @final
 @dataclass(frozen=True)
-class TaylorSolution(_Enclosing):
+class TaylorSolution(Enclosing):
     """The motion of any scene, free or loaded, in balls that are proven to contain it."""
 
     most_steps: int = MOST_STEPS
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        start, place = balls(self._system.start), _place(self.scene, self.scene.initial)
-        course = Course.of(self._system, start, place, bits, most_bits)
+        system = self._system_until(max(times.values(), key=abs))
+        start, place = system.start_balls(), _place(self.scene, self.scene.initial, system)
+        course = Course.of(system, start, place, bits, most_bits)
         course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
         places: dict[Fraction, list[int]] = {}
         for number, time in times.items():
@@ -209,66 +253,105 @@ def arcs(
     spans: Sequence[Fraction],
     digits: int,
     begins: Sequence[Fraction] = (),
+    own: Sequence[Mapping[str, Vector]] = (),
 ) -> Motion:
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
     Enclosed to ``digits``, as Solution.motion is, and raises Unsettled likewise. The loads of a
     manufactured motion change with time: there each arc has to say when it begins, ``begins`` since the
-    start of the scene. Elsewhere that changes nothing.
+    start of the scene. Elsewhere that changes nothing. A scene with states of its own needs these too:
+    ``own`` has them by name, those that are held as they are after an instant at the beginning of an arc.
     """
-    changes = scene.body.manufactured is not None or scene.body.loads is not None
+    body = scene.body
+    changes = body.manufactured is not None or body.loads is not None
     if changes and len(begins) != len(starts):
         raise ValueError(
             f"expected the times at which {len(starts)} arcs under loads that change with time begin, "
             f"got {len(begins)} @ {scene.name}"
         )
-    return _Arcs(scene, tuple(starts), tuple(begins)).motion(spans, digits)
+    if body.loads is not None and body.loads.states and len(own) != len(starts):
+        raise ValueError(
+            f"expected the scene's own states at the start of {len(starts)} arcs, "
+            f"got {len(own)} @ {scene.name}"
+        )
+    return _Arcs(scene, tuple(starts), tuple(begins), tuple(own)).motion(spans, digits)
 
 
 @final
 @dataclass(frozen=True)
-class _Arcs(_Enclosing):
+class _Arcs(Enclosing):
     """Many short motions of one body, each from a state of its own, and by the clock from its time."""
 
     starts: tuple[State, ...]
     begins: tuple[Fraction, ...]
+    own: tuple[Mapping[str, Vector], ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        whole = Course.of(self._system, (), _place(self.scene, self.starts[0]), bits, most_bits)
+        whole = Course.of(
+            self._system, (), _place(self.scene, self.starts[0], self._system), bits, most_bits
+        )
         for number, span in times.items():
-            start = self.starts[number]
+            start, begin = self.starts[number], self.begins[number] if self.begins else Fraction(0)
             if len(whole.system.start) > len(start.moving):
                 # The frame is in the state, and counts from the start of its own arc.
-                system = posed(replace(self.scene, initial=start))
-                whole = Course.of(system, (), _place(self.scene, start), bits, most_bits)
-                state = balls(system.start)
+                system = posed(self._begun(number, begin + span))
+                whole = Course.of(system, (), _place(self.scene, start, system), bits, most_bits)
+                state = system.start_balls(begin)
             else:
                 state = balls(kind_of(self.scene.body).state(start))
-            begin = self.begins[number] if self.begins else Fraction(0)
-            arc = replace(whole, start=state, place=_place(self.scene, start), origin=begin)
+            place = _place(self.scene, start, whole.system)
+            arc = replace(whole, start=state, place=place, origin=begin, has_values=True)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
 
+    def _begun(self, number: int, end: Fraction) -> Scene:
+        """The scene with the start of an arc, and stairs of floor as far as its end."""
+        scene = replace(self.scene, initial=self.starts[number])
+        if scene.body.loads is None:
+            return scene
+        loads = scene.body.loads.reaching(end)
+        loads = loads.starting(self.own[number]) if self.own else loads
+        return replace(scene, body=scene.body.with_loads(loads))
 
-def _place(scene: Scene, initial: State) -> Place | None:
-    """The frame at the start in balls, at the ambient precision; None where it is not tracked."""
-    if not scene.track:
+
+def _place(scene: Scene, initial: State, system: System) -> Place | None:
+    """The frame at the start in balls, at the ambient precision; None where it is not followed apart."""
+    if not scene.track or not system.is_framed:
         return None
     centre = kind_of(scene.body).centre(initial) if "centre" in scene.track else None
     return Place.of(rotation_matrix(initial.attitude), centre)
 
 
-def _radius(vector: Sequence[arb], largest: float, target: int) -> tuple[mpf, int]:
-    """The width of a vector or matrix, and how many bits it lacks.
+@dataclass(frozen=True)
+class _Size:
+    """The size of a vector or matrix, by which its error is counted; ``largest`` is log2 of its largest."""
 
-    A bound of its size, which is absolute, where it may be zero and is negligible beside its own
-    ``largest`` size.
-    """
-    relative = width(vector)
-    if mp.isfinite(relative):
-        return relative, int(mp.mag(relative)) + target if relative else 0
-    absolute = size(vector)
-    if not mp.isfinite(absolute):
-        return mp.inf, target
-    return absolute, int(mp.mag(absolute)) + target + _NEGLIGIBLE_BITS - int(
-        max(largest, _LEAST_SIZE)
-    )
+    largest: float
+
+    def radius(self, vector: Sequence[arb], target: int) -> tuple[mpf, int]:
+        """The width of the vector, and how many bits it lacks.
+
+        A bound of its size, which is absolute, where it may be zero and is negligible beside its own
+        largest size.
+        """
+        relative = width(vector)
+        if mp.isfinite(relative):
+            return relative, int(mp.mag(relative)) + target if relative else 0
+        absolute = size(vector)
+        if not mp.isfinite(absolute):
+            return mp.inf, target
+        negligible = _NEGLIGIBLE_BITS - int(max(self.largest, _LEAST_SIZE))
+        return absolute, int(mp.mag(absolute)) + target + negligible
+
+
+@dataclass(frozen=True)
+class _SoFar:
+    """The largest norm so far of an own state, by which its error is counted; absolute while it is zero."""
+
+    peak: mpf
+
+    def radius(self, vector: Sequence[arb], target: int) -> tuple[mpf, int]:
+        """The radius of the vector over the peak, and how many bits it lacks."""
+        error = mp.norm([radius(entry) for entry in vector]) / (self.peak or 1)
+        if not mp.isfinite(error):
+            return mp.inf, target
+        return error, int(mp.mag(error)) + target if error else 0

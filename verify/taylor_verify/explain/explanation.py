@@ -12,11 +12,14 @@ from mpmath import mp
 
 from taylor_verify.exact import ellipsoid
 from taylor_verify.exact.balls import midpoint
+from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.elements import Element, Elements, elements
 from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.explain.loads import loads_document
 from taylor_verify.judge.floor.arithmetic import truth_digits
+from taylor_verify.judge.floor.attainable import orbit_of_run
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
@@ -24,8 +27,7 @@ from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
-from taylor_verify.records.faults import Refused
-from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -44,23 +46,16 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     """Run the scene on a rung and return the document of ``explain``; no number is an estimate.
 
     Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
-    says so. Raises Refused for a body under loads that its scene writes down.
+    says so.
     """
     scene = as_scene(scene)
     body = scene.body
-    if body.loads is not None:
-        raise Refused(
-            [
-                "expected a body without loads that its scene writes down, got some @ body "
-                "(`exact` and `check FILE` take them)"
-            ]
-        )
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
     judged, lacking = _judged(scene, rung_named(rung))
     record = judged.record.document() if judged.record is not None else {}
     first = judged.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
-    orbit = _orbit(scene)
+    orbit, path = _orbit(scene), _loaded_path(scene, rung_named(rung))
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
     return {
         "scene": scene.name,
@@ -69,7 +64,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         "model": scene.model,
         "rung": rung,
         "bits": rung_named(rung).bits,
-        "track": sorted({MAIN[scene.model]} | scene.track),
+        "track": sorted(quantity.name for quantity in scene.tracked),
         "warnings": [*scene.warnings, *lacking],
         "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
@@ -82,10 +77,21 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
         },
         **orbit,
         "screws": [_screw(screw) for screw in screws_beside(scene)],
-        "condition": _condition(scene, rung_named(rung), period) if judged.record else None,
+        "loads": None if path is None else loads_document(scene, path),
+        "condition": _condition(scene, path, rung_named(rung), period) if judged.record else None,
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in judged.verdicts],
     }
+
+
+def _loaded_path(scene: Scene, rung: Rung) -> Path | None:
+    """Return the orbit under written loads; None without any, or where the motion is not known."""
+    if scene.body.loads is None:
+        return None
+    try:
+        return orbit_of_run(pose(scene, rung).given, scene, rung.bits)
+    except (NotRepresentable, Unsettled):
+        return None
 
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
@@ -185,11 +191,13 @@ def _written(value: Any) -> str:
     return str(mp.nstr(value, _DIGITS))
 
 
-def _condition(scene: Scene, rung: Rung, period: float | None) -> dict[str, Any] | None:
+def _condition(
+    scene: Scene, path: Path | None, rung: Rung, period: float | None
+) -> dict[str, Any] | None:
     """Return the growth of an error at the first sample along the orbit; None if it is not known."""
     carried = None
     with suppress(Unsettled):
-        carried = carrying(scene)
+        carried = carrying(scene, path)
     if carried is None:
         return None
     worst, pace = carried.worst, carried.pace

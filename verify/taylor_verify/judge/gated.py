@@ -15,10 +15,12 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.conditioning.loaded import Linearised, truth
+from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.balances import clock_work
+from taylor_verify.judge.errors.laws import Laws
 from taylor_verify.judge.errors.measured import Comparison, Measured
 from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors, Floats
@@ -145,7 +147,7 @@ def gates_of(
     roundoff, velocities = rung.unit_roundoff, solver.carries_velocities
     with mp.workprec(bits), costs.of(CONDITION):
         base = floor(problem.given, problem.scene, roundoff, steps.counted, velocities)
-    answer, exact = run.trajectory.quantities, solution(problem.given)
+    answer, exact = run.trajectory.quantities, truth(problem.given, digits)
     compared = Comparison(problem.given, exact, answer, digits, bits)
     measured = compared.measured(base.nodes, costs)
     with mp.workprec(bits):
@@ -155,6 +157,7 @@ def gates_of(
             every += gates.conserved()
             every += gates.unit_quaternion()
         every += gates.velocities()
+        every += gates.laws(exact, digits, bits)
     return [gate.with_input(inputs, float(roundoff)) if inputs else gate for gate in every]
 
 
@@ -181,15 +184,18 @@ class _Gates:
         count, times = max(self.steps.counted, len(self.floor.times)), self.floor.times
         for invariant, errors in self.measured.drifts:
             (scale,) = errors.parts.values()
-            attainable, clock = (
-                self.floor.of_gradients(invariant, at_nodes, scale),
-                work.get(invariant.name),
-            )
+            if invariant.name in self.measured.worked:
+                attainable = self.floor.of_values(invariant, at_nodes, scale)
+                terms = self._terms(errors, attainable, Carried.WORK)
+                yield Gate(self.run, errors, attainable, terms)
+                continue
+            attainable = self.floor.of_gradients(invariant, at_nodes, scale)
+            clock = work.get(invariant.name)
             if clock is not None:
                 drift = clock.drift(roundoff, count, times, scale)
                 attainable = np.hypot(attainable, drift)
             terms = self._terms(errors, attainable, Carried.GRADIENT, clock is not None)
-            yield Gate(self.run, errors, attainable, terms)
+            yield Gate(self.run, errors, attainable, replace(terms, conserved=invariant.because))
 
     def unit_quaternion(self) -> Iterator[Gate]:
         """Yield the gate of quaternions that are not of unit length; none if they are, to roundoff.
@@ -207,6 +213,20 @@ class _Gates:
             attainable = self.floor.of_velocity(one.group, one.errors, one.sizes)
             terms = Reason(floor=RoundoffFloor(_OF_VELOCITY[one.group]))
             yield Gate(self.run, one.errors, attainable, terms, one.shift)
+
+    def laws(self, exact: Solution, digits: int, bits: int) -> Iterator[Gate]:
+        """Yield the gates of held values against their laws, where truth and orbit come together."""
+        given, orbit = self.run.problem.given, self.floor.orbit
+        if not isinstance(exact, Linearised):
+            return
+        motion = exact.motion(given.clock.elapsed, digits)
+        roundoff = float(self.run.problem.rung.unit_roundoff)
+        answer = {
+            name: self.run.trajectory.quantities[name] for name in self.run.trajectory.quantities
+        }
+        for law in Laws(given, motion, orbit, answer, bits, roundoff):
+            terms = Reason(floor=RoundoffFloor(Carried.LAW))
+            yield Gate(self.run, law.errors, law.attainable, terms)
 
     def _terms(
         self, errors: Errors, attainable: Floats, carried: Carried, clock_work: bool = False

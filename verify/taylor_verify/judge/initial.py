@@ -16,7 +16,7 @@ import numpy as np
 from taylor_verify.judge.gated import Gate
 from taylor_verify.judge.gates import Finding, judge
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, STATES
+from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor, shown
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -30,7 +30,7 @@ def initial_verdict(gates: Sequence[Gate], carried: Carried) -> list[Verdict]:
     starts = [
         (gate, int(k), _finding(gate, int(k), carried))
         for gate in gates
-        if gate.errors.quantity in STATES
+        if gate.errors.is_state
         for k in np.flatnonzero(gate.run.times == gate.run.start)[:1]
     ]
     if not starts:

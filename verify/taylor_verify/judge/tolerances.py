@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.records.faults import brief
-from taylor_verify.records.quantities import MAIN, STATES, UNIT_QUATERNION
+from taylor_verify.records.quantities import UNIT_QUATERNION, states_among
 from taylor_verify.scenes.reading.positive import positive
 
 if TYPE_CHECKING:
@@ -94,9 +94,9 @@ def _quantities(scenes: Iterable[Scene]) -> list[str]:
     from taylor_verify.exact.invariants import invariants
 
     asked = list(scenes)
-    states = {name for scene in asked for name in (MAIN[scene.model], *scene.track)}
+    states = {quantity.name for scene in asked for quantity in scene.tracked}
     if "impulse" in states:
         # A file about a solid in a fluid may have its velocities.
         states |= {"velocity", "omega"}
     conserved = dict.fromkeys(invariant.name for scene in asked for invariant in invariants(scene))
-    return [*(name for name in STATES if name in states), *conserved]
+    return [*states_among(sorted(states)), *conserved]

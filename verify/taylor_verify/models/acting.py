@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from fractions import Fraction
 from functools import lru_cache
 from math import inf, nextafter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.functions import FLOATS, Functions, functions_of
+from taylor_verify.models.written import needed
 from taylor_verify.numbers.precision import exact_value
-from taylor_verify.scenes.loads.loads import Loads, Piece
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import Step
 from taylor_verify.scenes.scene import Scene
 
@@ -22,9 +25,12 @@ Floats = np.ndarray[Any, Any]
 
 
 class Acting:
-    """The loads of a scene, in its units and body axes.
+    """The loads of a scene, and what its own states do, in its units and body axes.
 
-    They are those of each piece of time; a switch belongs to the later one.
+    They are those of each piece of time; a switch belongs to the later one. ``t`` is the scene's time, and
+    ``state`` omega, or x and y; then q0..q3 and the centre where a text reads them; then the continuous
+    components of the scene's own states. ``held`` are the held ones. All may have more axes in front, the
+    same for all. Raises ValueError for a state that is too short, and for held values that are missing.
     """
 
     def __init__(self, scene: Scene, loads: Loads) -> None:
@@ -32,43 +38,81 @@ class Acting:
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
 
-    def __call__(self, t: Any, state: Any) -> Floats | tuple[Floats, Floats]:
-        """Return the moment, or force and couple.
-
-        ``t`` is the scene's time, and ``state`` omega, or x and y; then q0..q3 and the centre where a load
-        reads them. Both may have more axes in front, the same for both. Raises ValueError for a state that
-        is too short.
-        """
-        state = np.asarray(state, dtype=float)
-        elapsed = np.asarray(t, dtype=float) - float(self._start)
-        if state.ndim == 1 and elapsed.ndim == 0:
-            values = self._at(float(elapsed), state)
-        else:
-            elapsed = np.broadcast_to(elapsed, state.shape[:-1])
-            values = np.empty((*elapsed.shape, 3 if self._is_euler else 6))
-            switches = [_not_before(switch) for switch in self._loads.switches]
-            pieces = np.searchsorted(switches, elapsed, side="right")
-            for piece in np.unique(pieces):
-                rows = pieces == piece
-                values[rows] = self._at(elapsed[rows], state[rows])
+    def loads(self, t: Any, state: Any, held: Any = None) -> Floats | tuple[Floats, Floats]:
+        """Return the moment, or force and couple."""
+        values = self._values("outputs", t, state, held)
         return values if self._is_euler else (values[..., :3], values[..., 3:])
 
-    def _at(self, elapsed: Any, state: Floats) -> Floats:
+    def rates(self, t: Any, state: Any, held: Any = None) -> Floats:
+        """Return the rates of the continuous components."""
+        return self._values("rates", t, state, held)
+
+    def rotor(self, t: Any, state: Any) -> Floats:
+        """Return the momentum of the wheels that a text writes."""
+        return self._values("rotor", t, state, None)
+
+    def taken(self, instant: Instant, state: Any, held: Any) -> Floats:
+        """Return the held components after an instant, from those before it."""
+        after = np.array(held, dtype=float)
+        values = self._at("values", float(instant.time), np.asarray(state, dtype=float), after)
+        after[list(instant.places)] = values[list(instant.places)]
+        return after
+
+    def _values(self, which: str, t: Any, state: Any, held: Any) -> Floats:
+        """Return the values of the steps that a field of a piece lists."""
+        state = np.asarray(state, dtype=float)
+        held = None if held is None else np.asarray(held, dtype=float)
+        elapsed = np.asarray(t, dtype=float) - float(self._start)
+        if state.ndim == 1 and elapsed.ndim == 0:
+            return self._at(which, float(elapsed), state, held)
+        elapsed = np.broadcast_to(elapsed, state.shape[:-1])
+        switches = [_not_before(switch) for switch in self._loads.switches]
+        pieces = np.searchsorted(switches, elapsed, side="right")
+        values: Floats | None = None
+        for piece in np.unique(pieces):
+            rows = pieces == piece
+            of_rows = None if held is None else np.broadcast_to(held, (*rows.shape, held.shape[-1]))
+            part = self._at(
+                which, elapsed[rows], state[rows], None if of_rows is None else of_rows[rows]
+            )
+            if values is None:
+                values = np.empty((*elapsed.shape, part.shape[-1]))
+            values[rows] = part
+        return np.empty((*elapsed.shape, 0)) if values is None else values
+
+    def _at(self, which: str, elapsed: Any, state: Floats, held: Floats | None) -> Floats:
         is_one = state.ndim == 1
         columns = state.tolist() if is_one else list(state.T)
-        inputs = self._inputs(elapsed, columns)
         first = elapsed if is_one else elapsed[0]
-        function = _code(self._loads.piece(exact_value(first)), FLOATS if is_one else _arrays())
-        values = function(**{name: inputs[name] for name in self._loads.inputs})
-        return np.array(values) if is_one else np.array([v + 0 * elapsed for v in values]).T
+        piece = self._loads.piece(exact_value(first))
+        places: tuple[int, ...] = getattr(piece, which)
+        code = _compiled(piece.steps, places, is_one and not _chooses(piece.steps))
+        inputs = self._inputs(elapsed, columns) | self._held(held, is_one)
+        if missing := code.names - inputs.keys():
+            raise ValueError(f"expected the held values {', '.join(sorted(missing))}, got none")
+        with np.errstate(all="ignore") if _chooses(piece.steps) else nullcontext():
+            values = code.function(**{name: inputs[name] for name in code.names})
+        return (
+            np.array(values, dtype=float)
+            if is_one
+            else np.array([v + 0 * elapsed for v in values]).T
+        )
 
-    def _inputs(self, elapsed: Any, columns: Sequence[Any]) -> Mapping[str, Any]:
-        n = 3 if self._is_euler else 6
-        needed = n + 4 * self._loads.reads_attitude + 3 * self._loads.reads_centre
+    def _held(self, held: Floats | None, is_one: bool) -> dict[str, Any]:
+        if held is None:
+            return {}
+        columns = held.tolist() if is_one else list(held.T)
+        return dict(zip(self._loads.held_values, columns, strict=True))
+
+    def _inputs(self, elapsed: Any, columns: Sequence[Any]) -> dict[str, Any]:
+        n, own = 3 if self._is_euler else 6, len(self._loads.continuous)
+        needed = n + 4 * self._loads.reads_attitude + 3 * self._loads.reads_centre + own
         if len(columns) < needed:
             raise ValueError(f"expected a state of {needed} numbers, got {len(columns)}")
+        columns, last = columns[: len(columns) - own], columns[len(columns) - own :]
         moving, q, c = columns[:n], columns[n : n + 4], columns[n + 4 : n + 7]
         inputs = {"t": elapsed, **labelled("c", c)}
+        inputs |= dict(zip(self._loads.continuous, last, strict=True))
         if self._is_euler:
             inputs |= labelled("w", moving)
         else:
@@ -93,19 +137,27 @@ def _arrays() -> Functions:
     return functions_of(np.empty(0))
 
 
-def _code(piece: Piece, functions: Functions) -> Callable[..., list[Any]]:
-    names = frozenset(step.name for step in piece.steps if step.operation == "input")
-    return _compiled(piece.steps, piece.outputs, names, functions is FLOATS)
+class _Code(NamedTuple):
+    """A function from inputs by name to values, and the names that it reads."""
+
+    function: Callable[..., list[Any]]
+    names: frozenset[str]
 
 
 @lru_cache(maxsize=256)
-def _compiled(
-    steps: tuple[Step, ...], outputs: tuple[int, ...], names: frozenset[str], is_float: bool
-) -> Callable[..., list[Any]]:
-    """Return the function from the inputs, by name, to the loads."""
+def _chooses(steps: tuple[Step, ...]) -> bool:
+    """Return True if a step chooses between two, of which the other need not have a value."""
+    return any(step.operation == "choose" for step in steps)
+
+
+@lru_cache(maxsize=256)
+def _compiled(steps: tuple[Step, ...], outputs: tuple[int, ...], is_float: bool) -> _Code:
+    """Return the function from the inputs, by name, to the values at some places."""
     known: dict[str, Any] = dict(FLOATS if is_float else _arrays())
+    names = set[str]()
     lines: list[str] = []
-    for place, step in enumerate(steps):
+    for place in needed(steps, outputs):
+        step = steps[place]
         operands = [f"k{operand}" for operand in step.operands]
         if step.operation == "number":
             known[f"k{place}"] = float(step.number or 0)
@@ -114,15 +166,15 @@ def _compiled(
             known[f"e{place}"] = float(step.number or 0)
             operands.append(f"e{place}")
         if step.operation == "input":
-            text = step.name
+            text = f"in_{step.name}"
+            names.add(step.name)
         elif step.operation in ("+", "-", "*", "/"):
             text = f" {step.operation} ".join(operands)
         else:
             text = f"{step.operation}({', '.join(operands)})"
         lines.append(f" k{place} = {text}")
     results = ", ".join(f"k{output}" for output in outputs)
-    head = [f"def loads({''.join(f'{name}, ' for name in sorted(names))}**others):", *lines]
-    # The text is made of the names of the grammar, of k0, e0, ... and of + - * / alone.
-    exec("\n".join([*head, f" return [{results}]"]), known)
-    made: Callable[..., list[Any]] = known["loads"]
-    return made
+    head = ["def loads(**inputs):", *(f" in_{name} = inputs['{name}']" for name in sorted(names))]
+    # The text is made of the names of the scene and the grammar, of k0, e0, ... and of + - * / alone.
+    exec("\n".join([*head, *lines, f" return [{results}]"]), known)
+    return _Code(known["loads"], frozenset(names))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -9,9 +10,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.models import own
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.units import Units, binary, largest
+from taylor_verify.models.evaluated import wheels
+from taylor_verify.models.units import Units, binary, largest, size
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.scene import Scene
 
 # The loads are looked at in these parts of the time, at the state of the start.
@@ -28,17 +33,37 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
     assert loads is not None
     acting, initial, clock = Acting(scene, loads), scene.initial, scene.clock
     place = (*initial.attitude, *initial.parts().get("centre", ZERO_VECTOR))
-    state = [float(value) for value in (*initial.moving, *place)]
+    state = [float(value) for value in (*initial.moving, *place, *own.starts(loads))]
+    held = [float(value) for value in own.held_starts(loads)]
     end = -span if clock.elapsed[-1] < 0 else span
-    with suppress(ArithmeticError, ValueError), np.errstate(all="ignore"):
-        values = [
-            np.concatenate(np.atleast_2d(acting(float(clock.start + p * end), state)))
-            for p in _LOOKS
-        ]
-        sizes = np.abs(values).max(axis=0)
-        if np.isfinite(sizes).all() and sizes.any():
-            return _pushed(units, scene, float(span), sizes)
-    return units
+    times = [float(clock.start + p * end) for p in _LOOKS]
+    with np.errstate(all="ignore"):
+        sizes = _largest(acting.loads(t, state, held) for t in times)
+        rates = _largest(acting.rates(t, state, held) for t in times)
+    if sizes is not None and sizes.any():
+        units = _pushed(units, scene, float(span), sizes)
+    if loads.rotor:
+        units = _wheeled(units, scene, loads)
+    given = [0.0] * len(loads.continuous) if rates is None else rates.tolist()
+    return replace(units, own=own.units_of(loads, given, units.time))
+
+
+def _largest(values: Iterable[Any]) -> Any:
+    """Return the largest size of each component; None where one has no value."""
+    with suppress(ArithmeticError, ValueError):
+        sizes = np.abs([np.concatenate(np.atleast_2d(value)) for value in values]).max(axis=0)
+        return sizes if np.isfinite(sizes).all() else None
+    return None
+
+
+def _wheeled(units: Units, scene: Scene, loads: Loads) -> Units:
+    """Return the units with the momentum of wheels in that of the body."""
+    h = wheels(loads, Fraction(0), own.starts(loads), 53)
+    if not any(h):
+        return units
+    rate = size(tensors.apply(scene.body.energy_matrix, h))
+    momentum = max(units.momentum, size(h))
+    return replace(units, momentum=momentum, time=min(units.time, 1 / binary(rate)))
 
 
 def _pushed(units: Units, scene: Scene, span: float, sizes: Any) -> Units:

@@ -41,6 +41,10 @@ FLOATS: Final[Functions] = {
     "pi": lambda: math.pi,
     "norm": math.hypot,
     "power": math.pow,
+    "floor": math.floor,
+    "sign": lambda value: (value > 0) - (value < 0),
+    "step": lambda value: int(value >= 0),
+    "choose": lambda condition, first, second: first if condition >= 0 else second,
 }
 
 
@@ -55,6 +59,10 @@ def _of_numpy() -> Functions:
         "pi": lambda: math.pi,
         "norm": lambda *parts: np.sqrt(sum(part * part for part in parts)),
         "power": lambda base, exponent: np.power(base, float(exponent)),
+        "floor": np.floor,
+        "sign": np.sign,
+        "step": lambda value: np.where(value >= 0, 1.0, 0.0),
+        "choose": lambda condition, first, second: np.where(condition >= 0, first, second),
     }
 
 
@@ -77,6 +85,8 @@ def _of_mpmath() -> Functions:
         "pi": lambda: +mp.pi,
         "norm": lambda *parts: mp.sqrt(sum(part * part for part in parts)),
         "power": real(lambda base, e: mp.power(base, mp.mpf(e.numerator) / e.denominator)),
+        **{name: FLOATS[name] for name in ("step", "choose")},
+        **{name: getattr(mp, name) for name in ("floor", "sign")},
     }
 
 

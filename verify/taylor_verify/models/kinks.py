@@ -1,15 +1,13 @@
 """Loads with kinks, for an integrator of smooth equations.
 
 abs, min and max choose between two smooth branches by the sign of a difference. Here the choice becomes
-parameters, s of 1 or -1, or s and z of 1 and 0, that are set anew wherever the difference crosses zero. A
-root of a sum of squares has a kink only where all of them vanish; ``lengths`` says of what.
+parameters, s of 1 or -1, or s and z of 1 and 0, that are set anew wherever the difference crosses zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.form import Form, Named
@@ -41,9 +39,8 @@ def smooth(form: Form) -> tuple[Form, tuple[Kink, ...]]:
     made = _Smoothing()
     for step in equations.steps:
         made.take(step)
-    outputs = tuple(made.places[output] for output in equations.outputs)
     names = tuple(name for kink in made.kinks for name in kink.names)
-    turned = replace(equations, steps=tuple(made.steps), outputs=outputs)
+    turned = equations.moved(made.steps, made.places)
     return replace(form, equations=turned, parameters=form.parameters + names), tuple(made.kinks)
 
 
@@ -89,42 +86,3 @@ class _Smoothing:
     def _add(self, step: Step) -> int:
         self.steps.append(step)
         return len(self.steps) - 1
-
-
-def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
-    """Return, for each root of a sum of squares, the places of the steps that are squared."""
-    equations = form.equations
-    if not isinstance(equations, Written):
-        return ()
-    steps = equations.steps
-    roots = set[tuple[int, ...]]()
-    for step in steps:
-        if step.operation == "norm":
-            roots.add(step.operands)
-        elif step.operation == "sqrt" or _is_broken(step):
-            parts = list(_squared(steps, step.operands[0]))
-            if None not in parts:
-                roots.add(tuple(part for part in parts if part is not None))
-    return tuple(sorted(roots))
-
-
-def _is_broken(step: Step) -> bool:
-    return step.operation == "power" and step.number is not None and step.number.denominator != 1
-
-
-def _squared(steps: Sequence[Step], place: int) -> Iterator[int | None]:
-    """Yield the steps whose squares add up to a step; None for a term that is no square."""
-    step = steps[place]
-    number = step.number or Fraction(0)
-    match step.operation:
-        case "+":
-            for operand in step.operands:
-                yield from _squared(steps, operand)
-        case "*" if step.operands[0] == step.operands[1]:
-            yield step.operands[0]
-        case "*" if "number" in (kinds := [steps[operand].operation for operand in step.operands]):
-            yield from _squared(steps, step.operands[1 - kinds.index("number")])
-        case "power" if number > 0 and number.denominator == 1 and number % 2 == 0:
-            yield step.operands[0]
-        case _:
-            yield None

@@ -14,30 +14,29 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
-from taylor_verify.models import manufactured, written
+from taylor_verify.models import manufactured, own, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
+from taylor_verify.models.evaluated import wheels
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
+from taylor_verify.models.rounding import NotRepresentable as NotRepresentable
+from taylor_verify.models.rounding import Rounding
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import Rung, floor_log2
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.loads.loads import Loads, Piece
-from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, State
-from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
+from taylor_verify.scenes.loads.states import Instant
+from taylor_verify.scenes.manufactured import Manufactured
+from taylor_verify.scenes.motion import Clock, State
 from taylor_verify.scenes.scene import Scene
-
-
-class NotRepresentable(Exception):
-    """The error for a scene that the rung cannot represent; the text says why."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +52,8 @@ class Problem:
     centre if they are tracked. ``replaced`` are coefficients of the body that the equations replace by
     others. ``because`` says which equations were chosen, and why. Under loads that a scene writes down the
     form is that of one piece of time, the first unless ``pieces`` made the problem; ``begin`` is where it
-    starts, elapsed and in ``units``.
+    starts, elapsed and in ``units``. ``held`` are the held values of the scene's own states before the
+    first instant, in the scene's units.
     """
 
     scene: Scene
@@ -67,6 +67,7 @@ class Problem:
     replaced: tuple[tuple[str, Fraction], ...] = ()
     because: tuple[str, ...] = ()
     begin: Fraction = Fraction(0)
+    held: Vector = ()
 
     @property
     def initial(self) -> NoReturn:
@@ -95,21 +96,54 @@ class Problem:
         loads = self.given.body.loads
         return () if loads is None else loads.switches
 
-    def loads(self, t: Any, state: Any) -> Any:
+    @property
+    def instants(self) -> Sequence[Fraction]:
+        """The elapsed times at which held states take their values, sorted, both ends included."""
+        return [instant.time for instant in self.takings]
+
+    @property
+    def held_names(self) -> tuple[str, ...]:
+        """The names in the form of all held values."""
+        loads = self.given.body.loads
+        return () if loads is None else tuple(own.HELD + name for name in loads.held_values)
+
+    @cached_property
+    def takings(self) -> Sequence[Instant]:
+        """The instants, each with what is taken there."""
+        loads, clock = self.given.body.loads, self.given.clock
+        return () if loads is None else loads.instants(clock.elapsed[-1])
+
+    def loads(self, t: Any, state: Any, held: Any = None) -> Any:
         """Return the loads that the scene writes down: the moment, or force and couple, body axes.
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
-        centre where a load reads them, all in the scene's units. Arrays may have more axes in front.
-        Raises ValueError where the scene writes no loads.
+        centre where they are tracked or a load reads them; then the scene's own continuous states. ``held``
+        are all held values. Both are in the scene's order and units. Arrays may have more axes in front.
+        Raises ValueError where the scene writes no loads, and for a state or held values too short.
         """
-        if self._acting is None:
-            raise ValueError("expected a scene that writes loads down, got constant ones or none")
-        return self._acting(t, state)
+        return self._acting.loads(t, state, held)
+
+    def rotor(self, t: Any, state: Any) -> Any:
+        """Return the momentum of the wheels that a text writes, body axes; arguments as in `loads`."""
+        return self._acting.rotor(t, state)
+
+    def rates(self, t: Any, state: Any, held: Any = None) -> Any:
+        """Return the rates of the scene's own continuous states; arguments as in `loads`."""
+        return self._acting.rates(t, state, held)
+
+    def taken(self, k: int, state: Any, held: Any) -> Any:
+        """Return all held values after instant k, of a state and the held values before it.
+
+        All that are taken at one instant read what was before it.
+        """
+        return self._acting.taken(self.takings[k], state, held)
 
     @cached_property
-    def _acting(self) -> Acting | None:
+    def _acting(self) -> Acting:
         loads = self.given.body.loads
-        return None if loads is None else Acting(self.given, loads)
+        if loads is None:
+            raise ValueError("expected a scene that writes loads down, got constant ones or none")
+        return Acting(self.given, loads)
 
     def with_equations(self, equations: Equations) -> Problem:
         """Return the same data with other equations in the same states, for the negative controls."""
@@ -130,9 +164,9 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     times = _rounded_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda k: start + times[k] * unit))
-    data = _rounded_data(scene, units, _Rounding(rung))
+    data = _rounded_data(scene, units, Rounding(rung))
     if scene.body.manufactured is not None:
-        data = _with_clock(data, scene.body, scene.body.manufactured, units, _Rounding(rung))
+        data = _with_clock(data, scene.body, scene.body.manufactured, units, Rounding(rung))
     loads = _rounded_loads(scene, rung)
     data = _with_frame(data, _framed(scene.track, loads), units, rung)
     choice = data.choice
@@ -160,7 +194,7 @@ def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
         return None
     try:
         loads = scene.body.loads.on_rung(rung)
-        return replace(loads, current=_Rounding(rung).each(loads.current))
+        return replace(loads, current=Rounding(rung).each(loads.current))
     except (OverflowError, ValueError) as error:
         raise NotRepresentable(str(error)) from error
 
@@ -175,12 +209,14 @@ def _framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
 
 def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
     """Return the problem under the loads of the first piece of time; all components are states."""
+    data = _with_own(data, loads, problem.units, problem.rung)
     # The loads need the general coefficients, even if the shorter equations do not.
     numbers = {**numbers_of(data.body, problem.units), **data.choice.numbers}
     names = tuple(name for name, value in numbers.items() if value and name not in data.states)
     return in_piece(
         replace(
             problem,
+            held=own.held_starts(loads),
             form=Form(data.choice.equations, data.states, names),
             parameters=tuple(numbers[name] for name in names),
             initial_momenta=tuple(numbers[name] for name in data.states),
@@ -191,16 +227,31 @@ def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
     )
 
 
+def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
+    """Return the same with the scene's own continuous states, and their wheels in the momentum H."""
+    names = tuple(own.in_form(name, loads) for name in loads.continuous)
+    starts = [start / unit for start, unit in zip(own.starts(loads), units.own, strict=True)]
+    numbers = {**data.choice.numbers, **dict(zip(names, starts, strict=True))}
+    if loads.rotor:
+        turning = wheels(loads, Fraction(0), own.starts(loads), rung.bits)
+        for i, h in enumerate(turning, start=1):
+            numbers[f"H{i}"] = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
+    return replace(
+        data, states=(*data.states, *names), choice=replace(data.choice, numbers=numbers)
+    )
+
+
 def in_piece(problem: Problem, piece: Piece) -> Problem:
     """Return the problem with the equations of a piece of time of its loads."""
+    loads = problem.given.body.loads
+    assert loads is not None
     equations = problem.form.equations
     body = equations.free if isinstance(equations, Written) else equations
     centre = problem.given.initial.parts().get("centre", ZERO_VECTOR)
-    steps = written.counted(piece, problem.units, centre)
-    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps.numbers)
-    loads = problem.given.body.loads
-    numbers |= {} if loads is None else written.drift(loads.current, problem.units)
-    form = Form(Written(body, steps.steps, steps.outputs), problem.form.states, tuple(numbers))
+    acting, steps = written.counted(body, loads, piece, problem.units, centre)
+    numbers = {n: v for n, v in problem.parameter.items() if n[0] != "g"} | dict(steps)
+    numbers |= written.drift(loads.current, problem.units) | own.numbers(loads, problem.held)
+    form = Form(acting, problem.form.states, tuple(numbers))
     form = replace(form, parameters=form.entering())
     return replace(
         problem,
@@ -230,7 +281,7 @@ def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
     NotRepresentable if the rounded data are no valid body.
     """
     posed = pose(scene, rung)
-    body, initial = _stored(scene, _Rounding(rung))
+    body, initial = _stored(scene, Rounding(rung))
     return replace(posed, given=replace(posed.given, body=body, initial=initial))
 
 
@@ -240,7 +291,11 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     The data are rounded as in `pose_as_stored`, and the instants are exact. Raises NotRepresentable if the
     rounded data are no valid body.
     """
-    posed, clock = pose_as_stored(scene, rung), Clock(scene.clock.start, instants)
+    clock = Clock(scene.clock.start, instants)
+    if scene.body.loads is not None:
+        loads = scene.body.loads.reaching(clock.elapsed[-1])
+        scene = replace(scene, body=scene.body.with_loads(loads))
+    posed = pose_as_stored(scene, rung)
     return replace(
         posed,
         scene=replace(scene, clock=clock),
@@ -249,7 +304,7 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     )
 
 
-def _stored(scene: Scene, rounded: _Rounding) -> tuple[Body, State]:
+def _stored(scene: Scene, rounded: Rounding) -> tuple[Body, State]:
     """Return body and initial state, with each number of the scene rounded once."""
     motion = scene.body.manufactured
     start = scene.initial.changed(rounded.part)
@@ -275,7 +330,7 @@ class _Data:
     initial: State
 
 
-def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
+def _rounded_data(scene: Scene, units: Units, rounded: Rounding) -> _Data:
     """Form coefficients, loads and momenta exactly and round each once; all else follows exactly."""
     body, start = scene.body, scene.initial
     kind = mechanics(body)
@@ -301,7 +356,7 @@ def _rounded_data(scene: Scene, units: Units, rounded: _Rounding) -> _Data:
 
 
 def _with_clock(
-    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: _Rounding
+    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: Rounding
 ) -> _Data:
     """Return the same under the loads of a manufactured motion, with their clock among the states.
 
@@ -343,44 +398,3 @@ def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -
         frame["s"] = 1 / units.path
     choice = replace(data.choice, numbers={**data.choice.numbers, **frame})
     return replace(data, states=states, choice=choice)
-
-
-@dataclass(frozen=True)
-class _Rounding:
-    """Rounds scalars, vectors and matrices onto one rung."""
-
-    rung: Rung
-
-    def __call__(self, value: Fraction, shift: int = 0) -> Fraction:
-        try:
-            return self.rung.round_scaled(value, shift)
-        except OverflowError as error:
-            raise NotRepresentable(str(error)) from error
-
-    def each(self, value: Value, shift: int = 0) -> Value:
-        """Round every number of a value times 2^shift, whatever its shape."""
-        return entrywise(lambda entry: self(entry, shift) if entry else entry, value)
-
-    def counted(self, part: Part, value: Value, units: Units) -> Value:
-        """Round a part of a state, counted in its unit."""
-        if part.shape is Shape.QUATERNION:
-            return self.quaternion(value)
-        return self.each(value, -units.exponent(part.dimension))
-
-    def part(self, part: Part, value: Value) -> Value:
-        """Round a part of a body or a state as it stands."""
-        return self.quaternion(value) if part.shape is Shape.QUATERNION else self.each(value)
-
-    def quaternion(self, quaternion: Quaternion) -> Quaternion:
-        """Round the components after an exact scaling to order one; the norm does not matter."""
-        if quaternion == IDENTITY:
-            return quaternion
-        shift = -max(floor_log2(entry) for entry in quaternion if entry)
-        e0, e1, e2, e3 = (self(entry, shift) for entry in quaternion)
-        return (e0, e1, e2, e3)
-
-    def waves(self, motion: Manufactured) -> tuple[Wave, ...]:
-        """Round frequencies and coefficients of a manufactured motion."""
-        return tuple(
-            Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
-        )

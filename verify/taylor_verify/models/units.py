@@ -31,13 +31,15 @@ class Units:
     """scaled value x unit = physical value; each unit is a power of two.
 
     ``momentum`` is that of H (Euler) or y (Kirchhoff), ``impulse`` that of x. ``path`` is the unit of the
-    centre over that of other lengths: a body at rest in size may go far.
+    centre over that of other lengths: a body at rest in size may go far. ``own`` are those of the
+    components of the scene's own continuous states.
     """
 
     time: Fraction
     momentum: Fraction
     impulse: Fraction = Fraction(1)
     path: Fraction = Fraction(1)
+    own: Vector = ()
 
     @property
     def length(self) -> Fraction:

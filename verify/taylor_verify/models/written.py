@@ -2,7 +2,12 @@
 
 v            the velocity of the fluid, space axes, over which the centre drifts
 g1, g2, ..   the numbers of the steps, and the units of what they read: parameters, as all numbers are
+own.h1, ..   the scene's own continuous states
+held.m, ..   its held ones: parameters, between two instants
 t            the time since the start: it is no state, but handed over with each state
+
+Where a text writes the momentum h of wheels, H = I w + h is the state: H' = H x w + M with w = K (H - h),
+so that what their motors do to the body follows by itself.
 
 The steps count in the scene's own units. Each input and each load is multiplied by its unit, which is a
 power of two.
@@ -11,11 +16,12 @@ power of two.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
 
-from taylor_verify.models.algebra import add, apply, is_absent, minus, plus, times
+from taylor_verify.models import own
+from taylor_verify.models.algebra import add, apply, cross, is_absent, minus, plus, times
 from taylor_verify.models.form import Equations, Named, labelled
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.functions import Functions, functions_of
@@ -36,20 +42,39 @@ class Written:
     """The equations ``free`` of a body under the loads of some steps.
 
     A step "number" has the name of its parameter. Two scenes with the same steps share one compiled
-    integrator, whatever their numbers are.
+    integrator, whatever their numbers are. ``outputs`` are the places of the loads, ``rates`` those of the
+    rates of the states ``own``, and ``rotor`` those of the momentum of the wheels where a text writes it.
     """
 
     free: Equations
     steps: tuple[Step, ...]
     outputs: tuple[int, ...]
+    own: tuple[str, ...] = ()
+    rates: tuple[int, ...] = ()
+    rotor: tuple[int, ...] = ()
 
     def __call__(self, n: Named) -> dict[str, Any]:
-        values = self.values(n)
-        return self._rates(n, self._loads([values[k] for k in self.outputs]))
+        return self._all_rates(n, self.values(n))
 
-    def _rates(self, n: Named, loads: Mapping[str, Any]) -> dict[str, Any]:
+    def moved(self, steps: Sequence[Step], places: Sequence[int]) -> Written:
+        """Return the same equations by other steps; ``places`` are where the present ones went."""
+        groups = (self.outputs, self.rates, self.rotor)
+        outputs, rates, rotor = (tuple(places[k] for k in group) for group in groups)
+        return replace(self, steps=tuple(steps), outputs=outputs, rates=rates, rotor=rotor)
+
+    def _all_rates(self, n: Named, values: Any) -> dict[str, Any]:
+        """Return the rates of all states, by the values of the steps at their places."""
+        rates = self._rates(n, self._loads([values[k] for k in self.outputs]), values)
+        return rates | {name: values[k] for name, k in zip(self.own, self.rates, strict=True)}
+
+    def _rates(self, n: Named, loads: Mapping[str, Any], values: Any) -> dict[str, Any]:
         """Return the rates under these loads, and with the drift of the fluid in that of the centre."""
-        rates = dict(self.free(Named({**n, **loads})))
+        wheels = [values[k] for k in self.rotor]
+        body = Named({**n, **loads, **_alone(n, wheels)})
+        rates = dict(self.free(body))
+        if wheels:
+            turned = cross(wheels, apply(n.symmetric("K"), body.vector("H")))
+            rates |= labelled("H", add([rates[name] for name in ("H1", "H2", "H3")], turned))
         if "c1" in rates:
             rates |= labelled("c", add([rates[f"c{i}"] for i in (1, 2, 3)], n.vector("v")))
         return rates
@@ -58,10 +83,11 @@ class Written:
         """Return the rates by the loads, the loads by the steps k0, k1, .., and each step."""
         names = [Symbol(f"k{place}") for place in range(len(self.steps))]
         loads = self._loads([names[place] for place in self.outputs])
-        rates = self._rates(n, {name: Symbol(name) for name in loads})
-        functions, inputs = functions_of(names[0]), _Inputs(n)
+        rates = self._rates(n, {name: Symbol(name) for name in loads}, names)
+        rates |= {name: names[k] for name, k in zip(self.own, self.rates, strict=True)}
+        functions, inputs = functions_of(names[0]), self.inputs(n)
         steps = {
-            names[place].name: _value(step, names, functions, inputs)
+            names[place].name: value(step, names, functions, inputs)
             for place, step in enumerate(self.steps)
         }
         return {f"{name}'": rate for name, rate in rates.items() if name in n} | loads | steps
@@ -74,14 +100,44 @@ class Written:
 
     def values(self, n: Named) -> list[Any]:
         """Return the value of each step."""
-        functions = functions_of(n["H1"] if "H1" in n else n["x1"])
-        inputs, values = _Inputs(n), list[Any]()
+        inputs, functions = self.inputs(n), _functions(n)
+        values = list[Any]()
         for step in self.steps:
-            values.append(_value(step, values, functions, inputs))
+            values.append(value(step, values, functions, inputs))
         return values
 
+    def inputs(self, n: Named) -> Inputs:
+        """Return what the steps read, by name; the momentum is that of the body without its wheels."""
+        wheels = dict[int, Any]()
+        for place in needed(self.steps, self.rotor):
+            # The momentum of wheels reads none itself.
+            wheels[place] = value(self.steps[place], wheels, _functions(n), Inputs(n))
+        return Inputs(Named({**n, **_alone(n, [wheels[k] for k in self.rotor])}))
 
-class _Inputs:
+
+def _functions(n: Named) -> Functions:
+    return functions_of(n["H1"] if "H1" in n else n["x1"])
+
+
+def _alone(n: Named, wheels: Sequence[Any]) -> dict[str, Any]:
+    """Return the momentum of the body without its wheels, where these have any by a text."""
+    if not wheels:
+        return {}
+    return labelled("H", [minus(H, h) for H, h in zip(n.vector("H"), wheels, strict=True)])
+
+
+def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
+    """Return the places of the steps that those at some places are made of, in order."""
+    left, reached = list(places), set[int]()
+    while left:
+        place = left.pop()
+        if place not in reached:
+            reached.add(place)
+            left += steps[place].operands
+    return sorted(reached)
+
+
+class Inputs:
     """Inputs that steps read, in the units of the problem, each formed where it is asked for."""
 
     def __init__(self, n: Named) -> None:
@@ -105,7 +161,7 @@ class _Inputs:
         return {f"r{i + 1}{j + 1}": R[i][j] for i in range(3) for j in range(3)}
 
 
-def _value(step: Step, values: Sequence[Any], functions: Functions, inputs: Any) -> Any:
+def value(step: Step, values: Any, functions: Functions, inputs: Any) -> Any:
     """Return the value of a step, from those before it."""
     operands = [values[place] for place in step.operands]
     match step.operation:
@@ -137,40 +193,45 @@ def _power(base: Any, exponent: Fraction, functions: Functions) -> Any:
 # Steps in the units of a problem.
 
 
-@dataclass(frozen=True)
-class Counted:
-    """Steps in the units of a problem: their numbers by name, and the inputs that they read."""
-
-    steps: tuple[Step, ...]
-    outputs: tuple[int, ...]
-    numbers: Mapping[str, Fraction]
-
-
-def counted(piece: Piece, units: Units, centre: Vector) -> Counted:
-    """Return the steps of a piece of time with its inputs and loads in these units.
+def counted(
+    equations: Equations, loads: Loads, piece: Piece, units: Units, centre: Vector
+) -> tuple[Written, Mapping[str, Fraction]]:
+    """Return the equations under the loads of a piece of time in these units, and their numbers by name.
 
     ``centre`` is where the body starts: the states have the way from there.
     """
     made = _Counting()
-    places: list[int] = []
-    for step in piece.steps:
+    places: dict[int, int] = {}
+    for k in needed(piece.steps, (*piece.outputs, *piece.rates, *piece.rotor)):
+        step = piece.steps[k]
         if step.operation == "input":
-            place = made.scaled(made.add(step), _unit(step.name, units))
+            name = own.in_form(step.name, loads)
+            place = made.scaled(
+                made.add(Step("input", name=name)), unit_of(step.name, loads, units)
+            )
             if step.name in CENTRE:
                 start = centre[int(step.name[1]) - 1]
                 place = made.add(Step("+", (place, made.number(start)))) if start else place
         elif step.operation == "number":
             place = made.number(step.number or Fraction(0))
         else:
-            operands = tuple(places[k] for k in step.operands)
-            place = made.add(Step(step.operation, operands, step.number))
-        places.append(place)
-    impulses = (units.momentum,) if len(piece.outputs) == 3 else (units.impulse, units.momentum)
-    outputs = [
-        made.scaled(places[place], units.time / impulses[k // 3])
-        for k, place in enumerate(piece.outputs)
-    ]
-    return Counted(tuple(made.steps), tuple(outputs), made.numbers)
+            place = made.add(replace(step, operands=tuple(places[k] for k in step.operands)))
+        places[k] = place
+
+    def outputs(group: Sequence[int], factors: Sequence[Fraction]) -> tuple[int, ...]:
+        pairs = zip(group, factors, strict=True)
+        return tuple(made.scaled(places[place], factor) for place, factor in pairs)
+
+    momenta = (units.impulse,) * (len(piece.outputs) - 3) + (units.momentum,) * 3
+    written = Written(
+        equations,
+        (),
+        outputs(piece.outputs, [units.time / unit for unit in momenta]),
+        tuple(own.in_form(name, loads) for name in loads.continuous),
+        outputs(piece.rates, [units.time / unit for unit in units.own]),
+        outputs(piece.rotor, [1 / units.momentum] * len(piece.rotor)),
+    )
+    return replace(written, steps=tuple(made.steps)), made.numbers
 
 
 class _Counting:
@@ -194,8 +255,12 @@ class _Counting:
         return place if unit == 1 else self.add(Step("*", (self.number(unit), place)))
 
 
-def _unit(name: str, units: Units) -> Fraction:
-    """Return the unit of an input."""
+def unit_of(name: str, loads: Loads, units: Units) -> Fraction:
+    """Return the unit of an input of the steps; held values have none."""
+    if name in loads.held_values:
+        return Fraction(1)
+    if name in loads.continuous:
+        return units.own[loads.continuous.index(name)]
     of_letter = {
         "t": units.time,
         "w": 1 / units.time,

@@ -14,7 +14,7 @@ from taylor_verify.plotting.sheet import sheet
 from taylor_verify.plotting.style import look_of_line
 from taylor_verify.plotting.wording import stem_of
 from taylor_verify.records.answers import Order
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import is_state
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,8 +51,8 @@ def picture(title: str, orders: Sequence[Order]) -> Picture:
 
 def _figure(orders: Sequence[Order]) -> Figure:
     groups = {
-        "state": [order for order in orders if order.quantity in STATES],
-        "conserved quantities": [order for order in orders if order.quantity not in STATES],
+        "state": [order for order in orders if is_state(order.quantity)],
+        "conserved quantities": [order for order in orders if not is_state(order.quantity)],
     }
     panels = [(heading, group) for heading, group in groups.items() if group]
     entries = [

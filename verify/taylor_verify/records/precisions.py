@@ -15,14 +15,13 @@ from typing import Final
 class Format:
     """A binary number format of hardware or of compilers.
 
-    It has ``bits`` of significand, and exponents from ``emin`` to ``emax`` as IEEE 754 counts them.
+    It has ``bits`` of significand, and exponents up to ``emax`` as IEEE 754 counts them.
     ``numpy`` is the name of NumPy's type, empty where NumPy has none. Pictures draw it in ``colour``, with
     a line of ``width`` and markers of ``size`` points.
     """
 
     name: str
     bits: int
-    emin: int
     emax: int
     numpy: str
     colour: str
@@ -30,56 +29,21 @@ class Format:
     width: float
     size: float
 
+    @property
+    def emin(self) -> int:
+        """The least exponent of a number with all its digits."""
+        return 1 - self.emax
+
 
 # Light to dark and thin to thick with the digits that a format has: where formats agree, as they do at
 # coarse tolerances, the lines lie in each other.
 FORMATS: Final[Mapping[str, Format]] = {
     each.name: each
     for each in (
-        Format(
-            name="f32",
-            bits=24,
-            emin=-126,
-            emax=127,
-            numpy="float32",
-            colour="#3F9BD1",
-            marker="o",
-            width=0.9,
-            size=3.0,
-        ),
-        Format(
-            name="f64",
-            bits=53,
-            emin=-1022,
-            emax=1023,
-            numpy="float64",
-            colour="#0072B2",
-            marker="s",
-            width=1.5,
-            size=4.2,
-        ),
-        Format(
-            name="f80",
-            bits=64,
-            emin=-16382,
-            emax=16383,
-            numpy="longdouble",
-            colour="#5A2A9A",
-            marker="^",
-            width=2.1,
-            size=5.4,
-        ),
-        Format(
-            name="f128",
-            bits=113,
-            emin=-16382,
-            emax=16383,
-            numpy="",
-            colour="#1A1040",
-            marker="D",
-            width=2.7,
-            size=5.6,
-        ),
+        Format("f32", 24, 127, "float32", colour="#3F9BD1", marker="o", width=0.9, size=3.0),
+        Format("f64", 53, 1023, "float64", colour="#0072B2", marker="s", width=1.5, size=4.2),
+        Format("f80", 64, 16383, "longdouble", colour="#5A2A9A", marker="^", width=2.1, size=5.4),
+        Format("f128", 113, 16383, "", colour="#1A1040", marker="D", width=2.7, size=5.6),
     )
 }
 # The precisions that the standard set runs on.

@@ -1,13 +1,14 @@
 """Records of all quantities: states, conserved quantities, and the columns of a trajectory file.
 
-Readers, solvers and the judge take names, columns and units from here. To add a state quantity is to add
+Readers, solvers and the judge take names, columns and units from here. A scene lists what it tracks, states
+of its own among it (`Scene.tracked` and `Scene.groups`). To add a state quantity is to add
 its ``Quantity`` and its ``Group`` of columns, and to say where a solver's state has it
 (solvers/trajectory.py), what the exact motion makes of it, and how an error reaches it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -22,6 +23,8 @@ class Measure(Enum):
     ANGLE = "angle"
     # The distance of two places, over the length of the path.
     PATH = "path"
+    # The difference of vectors, over the largest of them up to their row.
+    SO_FAR = "so far"
 
 
 @dataclass(frozen=True)
@@ -81,21 +84,8 @@ class Conserved:
 GROUPS: Final[Mapping[str, Group]] = {
     group.name: group
     for group in (
-        Group(
-            name="omega",
-            columns=("w1", "w2", "w3"),
-            quantity="omega",
-            noun="angular velocity",
-            dimension="rate",
-            start="omega",
-        ),
-        Group(
-            name="linear_velocity",
-            columns=("u1", "u2", "u3"),
-            quantity="velocity",
-            noun="linear velocity",
-            dimension="velocity",
-        ),
+        Group("omega", ("w1", "w2", "w3"), "omega", "angular velocity", "rate", start="omega"),
+        Group("linear_velocity", ("u1", "u2", "u3"), "velocity", "linear velocity", "velocity"),
         Group(
             name="linear_impulse",
             columns=("x1", "x2", "x3"),
@@ -129,15 +119,7 @@ GROUPS: Final[Mapping[str, Group]] = {
             dimension="number",
             moves_with="frame",
         ),
-        Group(
-            name="centre",
-            columns=("c1", "c2", "c3"),
-            quantity="centre",
-            noun="centre",
-            dimension="length",
-            moves_with="space",
-            start="centre",
-        ),
+        Group("centre", ("c1", "c2", "c3"), "centre", "centre", "length", "space", "centre"),
     )
 }
 # In reading order.
@@ -145,19 +127,8 @@ QUANTITIES: Final[Mapping[str, Quantity]] = {
     each.name: each
     for each in (
         Quantity("omega", "max|omega|", ("omega",), main_of="euler"),
-        Quantity(
-            "impulse",
-            "max|x|, max|y|",
-            ("linear_impulse", "angular_impulse"),
-            main_of="kirchhoff",
-        ),
-        Quantity(
-            "attitude",
-            "rad",
-            ("quaternion",),
-            tracked_by=("euler", "kirchhoff"),
-            measure=Measure.ANGLE,
-        ),
+        Quantity("impulse", "max|x|, max|y|", ("linear_impulse", "angular_impulse"), "kirchhoff"),
+        Quantity("attitude", "rad", ("quaternion",), "", ("euler", "kirchhoff"), Measure.ANGLE),
         Quantity(
             "centre",
             "arc length",
@@ -174,19 +145,29 @@ CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
     each.name: each
     for each in (
         Conserved("T", is_positive=True),
+        Conserved("T+V", ("attitude", "centre")),
         Conserved("H2", is_positive=True),
-        Conserved("H_space", ("attitude",)),
+        Conserved("H_axis"),
+        *(Conserved(name, ("attitude",)) for name in ("H_space", "H_along")),
         Conserved("F2", is_positive=True),
         *map(Conserved, ("FG", "y1", "y2", "y3", "y_axis")),
         *map(Conserved, ("clebsch2", "neumann", "steklov", "lyapunov", "chaplygin", "sokolov")),
-        Conserved("x_space", ("attitude",)),
-        Conserved("y_space", ("attitude", "centre")),
+        *(Conserved(name, ("attitude",)) for name in ("x_space", "x_along")),
+        *(Conserved(name, ("attitude", "centre")) for name in ("y_space", "y_along")),
     )
 }
+# Keys of documents that stand beside quantities.
+_KEYS: Final = ("t", "time", "radius", "absolute", "held", "loads")
+
 # Rows that compare no quantity of their own: the start, the extent of an answer, the length of quaternions.
 INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
 UNIT_QUATERNION: Final = "unit quaternion"
+
+# The names that a state of a scene's own may not have, which stands beside these in files and verdicts.
+RESERVED: Final = frozenset(
+    (*QUANTITIES, *GROUPS, *CONSERVED_QUANTITIES, INITIAL, COMPLETE, UNIT_QUATERNION, *_KEYS)
+)
 
 # A gate allows this many times the roundoff floor, which is the root mean square of a random sum. Ten
 # leaves room for a solver that rounds a few times per step and for the tail of the distribution, but none
@@ -212,7 +193,18 @@ IMPULSES: Final = tuple(column for name in MOMENTA["kirchhoff"] for column in CO
 
 def is_conserved(quantity: str) -> bool:
     """Return True for the name of a conserved quantity."""
-    return quantity not in (*STATES, INITIAL, COMPLETE)
+    return quantity in CONSERVED_QUANTITIES or quantity == UNIT_QUATERNION
+
+
+def is_state(quantity: str) -> bool:
+    """Return True for the name of a state quantity, one of a scene's own among them."""
+    return not is_conserved(quantity) and quantity not in (INITIAL, COMPLETE)
+
+
+def states_among(quantities: Iterable[str]) -> list[str]:
+    """Return the state quantities in reading order: those of the body, then those of a scene's own."""
+    names = [name for name in dict.fromkeys(quantities) if is_state(name)]
+    return [*(name for name in STATES if name in names), *(n for n in names if n not in STATES)]
 
 
 def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]:
@@ -224,6 +216,12 @@ def state_quantities(model: str, track: Collection[str]) -> tuple[Quantity, ...]
 def state_groups(model: str, track: Collection[str]) -> tuple[str, ...]:
     """Return the groups of columns that a solver's states have, in their order."""
     return tuple(name for quantity in state_quantities(model, track) for name in quantity.groups)
+
+
+def own_state(name: str, columns: tuple[str, ...]) -> tuple[Quantity, Group]:
+    """Return the records of a state of a scene's own, whose components are these columns of files."""
+    quantity = Quantity(name, f"max|{name}|", (name,), measure=Measure.SO_FAR)
+    return quantity, Group(name, columns, name, f"state {name}", "number", moves_with="")
 
 
 def with_needs(track: Collection[str]) -> frozenset[str]:

@@ -6,6 +6,7 @@ tolerance the tolerance that was asked for, in place of the bound that the facto
 floor     the roundoff floor at the sample of the largest error, and the terms it is made of
 input     the part of the floor that the rounding of the input adds, for an answer from elsewhere
 claim     the steps that a solver claims, where fewer are counted
+conserved a formula that says what the loads of the scene conserve
 shift     the shift of time behind the error of a state quantity that did not pass
 """
 
@@ -43,6 +44,8 @@ class Carried(StrEnum):
 
     ORBIT = "transition matrix"
     GRADIENT = "gradient"
+    WORK = "work"
+    LAW = "law"
     VELOCITY = "velocity of x and y"
     LINEAR_VELOCITY = "linear velocity of x and y"
     LENGTH = "length of the quaternion"
@@ -127,6 +130,14 @@ class RoundoffFloor:
 _MEANINGS: Final = {
     Carried.START: "one rounding of each component of the start on the rung",
     Carried.ROW: "a rounding of the input and one of the row",
+    Carried.WORK: (
+        "T of the exact motion, at the start and with the work of all loads since; attainable = |dT/dz| x "
+        "the floor of the momenta z"
+    ),
+    Carried.LAW: (
+        "on the instants of this state, the value in the row against its law at the state of the same row; "
+        "a rounding of each number and step of the law, and of the row"
+    ),
     Carried.VELOCITY: (
         "Omega = B^T x + C y, so that attainable = (|B|^2 x-floor^2 + |C|^2 y-floor^2)^(1/2), "
         "and one rounding of Omega itself"
@@ -260,6 +271,7 @@ class Reason:
     floor: RoundoffFloor | None = None
     input: InputShare | None = None
     claim: ClaimedSteps | None = None
+    conserved: str = ""
     shift: TimeShift | None = None
 
     @property
@@ -302,6 +314,8 @@ class Reason:
     def _terms(self) -> Iterator[str]:
         if self.rule:
             yield self.rule
+        if self.conserved:
+            yield f"{self.conserved}: its rate under the loads of the scene is the polynomial zero"
         if self.input:
             yield self.input.sentence()
         if self.floor:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from taylor_verify.records import status
 from taylor_verify.records.precisions import place_of_rung
-from taylor_verify.records.quantities import CONSERVED, MAIN, STATES
+from taylor_verify.records.quantities import CONSERVED, MAIN, is_state
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -33,7 +33,7 @@ class Run:
 
     @property
     def state(self) -> tuple[Verdict, ...]:
-        return tuple(v for v in self.verdicts if v.quantity in STATES)
+        return tuple(v for v in self.verdicts if is_state(v.quantity))
 
     @property
     def conserved(self) -> dict[str, Verdict]:

@@ -123,7 +123,7 @@ def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
 
 
 # Made of the other numbers of a row, or of the scene.
-_DERIVED = ("digits", "sentence", "until")
+_DERIVED = ("because", "digits", "sentence", "until")
 # Most rows have none of these.
 _SELDOM = ("tolerance", "since", "change", "error_kind")
 

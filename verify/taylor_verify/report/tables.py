@@ -38,21 +38,20 @@ _RATIO: Final = (
 _CONTENTS: Final = (
     (
         "[State errors](accuracy.md)",
-        "[csv](accuracy.csv)",
+        "`accuracy.csv`",
         "the error of what each scene tracks, beside that of perfect rounding",
     ),
-    ("[Conserved quantities](conserved.md)", "[csv](conserved.csv)", "their drift, a run a line"),
+    ("[Conserved quantities](conserved.md)", "`conserved.csv`", "their drift, a run a line"),
     (
         "Gates",
         "`gates.csv`",
-        "every verdict, its bound and the reason of the bound: `gates.md`, not committed",
+        "every verdict, its bound and the reason of the bound: `gates.md`",
     ),
 )
 _PAPER: Final = (
     "`make paper` makes a paper of the studies' results, with its tables as LaTeX and CSV, in "
-    "`reports/paper`. It is not committed, nor are `gates.md` and `gates.csv`: `taylor-verify publish "
-    "--missing` makes the tables of the gates, with a line for every verdict and its reason, which "
-    "are for searching."
+    "`reports/paper`. It is not committed, nor are the tables for searching: `taylor-verify publish "
+    "--missing` makes the sheets, CSV with every digit, and `gates.md`, a line for every verdict."
 )
 _ACCURACY: Final = (
     "scene",
@@ -197,7 +196,7 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
     besides = [
         [
             entry.link("tables"),
-            f"[csv]({Path(entry.sheet).name})" if entry.has_sheet else NOTHING,
+            code(Path(entry.sheet).name) if entry.has_sheet else NOTHING,
             entry.what,
         ]
         for entry in others

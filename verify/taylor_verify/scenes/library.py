@@ -13,7 +13,7 @@ from typing import Final
 
 from taylor_verify.records.faults import Refused, brief
 
-STANDARD_SET: Final = ("euler", "kirchhoff", "manufactured")
+STANDARD_SET: Final = ("euler", "kirchhoff", "loads", "manufactured")
 EXTREMES: Final = "extremes"
 # Scenes with the worst errors that searches came upon; they run with the extremes.
 WORST: Final = "extremes/worst"
@@ -27,10 +27,10 @@ GUIDE: Final[Mapping[str, str]] = MappingProxyType(
         "euler/tennis-racket": "how soon small errors flip a body spun about its middle axis",
         "euler/constant-moment": "a torque that is constant in body axes",
         "euler/separatrix": "the hardest orbit of a free body: an infinite period",
-        "manufactured/euler-full-tensor": "a torque that changes with time, and an exact answer still",
+        "loads/gravity-gradient": "a satellite under a torque that the scene writes down",
+        "loads/vehicle-drag-thrust": "an underwater vehicle with weight, thrust, drag and lift",
         "kirchhoff/auv-turn": "begin here with a vehicle: mass matrix with added mass, velocities, path",
         "kirchhoff/whole-motion": "a body of revolution in a fluid: impulses, attitude and path",
-        "kirchhoff/screw": "the coupling of translation and rotation",
         "extremes": "what breaks integrators: tiny distances, huge spans, extreme scales",
     }
 )

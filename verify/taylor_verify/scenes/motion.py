@@ -111,13 +111,16 @@ class Motion:
     to the norm of the true one, on every route. A vector that a thousand bits more than were asked for do
     not distinguish from zero is zero here, and its bound is absolute. The radius is zero where the numbers
     are exact. ``radii`` bounds the error of single quantities in the same way, where it is known, and
-    ``errors`` that of every component, absolutely: shaped as the quantities are.
+    ``errors`` that of every component, absolutely: shaped as the quantities are. Quantities are also the
+    scene's own states that it tracks, by name and of shape (n, components), read after an instant; the
+    radius of such a one is relative to ``peaks``, a lower bound of its largest norm up to each row.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
     radius: np.ndarray[Any, Any]
     radii: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
     errors: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+    peaks: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self.quantities[quantity]
@@ -128,8 +131,8 @@ class Motion:
 
     def at(self, rows: Sequence[int]) -> Motion:
         """Return the motion at some of its instants."""
-        quantities, radii, errors = (
+        quantities, radii, errors, peaks = (
             {name: values[rows] for name, values in by_name.items()}
-            for by_name in (self.quantities, self.radii, self.errors)
+            for by_name in (self.quantities, self.radii, self.errors, self.peaks)
         )
-        return Motion(quantities, self.radius[rows], radii, errors)
+        return Motion(quantities, self.radius[rows], radii, errors, peaks)

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from taylor_verify.records.quantities import (
+    GROUPS,
+    Group,
+    Quantity,
+    own_state,
+    state_groups,
+    state_quantities,
+)
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import Clock, State
 
@@ -14,9 +23,10 @@ class Scene:
 
     ``name`` is the name of a shipped scene (``euler/generic``) or the path given; ``model`` is
     ``euler`` (RigidBody, Spin) or ``kirchhoff`` (ImmersedBody, Impulse); ``track`` holds what the
-    scene requires besides omega or impulse: ``attitude``, ``centre``; ``digest`` is the SHA-256 of
-    the text; ``warnings`` are sentences about a body that no real solid could have; ``notes`` say how
-    numbers were formed that the file does not write as they are (an inverse, a rate in degrees).
+    scene requires besides omega or impulse: ``attitude``, ``centre``, and ``states`` which of the states
+    of its own; ``digest`` is the SHA-256 of the text; ``warnings`` are sentences about a body that no real
+    solid could have; ``notes`` say how numbers were formed that the file does not write as they are (an
+    inverse, a rate in degrees).
     """
 
     name: str
@@ -30,3 +40,28 @@ class Scene:
     digest: str = ""
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    states: frozenset[str] = frozenset()
+
+    @property
+    def tracked(self) -> tuple[Quantity, ...]:
+        """The state quantities of every answer: omega or impulse, then the frame, then own states."""
+        return (*state_quantities(self.model, self.track), *(quantity for quantity, _ in self._own))
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The columns of a solver's states, in their order."""
+        names = state_groups(self.model, self.track)
+        return (*(GROUPS[name] for name in names), *(group for _, group in self._own))
+
+    @property
+    def known_groups(self) -> Mapping[str, Group]:
+        """All columns that a file may have, by their group; all states of the scene's own among them."""
+        loads = self.body.loads
+        states = () if loads is None else loads.states
+        return {**GROUPS, **{s.name: own_state(s.name, s.components)[1] for s in states}}
+
+    @property
+    def _own(self) -> list[tuple[Quantity, Group]]:
+        loads = self.body.loads
+        states = () if loads is None else loads.states
+        return [own_state(s.name, s.components) for s in states if s.name in self.states]

@@ -15,7 +15,6 @@ from mpmath import mp
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -92,10 +91,10 @@ class Solver(ABC):
 class Callback(Solver):
     """A user's function as a solver: ``answer(problem)`` returns states of shape (samples, n).
 
-    Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it
-    is. A Python or NumPy number, a Fraction or an mpf is taken exactly. A masked number and a table with
-    named columns are refused. An exception is a failed run, and so is `sys.exit` with any code; an
-    interrupt stays an interrupt.
+    Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it is, then
+    the tracked states of the scene's own. A Python or NumPy number, a Fraction or an mpf is taken exactly.
+    A masked number and a table with named columns are refused. An exception is a failed run, and so is
+    `sys.exit` with any code; an interrupt stays an interrupt.
     """
 
     answer: Callable[[Problem], Any]
@@ -177,10 +176,10 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
     """Return the quantities of a state row in their order, each with its number of columns.
 
     ``omega`` 3, or ``linear_impulse`` 3 and ``angular_impulse`` 3 (body axes); then ``quaternion`` 4
-    (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked.
+    (scalar first, body to space) and ``centre`` 3 (space axes), as far as they are tracked; then the
+    tracked states of the scene's own.
     """
-    groups = state_groups(problem.scene.model, problem.scene.track)
-    return [(name, len(COLUMNS[name])) for name in groups]
+    return [(group.name, len(group.columns)) for group in problem.scene.groups]
 
 
 def _as_mpf(value: Any) -> Any:

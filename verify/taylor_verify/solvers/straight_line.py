@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import Any, Final
 
 from taylor_verify.models.form import Form
-from taylor_verify.models.functions import functions_of
+from taylor_verify.models.functions import Functions, functions_of
 from taylor_verify.models.symbol import Symbol
 
 _ARITHMETIC: Final = ("+", "-", "*", "/")
@@ -43,13 +43,16 @@ def lines(form: Form) -> Lines:
     return Lines(tuple(code.lines), results, code.constants, tuple(code.functions))
 
 
-def straight_line(form: Form, parameters: Sequence[Any]) -> Rates:
+def straight_line(
+    form: Form, parameters: Sequence[Any], functions: Functions | None = None
+) -> Rates:
     """Return ``rates(t, state)`` in the arithmetic of the parameters and the state.
 
-    The loads of a scene may read t, the time since the start; nothing else does.
+    The loads of a scene may read t, the time since the start; nothing else does. ``functions`` are those
+    of the state, where these are not those of the parameters.
     """
     bound, constants, names = _bound(form)
-    functions = functions_of(parameters[0]) if names else {}
+    functions = functions or (functions_of(parameters[0]) if names else {})
     rates: Rates = bound(*parameters, *constants, *(functions[name] for name in names))
     return rates
 

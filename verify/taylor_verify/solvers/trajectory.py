@@ -15,12 +15,15 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.models.evaluated import wheels
+from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
+from taylor_verify.models.own import in_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
+from taylor_verify.models.written import unit_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import exact_value, held_exactly
-from taylor_verify.records.quantities import state_groups
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
@@ -96,7 +99,8 @@ class Postponed(ByRows):
 
     def _made(self, places: Sequence[int]) -> dict[str, np.ndarray[Any, Any]]:
         exact, rows = self.exact, self.states
-        return from_scaled(self._problem, [[exact(v) for v in rows[k]] for k in places])
+        times = [self._problem.times[k] for k in places]
+        return from_scaled(self._problem, [[exact(v) for v in rows[k]] for k in places], times)
 
     def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
         return self._formed[quantity]
@@ -182,19 +186,23 @@ def _rotations(quaternions: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 def _names(problem: Problem) -> tuple[str, ...]:
     """Return the quantities that the states of a problem hold."""
-    return state_groups(problem.scene.model, problem.scene.track)
+    return tuple(group.name for group in problem.scene.groups)
 
 
 def from_scaled(
-    problem: Problem, rows: Sequence[Sequence[Fraction]]
+    problem: Problem, rows: Sequence[Sequence[Fraction]], times: Sequence[Fraction] = ()
 ) -> dict[str, np.ndarray[Any, Any]]:
     """Return the quantities of states in the problem's own form and units, formed exactly.
 
-    ``rows`` (n, states) stand in the order of ``problem.form.states``, a row for each sample.
+    ``rows`` (n, states) stand in the order of ``problem.form.states``, a row for each sample, and the held
+    values of the scene's own states behind them. ``times`` are theirs, and the problem's own if left out.
 
     omega = K H is a sum of products of dyadic numbers, so it is dyadic and held without rounding.
     """
-    columns = dict(zip(problem.form.states, zip(*rows, strict=True), strict=True))
+    names = (*problem.form.states, *problem.held_names)
+    columns: dict[str, Sequence[Fraction]]
+    columns = dict(zip(names, zip(*rows, strict=True), strict=True))
+    columns |= _without_wheels(problem, columns, times or problem.times)
     units, given = problem.units, problem.given
     kind = mechanics(given.body)
     for name in kind.states:
@@ -215,10 +223,49 @@ def from_scaled(
         quantities["centre"] = [
             tensors.plus(start, c) for c in _vectors(columns, "c", units.centre)
         ]
+    quantities |= _own_states(problem, columns)
     return {
         name: np.array([[held_exactly(entry) for entry in row] for row in vectors], dtype=object)
         for name, vectors in quantities.items()
     }
+
+
+def _own_states(
+    problem: Problem, columns: Mapping[str, Sequence[Fraction]]
+) -> dict[str, list[tuple[Fraction, ...]]]:
+    """Return the tracked states of the scene's own, in its units."""
+    loads = problem.given.body.loads
+    if loads is None:
+        return {}
+    states: dict[str, list[tuple[Fraction, ...]]] = {}
+    for state in loads.states:
+        if state.name in problem.scene.states:
+            parts = [
+                [v * unit_of(name, loads, problem.units) for v in columns[in_form(name, loads)]]
+                for name in state.components
+            ]
+            states[state.name] = list(zip(*parts, strict=True))
+    return states
+
+
+def _without_wheels(
+    problem: Problem, columns: Mapping[str, Sequence[Fraction]], times: Sequence[Fraction]
+) -> dict[str, list[Fraction]]:
+    """Return the momentum of the body alone, where a text writes that of its wheels."""
+    loads, units = problem.given.body.loads, problem.units
+    if loads is None or not loads.rotor:
+        return {}
+    own = [
+        [v * unit for v in columns[in_form(name, loads)]]
+        for name, unit in zip(loads.continuous, units.own, strict=True)
+    ]
+    alone: list[list[Fraction]] = [[], [], []]
+    for k, time in enumerate(times):
+        values = tuple(component[k] for component in own)
+        h = wheels(loads, time * units.time, values, problem.rung.bits)
+        for i, entry in enumerate(h):
+            alone[i].append(columns[f"H{i + 1}"][k] - entry / units.momentum)
+    return labelled("H", alone)
 
 
 def _vectors(

@@ -10,7 +10,8 @@ from math import inf, isnan
 
 from mpmath import mp
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.conditioning.loaded import truth
+from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.drifts import drifts
@@ -30,7 +31,7 @@ class Accuracy:
 
     ``max`` is the largest over all samples, ``final`` that of the last sample. Each is an upper bound: the
     error plus the width of the truth. ``drift`` is the largest drift of a conserved quantity, and
-    ``drifting`` the name of that quantity; None and empty under loads, which conserve nothing.
+    ``drifting`` the name of that quantity; None and empty under loads that conserve nothing.
     """
 
     max: Mapping[str, float] = field(default_factory=dict)
@@ -56,7 +57,7 @@ class Truth:
         self._given, self._bits = problem.given, working_bits(bits)
         self._digits = truth_digits(bits)
         try:
-            self._motion, self._start = self._evaluated(solution(self._given))
+            self._motion, self._start = self._evaluated(truth(self._given, self._digits))
         except Unsettled:
             # Near a degenerate orbit the closed form loses digits that Taylor series have.
             self._motion, self._start = self._evaluated(TaylorSolution(self._given))
@@ -75,17 +76,14 @@ class Truth:
             bounds = {errors.quantity: errors.values + errors.truth_radius for errors in states}
             most = {name: float(largest(values)) for name, values in bounds.items()}
             final = {name: float(values[-1]) for name, values in bounds.items()}
-            conserved = (
-                drifts(
-                    given,
-                    start=self._start,
-                    truth=self._motion,
-                    answer=answer,
-                    own=trajectory.quantities,
-                    digits=self._digits,
-                )
-                if given.body.is_conservative
-                else ()
+            conserved = drifts(
+                given,
+                start=self._start,
+                truth=self._motion,
+                answer=answer,
+                own=trajectory.quantities,
+                digits=self._digits,
+                of=[each for each in invariants(given) if each.is_conserved],
             )
             sizes = [
                 (float(largest(errors.values)), invariant.name) for invariant, errors in conserved

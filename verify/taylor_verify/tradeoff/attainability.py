@@ -14,9 +14,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.conditioning.loaded import truth
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.errors.state import state_errors
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.precision import Rung
@@ -52,10 +53,11 @@ def floors(given: Scene, scene: Scene, rung: Rung, steps: int) -> Floats:
     ``given`` is ``scene`` as the rung rounds it. Raises Unsettled if the conditioning of the orbit cannot
     be computed.
     """
-    truth = solution(given).motion(given.clock.elapsed, _DIGITS)
+    digits = truth_digits(rung.bits)
+    motion = truth(given, digits).motion(given.clock.elapsed, min(digits, _DIGITS))
     base = floor(given, scene, rung.unit_roundoff, steps)
-    # The truth is compared with itself, because only the names and the scales of the errors are needed.
-    states = state_errors(given, truth, truth)
+    # The motion is compared with itself, because only the names and the scales of the errors are needed.
+    states = state_errors(given, motion, motion)
     worst: Floats = np.max([base.of_state(errors) for errors in states], axis=0).astype(float)
     return worst
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
@@ -82,16 +81,8 @@ def trade_off(
 
     There are ``repeats`` rounds, whose order ``seed`` draws. ``clock`` returns seconds. A setting that has
     taken ``patience`` seconds is timed no further (see `solves.timed`). A setting that cannot run becomes a
-    point with the reason, and without an error. Raises Refused for a body under loads that its scene
-    writes down.
+    point with the reason, and without an error.
     """
-    if scene.body.loads is not None:
-        raise Refused(
-            [
-                "expected a body without loads that its scene writes down, got some @ body "
-                "(`exact` and `check FILE` take them)"
-            ]
-        )
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
     truths, points = Truths(), []

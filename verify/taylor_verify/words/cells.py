@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Final
 
-from taylor_verify.records.quantities import STATES
+from taylor_verify.records.quantities import states_among
 from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -137,7 +137,8 @@ def main_error(run: Run | None) -> str:
     if run is None:
         return NOTHING
     status = gravest(run.verdicts)
-    main = min(run.state, key=lambda v: STATES.index(v.quantity), default=None)
+    states = states_among(v.quantity for v in run.state)
+    main = next((v for v in run.state if v.quantity == states[0]), None)
     if main is None or main.max is None:
         return judged(status)
     return error(main) if status is Status.PASS else f"{error(main)} {judged(status)}"

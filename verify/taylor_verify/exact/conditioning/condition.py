@@ -17,7 +17,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property
+from itertools import accumulate
 from math import ceil, inf, log10
 from typing import Any, Final
 
@@ -26,15 +27,17 @@ import numpy as np
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
-from taylor_verify.exact.conditioning.loaded import between, enclosed, frame
+from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, times_of_run
 from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.path_times import few, many
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import float_text, floor_log2
-from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.scene import Scene
+
+Places = np.ndarray[Any, np.dtype[np.int64]]
 
 # float64 reaches e^700, and squares of the errors are formed.
 _MOST_DECAY: Final = 300
@@ -55,14 +58,6 @@ _STEP_ERROR: Final = 1e-15
 _LITTLE_GROWTH: Final = 1e6
 # Differences that are smaller take minutes.
 _LARGEST_EXPONENT: Final = 500
-# On a regular orbit all errors grow alike, so this many samples represent all,
-_FEW: Final = 33
-# with this many times besides that share no period: samples may meet the orbit in one phase only.
-_BETWEEN: Final = 20
-_GOLDEN: Final = Fraction(0.6180339887498949)
-# Up to this many radians there is a point for each radian, later for each 64th part of the elapsed time.
-_RESOLVED: Final = 64
-_MOST_SAMPLES: Final = 401
 
 
 @dataclass(frozen=True)
@@ -82,14 +77,14 @@ class Path:
 
     @cached_property
     def blocks(self) -> tuple[str, ...]:
-        """The blocks of the state, of three components each."""
+        """The blocks of the state: of three components each, but for states of the scene's own."""
         moved = self.scene.track | frame(self.scene)
         tracked = (name for name in ("attitude", "centre") if name in moved)
-        return (*self.flow.momenta, *tracked)
+        return (*self.flow.momenta, *tracked, *self.carried.own)
 
     @property
     def units(self) -> dict[str, Fraction]:
-        return self.flow.units
+        return {**self.flow.units, **self.carried.own_units}
 
     @property
     def momentum(self) -> Floats:
@@ -106,11 +101,11 @@ class Path:
         in units, infinite beyond float64. Of errors that shrink again by more than float64 has digits, its
         rounding is left, which makes them larger and not smaller.
         """
-        size = 3 * len(self.blocks)
+        among = np.ix_(self.places, self.places)
         factors = [np.diag(errors[0])]
         with np.errstate(all="ignore"):
             for step, sizes in zip(self.carried.steps, errors[1:], strict=True):
-                both = np.hstack([step[:size, :size] @ factors[-1], np.diag(sizes)])
+                both = np.hstack([step[among] @ factors[-1], np.diag(sizes)])
                 factors.append(_narrowed(both))
             return self._sizes(np.array(factors))
 
@@ -120,7 +115,7 @@ class Path:
         ``into`` is a block of the state, and ``out`` another one, or ``omega`` = K momentum for a rigid
         body. What the scene does not track raises KeyError. A norm outside the range of float64 is inf.
         """
-        places = {name: self._place(name) for name in self.blocks}
+        places = {name: self.places[self.span(name)] for name in self.blocks}
         columns = self.carried.since_first[:, :, places[into]]
         if out == "omega" and "momentum" in places:
             rows = self.flow.equations.spin @ columns[:, places["momentum"]]
@@ -151,7 +146,7 @@ class Path:
         """
         if self.growth.max() <= _LITTLE_GROWTH:
             return True
-        made = np.ones((len(self.elapsed), 3 * len(self.blocks)))
+        made = np.ones((len(self.elapsed), len(self.places)))
         carried = self.gathered(made)
         with np.errstate(over="ignore"):
             size = np.sqrt(sum(carried[block] ** 2 for block in self.blocks))
@@ -172,13 +167,33 @@ class Path:
         times = np.array([abs(float(t)) for t in self.elapsed])
         return bool((self.growth <= REGULAR * (1 + self.rate * times)).all())
 
-    def _place(self, block: str) -> slice:
-        first = 3 * self.blocks.index(block)
-        return slice(first, first + 3)
+    @cached_property
+    def _spans(self) -> dict[str, range]:
+        """The components of each block among those of all blocks."""
+        lengths = [
+            self.carried.own[name].shape[1] if name in self.carried.own else 3
+            for name in self.blocks
+        ]
+        ends = [0, *accumulate(lengths)]
+        return {name: range(ends[k], ends[k + 1]) for k, name in enumerate(self.blocks)}
+
+    def span(self, block: str) -> slice:
+        """The components of a block among those of all blocks."""
+        span = self._spans[block]
+        return slice(span.start, span.stop)
+
+    @cached_property
+    def places(self) -> Places:
+        """The components of all blocks in the derivative, which has turn and centre always."""
+        own = sum(rows.shape[1] for rows in self.carried.own.values())
+        body = sum(map(len, self._spans.values())) - own
+        whole = self.momentum.shape[1] + 6
+        places: Places = np.r_[0:body, whole : whole + own]
+        return places
 
     def _sizes(self, factors: Floats) -> dict[str, Floats]:
         """Return the norm of the rows of each block at each time, and those of omega."""
-        names = {name: factors[:, self._place(name)] for name in self.blocks}
+        names = {name: factors[:, self.span(name)] for name in self.blocks}
         if "momentum" in names:
             names["omega"] = self.flow.equations.spin @ names["momentum"]
         sizes = {name: np.linalg.norm(rows, axis=(1, 2)) for name, rows in names.items()}
@@ -224,16 +239,18 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
 
 
-def path(scene: Scene) -> Path:
+def path(scene: Scene, digits: int = DIGITS) -> Path:
     """The orbit of a scene at as many times as it takes; some or all samples are among them.
+
+    ``digits`` are those of a motion that comes with its derivative.
 
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
     _refuse_far_decay(scene, elapsed)
     if scene.body.loads is not None:
-        points = between(elapsed)
-        return Path(scene, flow, points, enclosed(scene, flow, points))
+        times = times_of_run(scene)
+        return Path(scene, flow, times, enclosed(scene, flow, times, digits))
     coarse = _along(scene, flow, few(elapsed))
     if coarse.is_regular:
         return coarse
@@ -345,35 +362,3 @@ def _is_short(scene: Scene, flow: Flow) -> bool:
     )
     rate = float(flow.rate(counted)) / float(flow.time)
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
-
-
-# The choice of times, where not all samples are needed.
-
-
-def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Return evenly chosen samples, and times that are independent of them.
-
-    In each of as many equal parts of the time lies one, at a multiple of the golden section modulo 1,
-    which keeps away from every rhythm; two lie before the first sample, to which nothing else leads.
-    """
-    samples = [Fraction(0), *chosen(elapsed, _FEW)]
-    parts = max(_BETWEEN, _FEW - len(elapsed))
-    between = [elapsed[-1] * share for share in _golden_shares(parts)]
-    first = next((t for t in samples if t), Fraction(0))
-    return sorted({*samples, *between, first * _GOLDEN**2, first * _GOLDEN}, key=abs)
-
-
-@lru_cache(maxsize=8)
-def _golden_shares(parts: int) -> tuple[Fraction, ...]:
-    """Return a number in each of so many equal parts between 0 and 1."""
-    return tuple((k + k * _GOLDEN % 1) / parts for k in range(parts))
-
-
-def many(elapsed: Sequence[Fraction], rate: float) -> list[Fraction]:
-    """Radian by radian at first, later in proportion to the time so far; and the samples."""
-    end = float(elapsed[-1])
-    times, t = [], 0.0
-    while t < abs(end):
-        times.append(Fraction(t if end > 0 else -t))
-        t += max(1 / rate, t / _RESOLVED)
-    return sorted({*times, *chosen(elapsed, _MOST_SAMPLES)}, key=abs)

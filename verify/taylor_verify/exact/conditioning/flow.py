@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,9 @@ class Steps(NamedTuple):
     ``since_first`` (n, d + 6, d + 6) from the first time to each. ``momentum`` (n, d) is z; ``centre``
     (n, 3) counts from its start and has no rows where it is not tracked. ``attitude`` (n, 3, 3) is there
     for bodies under written loads that depend on it or whose scene tracks it.
+
+    States of a scene's own stand behind (z, theta, c), and are ``own`` by name (n, components), in the
+    scene's units; they are counted in ``own_units``.
     """
 
     steps: Floats
@@ -43,6 +47,8 @@ class Steps(NamedTuple):
     momentum: Floats
     centre: Floats
     attitude: Floats | None = None
+    own: Mapping[str, Floats] = MappingProxyType({})
+    own_units: Mapping[str, Fraction] = MappingProxyType({})
 
 
 def products(steps: Floats) -> Floats:

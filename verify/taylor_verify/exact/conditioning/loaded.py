@@ -7,34 +7,42 @@ R = R_0 R(e). A turn theta of the frame, in space axes, changes e by (0, R_0^T t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Final
+from functools import cached_property, lru_cache
+from itertools import chain, pairwise
+from typing import Final, NamedTuple, final
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
-from taylor_verify.exact.enclosure.course import Coarse, Course, Row
+from taylor_verify.exact.enclosure.box import Box
+from taylor_verify.exact.enclosure.course import Course
+from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
-from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
+from taylor_verify.exact.taylor import Enclosing, Times
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.scenes.instants import chosen
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# Derivatives are wanted to their leading digits, along a motion right to about float64.
-_BITS: Final = 96
-_MOST_BITS: Final = 4000
-_ATTEMPTS: Final = 6
-# As many samples as this, and as many times between them, which share no rhythm with the samples.
+# As many times between the samples as this, which share no rhythm with them.
 _POINTS: Final = 400
 _GOLDEN: Final = Fraction(0.6180339887498949)
+# Up to this many samples the motion and its derivative come from one run.
+_MOST_SAMPLES: Final = 2000
+# Digits where the derivative alone is wanted.
+DIGITS: Final = 15
 
 
 def frame(scene: Scene) -> frozenset[str]:
@@ -45,128 +53,256 @@ def frame(scene: Scene) -> frozenset[str]:
     return frozenset(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
-def between(elapsed: Sequence[Fraction]) -> list[Fraction]:
-    """Return samples and the times between them, sorted away from the start."""
+def times_of_run(scene: Scene) -> list[Fraction]:
+    """Return the times of samples, of instants, and some between, sorted away from the start.
+
+    Samples and instants are all there unless they are many.
+    """
+    elapsed, loads = scene.clock.elapsed, scene.body.loads
     shares = ((k + k * _GOLDEN % 1) / _POINTS for k in range(_POINTS))
-    points = {Fraction(0), *chosen(elapsed, _POINTS), *(elapsed[-1] * share for share in shares)}
-    return sorted(points, key=abs)
+    taken = [] if loads is None else [i.time for i in loads.instants(elapsed[-1])]
+    asked = (
+        times if len(times) <= _MOST_SAMPLES else chosen(times, _POINTS)
+        for times in (elapsed, taken)
+    )
+    return sorted(
+        {Fraction(0), *chain(*asked), *(elapsed[-1] * share for share in shares)}, key=abs
+    )
 
 
-def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction]) -> Steps:
+def truth(scene: Scene, digits: int) -> Solution:
+    """Return the exact solution; under written loads that which comes with the derivative of its motion."""
+    if scene.body.loads is None or len(scene.clock.elapsed) > _MOST_SAMPLES:
+        return solution(scene)
+    return Linearised(scene, digits)
+
+
+def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
     """Return the derivative of the motion between these times, the first of which is the start.
 
     Raises Unsettled where the motion is not reached.
     """
-    assert scene.body.loads is not None
-    system = LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
-    bits = _BITS
-    for _ in range(_ATTEMPTS):
-        try:
-            with ctx.workprec(bits):
-                return _steps(scene, flow, system, elapsed, bits)
-        except Coarse as reason:
-            if reason.bits > _MOST_BITS or reason.stuck is not None:
-                raise Unsettled(reason.because or _LOST) from reason
-            bits = max(reason.bits, bits * 5 // 4)
-    raise Unsettled(_LOST)
+    return _run(scene, tuple(elapsed), digits).steps(flow)
 
 
-_LOST: Final = "the derivative of the motion is not reached"
+@final
+@dataclass(frozen=True)
+class Linearised(Solution):
+    """The motion of a scene at its own samples from the run that gives its derivative, to ``digits``."""
+
+    scene: Scene
+    digits: int
+
+    route = "taylor"
+    regime = NO_CLOSED_FORM
+
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        samples = self.scene.clock.elapsed
+        if elapsed != samples or digits > self.digits:
+            return solution(self.scene).motion(elapsed, digits)
+        motion = _run(self.scene, self._times, self.digits).whole
+        return motion.at([self._places[time] for time in elapsed])
+
+    def derivatives(
+        self, flow: Flow, begins: Sequence[Fraction], ends: Sequence[Fraction]
+    ) -> Floats:
+        """Return the derivative of the motion over arcs between samples, or from the start."""
+        steps = enclosed(self.scene, flow, self._times, self.digits).steps
+        places = ((self._places[a], self._places[b]) for a, b in zip(begins, ends, strict=True))
+        return np.array([products(steps[a:b])[-1] for a, b in places])
+
+    @cached_property
+    def _times(self) -> tuple[Fraction, ...]:
+        return tuple(times_of_run(self.scene))
+
+    @cached_property
+    def _places(self) -> Mapping[Fraction, int]:
+        return {time: k for k, time in enumerate(self._times)}
 
 
-def _steps(
-    scene: Scene, flow: Flow, system: System, elapsed: Sequence[Fraction], bits: int
-) -> Steps:
-    widths = _widths(system, bits)
-    start = [ball(z) + arb(0, w) for z, w in zip(system.start, widths, strict=True)]
-    course = Course.of(system, start, None, bits, _MOST_BITS)
-    course = replace(course, differentiates=True, begin=scene.clock.start)
-    later = [time for time in elapsed if time]
-    rows = [course.first_row(), *(row for _, row in course.rows(later))] if later else []
-    rows = rows or [course.first_row()]
-    frame = _Frame(scene, flow)
-    states = np.array([[float(midpoint(entry)) for entry in row.state] for row in rows])
-    matrices = [
-        frame.counted(states[k - 1], states[k], _floats(rows[k])) for k in range(1, len(rows))
-    ]
-    steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
-    momentum, centre, attitude = frame.path(states)
-    return Steps(steps, products(steps), momentum, centre, attitude)
+@lru_cache(maxsize=4)
+def _run(scene: Scene, elapsed: tuple[Fraction, ...], digits: int) -> _Run:
+    return _Run(scene, elapsed, digits)
 
 
-def _widths(system: System, bits: int) -> list[arb]:
-    """Return a small width for each component of the start: no derivative is made of an exact state."""
-    widths: list[arb] = []
-    for span in system.spans:
-        size = max(abs(system.start[i]) for i in span)
-        unit = power_of_two((floor_log2(size) if size else 0) - bits + 8)
-        widths += [ball(unit).upper()] * len(span)
-    return widths
+class _Point(NamedTuple):
+    """The state at one time, and the derivative of the wheels' momentum by own states, as float64.
+
+    Where it ``has_wheels`` the enclosure follows H = I omega + h, though omega stands in the state.
+    """
+
+    state: Floats
+    wheels: Floats
+    has_wheels: bool
 
 
-def _floats(row: Row) -> Floats:
-    assert row.since is not None
-    return np.array([[float(midpoint(entry)) for entry in line] for line in row.since.tolist()])
+@final
+@dataclass(frozen=True)
+class _Run(Enclosing):
+    """The motion and its derivative at some times, from one run of the enclosure."""
+
+    elapsed: tuple[Fraction, ...]
+    digits: int
+    visited: list[tuple[_Point, Floats]] = field(default_factory=list)
+
+    @cached_property
+    def whole(self) -> Motion:
+        """The motion at all times."""
+        return self.motion(self.elapsed, self.digits)
+
+    def steps(self, flow: Flow) -> Steps:
+        """The derivative between the times, in the units of a flow."""
+        _ = self.whole
+        states = np.array([point.state for point, _ in self.visited])
+        frame = _Frame(self.scene, flow, self._system.own, states)
+        matrices = [
+            frame.counted(begin, end, derivative)
+            for (begin, _), (end, derivative) in pairwise(self.visited)
+        ]
+        steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
+        return Steps(steps, products(steps), *frame.path(states), frame.own, frame.own_units)
+
+    def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
+        """The row for the place of each time; the course meets all times, whichever are asked for."""
+        self.visited.clear()
+        for place, row in enumerate(self._course(bits, most_bits)):
+            assert row.since is not None
+            self.visited.append((self._point(row, self.elapsed[place]), _floats(row.since)))
+            if place in times:
+                yield place, self._in_space(row)
+            if not any(times.values()):
+                # The start belongs to both directions of time.
+                return
+
+    @cached_property
+    def _system(self) -> System:
+        scene = self.scene
+        assert scene.body.loads is not None
+        return LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
+
+    def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
+        start = self._system.start_balls()
+        course = Course.of(self._system, _widened(start, bits), None, bits, most_bits)
+        course = replace(course, differentiates=True, begin=self.scene.clock.start)
+        yield replace(course, start=start).first_row()
+        if later := self.elapsed[1:]:
+            yield from (row for _, row in course.rows(later))
+
+    def _point(self, row: Row, time: Fraction) -> _Point:
+        state = np.array([float(midpoint(entry)) for entry in row.state])
+        d, own = len(self.scene.initial.moving), [*chain(*self._system.own.values())]
+        image = self._system.pieces(time, self.elapsed[-1] >= 0).image
+        if image is None:
+            return _Point(state, np.zeros((d, len(own))), has_wheels=False)
+        # omega = K (H - h), and the wheels h do not depend on H.
+        slopes = _floats(Image(image, Box.about(row.state), time).outputs().slopes)
+        momentum = kind_of(self.scene.body).momentum_matrix(self.scene.body).astype(float)
+        return _Point(state, -momentum @ slopes[:d, own], has_wheels=True)
+
+    def _in_space(self, row: Row) -> Row:
+        """The row with the frame that its state has."""
+        initial, track = self.scene.initial, self.scene.track
+        d, has_centre = len(initial.moving), "centre" in track
+        if not track or row.turn:
+            return row
+        start, turned = rotation_matrix(initial.attitude), rotation_rows(row.state[d : d + 4])
+        turn = [
+            sum((ball(start[i][k]) * turned[k][j] for k in range(3)), arb(0))
+            for i in range(3)
+            for j in range(3)
+        ]
+        centre = row.state[d + 4 : d + 7] if has_centre else None
+        # The centre is the block behind the turn.
+        largest = (*row.largest[:-1], row.largest[d // 3 + 1])
+        return replace(row, turn=turn, centre=centre, largest=largest)
+
+
+def _widened(start: Sequence[arb], bits: int) -> list[arb]:
+    """Return the start with a small width: no derivative is made of an exact state.
+
+    The largest component has it, so that a vector which is zero stays zero.
+    """
+    widened, k = list(start), max(range(len(start)), key=lambda i: abs(float(midpoint(start[i]))))
+    size = widened[k].abs_upper() or arb(1)
+    widened[k] += arb(0, (size * arb(2) ** -bits).upper())
+    return widened
+
+
+def _floats(derivative: arb_mat) -> Floats:
+    return np.array([[float(midpoint(entry)) for entry in line] for line in derivative.tolist()])
 
 
 class _Frame:
-    """The states of the enclosure as momenta, turns and centres, in the units of a flow."""
+    """The states of the enclosure as momenta, turns, centres and own states, in the units of a flow."""
 
-    def __init__(self, scene: Scene, flow: Flow) -> None:
+    def __init__(self, scene: Scene, flow: Flow, own: Mapping[str, range], states: Floats) -> None:
         body, kind = scene.body, kind_of(scene.body)
         moved = scene.track | frame(scene)
         self._turns, self._travels = bool(moved), "centre" in moved
         self._units = np.array([float(unit) for unit in flow.components])
         self._length = float(flow.length)
         d = self._d = len(self._units)
-        self.size = d + 6
+        self.own = {name: states[:, places.start : places.stop] for name, places in own.items()}
+        self.own_units = {name: _unit(rows) for name, rows in self.own.items()}
+        self._own = [place for places in own.values() for place in places]
+        counts = [float(self.own_units[name]) for name, places in own.items() for _ in places]
+        self._own_counts = np.diag(np.array(counts))
+        self.size = d + 6 + len(self._own)
         self._momentum = kind.momentum_matrix(body).astype(float)
         self._state = kind.state_matrix(body).astype(float)
         self._start = np.array(rotation_matrix(scene.initial.attitude), dtype=float)
 
-    def counted(self, begin: Floats, end: Floats, derivative: Floats) -> Floats:
+    def counted(self, begin: _Point, end: _Point, derivative: Floats) -> Floats:
         """Return a derivative of the state at ``end`` by that at ``begin``."""
-        step = np.eye(self.size)
-        reached = self._out(end) @ derivative @ self._into(begin)
-        n = len(reached)
-        step[:n, :n] = reached
+        step: Floats = self._out(end) @ derivative @ self._into(begin)
+        for first in (self._d,) * (not self._turns) + (self._d + 3,) * (not self._travels):
+            step[first : first + 3, first : first + 3] = np.eye(3)
         return step
 
-    def _into(self, state: Floats) -> Floats:
-        """Return the matrix from errors of momentum, turn and centre to changes of the state."""
-        d, columns = self._d, np.zeros((len(state), self._used))
-        columns[:d, :d] = self._state * self._units
+    def _into(self, point: _Point) -> Floats:
+        """Return the matrix from errors of momentum, turn, centre and own states to those of the state."""
+        state, d = point.state, self._d
+        columns = np.zeros((len(state), self.size))
+        columns[:d, :d] = (np.eye(d) if point.has_wheels else self._state) * self._units
+        columns[:d, d + 6 :] = point.wheels @ self._own_counts
+        columns[self._own, d + 6 :] = self._own_counts
         if self._turns:
             columns[d : d + 4, d : d + 3] = _right(state[d : d + 4])[:, 1:] @ self._start.T / 2
         if self._travels:
-            columns[d + 4 :, d + 3 :] = np.eye(3) * self._length
+            columns[d + 4 : d + 7, d + 3 : d + 6] = np.eye(3) * self._length
         return columns
 
-    def _out(self, state: Floats) -> Floats:
-        """Return the matrix from changes of the state to errors of momentum, turn and centre."""
-        d, rows = self._d, np.zeros((self._used, len(state)))
-        rows[:d, :d] = self._momentum / self._units[:, None]
+    def _out(self, point: _Point) -> Floats:
+        """Return the matrix from changes of the state to the errors that a path has."""
+        state, d = point.state, self._d
+        rows = np.zeros((self.size, len(state)))
+        rows[:d, :d] = np.eye(d) if point.has_wheels else self._momentum
+        rows[:d, self._own] -= point.wheels
+        rows[:d] /= self._units[:, None]
+        rows[d + 6 :, self._own] = np.linalg.inv(self._own_counts)
         if self._turns:
             e = state[d : d + 4] * [1, -1, -1, -1]
             rows[d : d + 3, d : d + 4] = 2 * self._start @ _right(e)[1:]
         if self._travels:
-            rows[d + 3 :, d + 4 :] = np.eye(3) / self._length
+            rows[d + 3 : d + 6, d + 4 : d + 7] = np.eye(3) / self._length
         return rows
-
-    @property
-    def _used(self) -> int:
-        return self._d + 3 * self._turns + 3 * self._travels
 
     def path(self, states: Floats) -> tuple[Floats, Floats, Floats | None]:
         """Return momentum, centre from its start, and attitude at every time."""
         d = self._d
         momentum = states[:, :d] @ self._momentum.T / self._units
-        centre = (states[:, d + 4 :] - states[:1, d + 4 :]) / self._length
+        centre = (states[:, d + 4 : d + 7] - states[:1, d + 4 : d + 7]) / self._length
         if not self._turns:
             return momentum, np.empty((0, 3)), None
         turns = [rotation_rows(e / np.linalg.norm(e)) for e in states[:, d : d + 4]]
         attitude = self._start @ np.array(turns)
         return momentum, centre if self._travels else np.empty((0, 3)), attitude
+
+
+def _unit(rows: Floats) -> Fraction:
+    """A power of two near the largest size of an own state; 1 of one that is zero."""
+    largest = float(np.max(np.abs(rows), initial=0.0))
+    return power_of_two(floor_log2(Fraction(largest))) if largest else Fraction(1)
 
 
 def _right(e: Floats) -> Floats:

@@ -43,6 +43,8 @@ _STEP: Final = 0.75
 _MOST_STEPS: Final = 64
 # The relative rounding error of some hundred operations on float64, with a margin.
 _NOISE: Final = 2.0**-44
+# The second derivative of a flow over that of a step squared, in units in which rates are about one.
+_BEND: Final = 16.0
 # More digits than asked for, so that no digit of a verdict depends on the chosen method.
 _MORE_DIGITS: Final = 3
 # Beyond it squares are near the end of float64.
@@ -55,16 +57,16 @@ def neighbours(
     exact: tuple[Motion, Motion],
     beside: Motion,
     digits: int,
+    derivatives: Floats | None = None,
 ) -> Motion | None:
     """Return the ends of arcs that start from the states ``beside`` an exact motion.
 
     ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
     the k-th beginning. ``elapsed`` are the times of the beginnings and, behind them, of the ends. Motions
     are in MPFR's numbers, at the ambient precision. None if the estimated error is not far below
-    ``digits`` digits of the motion, or where a scene writes down loads, which are not known here.
+    ``digits`` digits of the motion. Under written loads, which are not known here, the ``derivatives`` of
+    the motion over the arcs lead the differences on.
     """
-    if scene.body.loads is not None:
-        return None
     count = len(elapsed) // 2
     arcs = _Arcs(scene, Flow.of(scene), kind_of(scene.body))
     begin, end = exact
@@ -72,6 +74,10 @@ def neighbours(
     spans = np.array(
         [float((b - a) / arcs.flow.time) for a, b in zip(elapsed, elapsed[count:], strict=False)]
     )
+    if derivatives is not None:
+        ends, errors = arcs.led(exact, start, float(size), derivatives)
+        is_close = arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS)
+        return arcs.moved(end, ends, size) if is_close else None
     clock = clocks.floats(scene.body.manufactured, elapsed[:count])
     z, arrival = (arcs.counted(arcs.momentum(motion)) for motion in exact)
     with np.errstate(all="ignore"):  # what is not finite is not negligible
@@ -178,6 +184,37 @@ class _Arcs:
         )
 
     # In float64.
+
+    def led(
+        self, exact: tuple[Motion, Motion], start: Floats, size: float, derivatives: Floats
+    ) -> tuple[Floats, Floats]:
+        """Return the differences at the ends of the arcs, to first order, and estimates of the rest."""
+        begin, end = (self._frames(motion) for motion in exact)
+        moved = np.einsum("kij,kj->ki", derivatives, self._in_space(start, begin))
+        growth = np.linalg.norm(derivatives, axis=(1, 2)) * np.linalg.norm(start, axis=1)
+        errors = np.tile((_BEND * size * growth**2 + _NOISE * growth)[:, None], start.shape[1])
+        return self._in_body(moved, end, start.shape[1]), errors
+
+    def _frames(self, motion: Motion) -> Floats:
+        rows = len(motion.radius)
+        if not self._has_turn:
+            return np.tile(np.eye(3), (rows, 1, 1))
+        return motion["attitude"].astype(float)
+
+    def _in_space(self, difference: Floats, frames: Floats) -> Floats:
+        """Return momentum, turn and centre in space axes, without a frame that is not tracked as zeros."""
+        d = len(self.flow.components)
+        whole = np.zeros((len(difference), d + 6))
+        whole[:, : difference.shape[1]] = difference
+        whole[:, d : d + 3] = 2 * applied(frames, whole[:, d : d + 3])
+        whole[:, d + 3 :] = applied(frames, whole[:, d + 3 :])
+        return whole
+
+    def _in_body(self, whole: Floats, frames: Floats, width: int) -> Floats:
+        d, back = len(self.flow.components), np.swapaxes(frames, 1, 2)
+        turn, shift = whole[:, d : d + 3], whole[:, d + 3 :]
+        parts = whole[:, :d], applied(back, turn) / 2, applied(back, shift)
+        return np.hstack(parts)[:, :width]
 
     def followed(
         self, clock: Floats, z: Floats, start: Floats, size: float, spans: Floats

@@ -8,15 +8,18 @@ until there are too many axes: then the shortest ones are replaced by a frame th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
+from operator import add
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.enclosure.coefficients import Rows, value
-from taylor_verify.exact.enclosure.system import column, magnitudes, mapped
+from taylor_verify.exact.enclosure.system import column, mapped, reached
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 
 if TYPE_CHECKING:
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
 # are more.
 _MOST_AXES: Final = 20
 _LONGEST: Final = 10
+_ONE: Final = arb(1)
 
 # Axes as columns, and a column of their radii.
 Axes = tuple[arb_mat, arb_mat]
@@ -44,6 +48,10 @@ class Box:
         """The box of a vector of balls, along the coordinate axes."""
         return cls([b.mid() for b in balls], *_along(arb(b.rad()) for b in balls))
 
+    def balls(self) -> list[arb]:
+        """Balls about the point that contain every state of the box."""
+        return [z + arb(0, r) for z, r in zip(self.point, self.apart.entries(), strict=True)]
+
     @property
     def is_point(self) -> bool:
         return self.axes.ncols() == 0
@@ -52,47 +60,107 @@ class Box:
     def apart(self) -> arb_mat:
         """A bound of the distance of a state of the box from its point, component by component."""
         with ctx.workprec(BOUND_BITS):
-            return magnitudes(magnitudes(self.axes) * self.radius)
+            return reached(self.axes, self.radius)
 
 
-def carried(box: Box, state: Rows, tube: Tube, flow: Flow | None, spans: list[range]) -> Box:
-    """The box at the end of the step."""
-    end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
+def carried(
+    box: Box,
+    state: Rows,
+    tube: Tube,
+    flow: Flow | None,
+    spans: list[range],
+    sizes: Mapping[int, float] = MappingProxyType({}),
+    share: arb | None = None,
+) -> Box:
+    """The box at the end of the step, or at a share of it.
+
+    ``sizes`` are log2 of those of single components, by which their errors are counted.
+    """
+    if share is None:
+        end = [sum(coefficients, arb(0)) for coefficients in zip(*state, strict=True)]
+    else:
+        end = value(state, share)
     point = [z.mid() for z in end]
     with ctx.workprec(BOUND_BITS):
         rounding = column([abs(z - middle).upper() for z, middle in zip(end, point, strict=True)])
-        fresh = rounding + tube.truncation
-        axes, radius = arb_mat(len(point), 0), arb_mat(0, 1)
+        errors = (rounding + tube.truncation).entries()
+        rows, radius = box.axes.tolist(), box.radius
         if flow is not None:
-            moved = flow.at(arb(1)) * box.axes
-            axes, radius = mapped(arb.mid, moved), box.radius
-            fresh = fresh + mapped(lambda entry: arb(entry.rad()), moved) * radius
-        fresh = magnitudes(fresh)
-        axes, radius = _beside((axes, radius), _along(fresh.entries()))
+            moved = flow.at(_ONE if share is None else share) * box.axes
+            middles = mapped(arb.mid, moved)
+            rounded = reached(moved - middles, radius).entries()
+            rows[: len(rounded)] = middles.tolist()
+            errors[: len(rounded)] = map(add, errors, rounded)
+        axes, radius = _with_errors(rows, radius, errors)
         if axes.ncols() > _MOST_AXES * len(point):
-            axes, radius = fewer(axes, radius, _units(point, fresh, spans))
+            units = _units(point, errors, spans)
+            for i, size in sizes.items():
+                units[i] = arb(2) ** ceil(size) if size > float("-inf") else units[i]
+            axes, radius = fewer(axes, radius, units)
         return Box(point, axes, radius)
+
+
+def _with_errors(rows: list[list[arb]], radius: arb_mat, errors: Sequence[arb]) -> Axes:
+    """The axes by their rows, and an axis along each coordinate with an error."""
+    added = [i for i, error in enumerate(errors) if not error.is_zero()]
+    rows = [row + [arb(int(i == j)) for j in added] for i, row in enumerate(rows)]
+    bounds = radius.entries() + [errors[j].abs_upper() for j in added]
+    return arb_mat(rows) if bounds else arb_mat(len(rows), 0), column(bounds)
 
 
 def within(box: Box, state: Rows, tube: Tube, flow: Flow | None, s: arb) -> list[arb]:
     """The state at s as balls, at the ambient precision."""
     at_point = value(state, s)
     with ctx.workprec(BOUND_BITS):
-        spread = tube.truncation
+        radii = box.apart.entries()
         if flow is not None:
-            spread = magnitudes(flow.at(s) * box.axes) * box.radius + spread
-        radii = magnitudes(spread).entries()
-    return [z + arb(0, r) for z, r in zip(at_point, radii, strict=True)]
+            moved = reached(flow.at(s) * box.axes, box.radius).entries()
+            radii[: len(moved)] = moved
+        radii = list(map(add, radii, tube.truncation.entries()))
+    return [z + arb(0, r.abs_upper()) for z, r in zip(at_point, radii, strict=True)]
+
+
+def renewed(box: Box, places: Sequence[int], values: Sequence[arb], slopes: arb_mat) -> Box:
+    """The box after some components have become functions of all: values at the point, and slopes.
+
+    Everything else of the box stays as it is, bit by bit.
+    """
+    point = list(box.point)
+    for place, ball in zip(places, values, strict=True):
+        point[place] = ball.mid()
+    with ctx.workprec(BOUND_BITS):
+        moved = slopes * box.axes
+        middles = mapped(arb.mid, moved)
+        rounded = reached(moved - middles, box.radius).entries()
+        rows, errors = box.axes.tolist(), [arb(0)] * len(point)
+        for k, (place, row) in enumerate(zip(places, middles.tolist(), strict=True)):
+            rows[place] = row
+            errors[place] = arb(values[k].rad()) + rounded[k]
+        return Box(point, *_with_errors(*_reaching(rows, box.radius), errors))
+
+
+def _reaching(rows: list[list[arb]], radius: arb_mat) -> tuple[list[list[arb]], arb_mat]:
+    """The rows without the axes that are zero."""
+    left = [j for j in range(radius.nrows()) if any(not row[j].is_zero() for row in rows)]
+    if len(left) == radius.nrows():
+        return rows, radius
+    return [[row[j] for j in left] for row in rows], column([radius[j, 0] for j in left])
+
+
+def over_box(box: Box, values: Sequence[arb], slopes: arb_mat) -> list[arb]:
+    """Balls of functions over the box, by their values at the point and their slopes."""
+    with ctx.workprec(BOUND_BITS):
+        spread = reached(slopes * box.axes, box.radius).entries()
+    return [v + arb(0, r) for v, r in zip(values, spread, strict=True)]
 
 
 def identity(n: int) -> arb_mat:
     return arb_mat(n, n, [arb(int(i == j)) for i in range(n) for j in range(n)])
 
 
-def _units(point: Sequence[arb], fresh: arb_mat, spans: list[range]) -> list[arb]:
+def _units(point: Sequence[arb], errors: Sequence[arb], spans: list[range]) -> list[arb]:
     """A power of two for each component: the size of its block, or of the block's fresh error."""
     units = [arb(1)] * len(point)
-    errors = fresh.entries()
     for span in spans:
         for values in ([point[i] for i in span], [errors[i] for i in span]):
             exponents = [exponent(z) for z in values if not z.is_zero()]
@@ -112,9 +180,9 @@ def exponent(value: arb) -> int:
 def _along(bounds: Iterable[arb]) -> Axes:
     """An axis along each coordinate whose bound is not zero, with that bound as its radius."""
     sizes = list(bounds)
-    reached = [i for i, size in enumerate(sizes) if not size.is_zero()]
-    unit = [arb(int(i == j)) for i in range(len(sizes)) for j in reached]
-    return arb_mat(len(sizes), len(reached), unit), column([sizes[j] for j in reached])
+    touched = [i for i, size in enumerate(sizes) if not size.is_zero()]
+    unit = [arb(int(i == j)) for i in range(len(sizes)) for j in touched]
+    return arb_mat(len(sizes), len(touched), unit), column([sizes[j] for j in touched])
 
 
 def _beside(first: Axes, second: Axes) -> Axes:
@@ -138,14 +206,14 @@ def fewer(axes: arb_mat, radius: arb_mat, units: list[arb]) -> Axes:
     order = sorted(range(len(edges)), key=lengths.__getitem__, reverse=True)
     most = _LONGEST * len(units)
     longest, others = order[:most], order[most:]
-    reached = [i for i in range(len(units)) if any(not columns[j][i].is_zero() for j in others)]
+    touched = [i for i in range(len(units)) if any(not columns[j][i].is_zero() for j in others)]
     # Units are powers of two: nothing is rounded by them.
-    rest = arb_mat([[columns[j][i] / units[i] for j in others] for i in reached])
-    frame, inverse = _frame([[edges[j][i].mid() for i in reached] for j in others])
-    about = magnitudes(magnitudes(inverse * rest) * column([bounds[j] for j in others]))
-    wide = arb_mat(len(units), len(reached))
-    for row, i in enumerate(reached):
-        for j in range(len(reached)):
+    rest = arb_mat([[columns[j][i] / units[i] for j in others] for i in touched])
+    frame, inverse = _frame([[edges[j][i].mid() for i in touched] for j in others])
+    about = reached(inverse * rest, column([bounds[j] for j in others]))
+    wide = arb_mat(len(units), len(touched))
+    for row, i in enumerate(touched):
+        for j in range(len(touched)):
             wide[i, j] = units[i] * frame[row, j]
     same = arb_mat(len(longest), len(units), [e for j in longest for e in columns[j]]).transpose()
     return _beside((same, column([bounds[j] for j in longest])), (wide, about))

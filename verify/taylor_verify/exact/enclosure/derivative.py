@@ -27,7 +27,10 @@ _UNIT = Slope(arb_poly([1]), ONE, ZERO)
 
 @dataclass(frozen=True)
 class Jacobian:
-    """DF(z(s)) is within ``beside`` of the sum of terms[k] s^k, by entries, on all paths in the tube."""
+    """DF(z(s)) is within ``beside`` of the sum of terms[k] s^k, by entries, on all paths in the tube.
+
+    There are rows of the components that move alone.
+    """
 
     terms: list[arb_mat]
     beside: arb_mat
@@ -110,9 +113,10 @@ class _Slopes:
 def jacobian(bounds: Bounds, around: Sequence[arb], count: int) -> Jacobian:
     """The derivative to fewer than ``count`` orders, for the states around the polynomial."""
     bounds.widen(around)
-    slopes, n = _Slopes(bounds, count).of_node, bounds.tape.size
-    terms, beside = [arb_mat(n, n) for _ in range(count)], arb_mat(n, n)
-    for row, rate in enumerate(bounds.tape.rates):
+    slopes, tape = _Slopes(bounds, count).of_node, bounds.tape
+    shape = tape.moving, tape.size
+    terms, beside = [arb_mat(*shape) for _ in range(count)], arb_mat(*shape)
+    for row, rate in enumerate(tape.rates[: tape.moving]):
         for component, slope in slopes[rate].items():
             beside[row, component] = slope.beside
             for k, entry in enumerate(slope.polynomial.coeffs()):

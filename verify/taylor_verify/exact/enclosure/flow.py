@@ -17,7 +17,7 @@ from flint import arb, arb_mat
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent, identity
 from taylor_verify.exact.enclosure.derivative import Jacobian, jacobian
-from taylor_verify.exact.enclosure.system import magnitudes
+from taylor_verify.exact.enclosure.system import column, intervals, magnitudes, reached
 from taylor_verify.exact.enclosure.tube import Tube, accumulated
 
 # The derivative of the flow is wanted to its leading digits alone: orders beyond are bounded, not computed.
@@ -27,9 +27,9 @@ _LEAST_ORDER: Final = 8
 
 @dataclass(frozen=True)
 class Flow:
-    """V(s) = sum of the terms s^k, and ``defect`` about it.
+    """V(s) = sum of the terms s^k, and ``defect`` about it: the rows of the components that move.
 
-    ``spread`` bounds how far each term moves a state of the box from its point.
+    ``spread`` bounds how far each term moves a state of the box from its point, in all components.
     """
 
     terms: list[arb_mat]
@@ -42,23 +42,41 @@ class Flow:
         for term in self.terms[1:]:
             power = power * s
             total = total + term * power
-        return _widened(total, self.defect)
+        return total + intervals(self.defect)
+
+    def whole(self, s: arb) -> arb_mat:
+        """V(s) with the rows of the components that do not move, which are those of the unit matrix."""
+        return _with_unit_rows(self.at(s))
 
 
 def flow(bounds: Bounds, box: Box, tube: Tube) -> Flow:
     """The derivative of the flow for every path within the tube."""
-    h, n = bounds.series.length, bounds.tape.size
+    h, n, moving = bounds.series.length, bounds.tape.size, bounds.tape.moving
     order = _order(tube.growth, bounds.order)
     slopes = jacobian(bounds, tube.width.entries(), order)
-    terms, spread = [identity(n)], [box.apart]
+    inner = [_part(term, moving, moving) for term in slopes.terms]
+    terms = [_part(identity(n), moving, n)]
     for k in range(order):
-        total = slopes.terms[k] * terms[0]
+        total = slopes.terms[k]
         for j in range(1, k + 1):
-            total = total + slopes.terms[k - j] * terms[j]
+            total = total + inner[k - j] * terms[j]
         terms.append(total * (h / (k + 1)))
-        spread.append(magnitudes(magnitudes(terms[-1]) * box.apart))
+    spread = [box.apart, *(_padded(reached(term, box.apart), n) for term in terms[1:])]
     left = flow_defect(slopes, terms) * h.abs_upper()
-    return Flow(terms, spread, accumulated(tube.growth, magnitudes(left), order=1))
+    growth = _part(tube.growth, moving, moving)
+    return Flow(terms, spread, accumulated(growth, magnitudes(left), order=1))
+
+
+def _part(matrix: arb_mat, rows: int, columns: int) -> arb_mat:
+    """The first rows and columns of a matrix."""
+    if (rows, columns) == (matrix.nrows(), matrix.ncols()):
+        return matrix
+    return arb_mat(rows, columns, [e for row in matrix.tolist()[:rows] for e in row[:columns]])
+
+
+def _padded(vector: arb_mat, length: int) -> arb_mat:
+    """The column with zeros at its end."""
+    return column([*vector.entries(), *[arb(0)] * (length - vector.nrows())])
 
 
 def _order(growth: arb_mat, most: int) -> int:
@@ -78,18 +96,22 @@ def _order(growth: arb_mat, most: int) -> int:
 
 
 def flow_defect(slopes: Jacobian, terms: Sequence[arb_mat]) -> arb_mat:
-    """A bound of what the polynomial V leaves of its equation, over h."""
-    sizes = [magnitudes(term) for term in terms]
+    """A bound of what the polynomial V leaves of its equation, over h.
+
+    V has the rows of the components that move; the others, those of the unit matrix, belong to order 0.
+    """
+    sizes = [intervals(magnitudes(term)) for term in terms]
     tails = [sizes[-1]]
     for size in sizes[-2::-1]:
         tails.append(tails[-1] + size)
-    left = slopes.beside * tails[-1]
+    moving = terms[0].nrows()
+    left = slopes.beside * _with_unit_rows(tails[-1])
     for slope, tail in zip(slopes.terms, tails, strict=False):
-        left = left + magnitudes(slope) * tail
-    return left
+        left = left + _part(slope, moving, moving) * tail
+    return magnitudes(left)
 
 
-def _widened(matrix: arb_mat, radii: arb_mat) -> arb_mat:
-    """The matrix with balls of these radii about its entries."""
-    entries = [e + arb(0, r) for e, r in zip(matrix.entries(), radii.entries(), strict=True)]
-    return arb_mat(matrix.nrows(), matrix.ncols(), entries)
+def _with_unit_rows(moving: arb_mat) -> arb_mat:
+    """The matrix with those rows of the unit matrix that it lacks at its end."""
+    still = identity(moving.ncols()).tolist()[moving.nrows() :]
+    return arb_mat([*moving.tolist(), *still]) if still else moving

@@ -1,31 +1,36 @@
-"""The equations of a body under loads that its scene writes down.
+"""The equations of a body under loads that its scene writes down, and of the scene's own states.
 
 Loads that depend on the attitude bring it into the state: as the quaternion e since the start, e(0) = 1, so
-that R = R_0 R(e) with the attitude R_0 of the start. Those that depend on the centre bring it in too.
+that R = R_0 R(e) with the attitude R_0 of the start. Those that depend on the centre bring it in too. Then
+follow the scene's own states, a block for each: those with a rate, and those whose values are held.
+
+Under a rotor h of texts the state is H = I omega + h in place of omega, H' = H x omega + M with
+omega = K (H - h): so no derivative of h is needed, which may have kinks. A tracked attitude is then in the
+state too, because the spin is no linear function of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from flint import arb
 
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.clocks import Exact
-from taylor_verify.exact.enclosure.lowering import Lowering
-from taylor_verify.exact.enclosure.operations import Time
-from taylor_verify.exact.enclosure.system import Piece, System, natural
-from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
-from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.enclosure.box import Box, over_box
+from taylor_verify.exact.enclosure.image import Image
+from taylor_verify.exact.enclosure.layout import Layout
+from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
+from taylor_verify.exact.enclosure.rationals import rational_values
+from taylor_verify.exact.enclosure.system import Piece, System, Taken
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import rotation_matrix
-from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
-from taylor_verify.scenes.loads import loads as written
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.scene import Scene
-
-_STATES = ("x", "y")
 
 
 class LoadedBody:
@@ -37,167 +42,83 @@ class LoadedBody:
     def __init__(self, scene: Scene, loads: Loads, frame: frozenset[str] = frozenset()) -> None:
         self._scene, self._loads = scene, loads
         self._kind = kind_of(scene.body)
-        self._equations = self._kind.equations(scene.body)
-        self._natural = self._kind.state(scene.initial)
-        self._turns = loads.reads_attitude or bool(frame)
-        self._travels = loads.reads_centre or "centre" in frame
-        self._tapes: dict[Any, Tape] = {}
-
-    @property
-    def start(self) -> Vector:
-        start = self._natural
-        if self._turns:
-            start += (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
-        if self._travels:
-            start += self._kind.centre(self._scene.initial) or ()
-        return start
-
-    @property
-    def blocks(self) -> tuple[int, ...]:
-        ends = list(range(3, len(self._natural) + 1, 3))
-        if self._turns:
-            ends.append(ends[-1] + 4)
-        if self._travels:
-            ends.append(ends[-1] + 3)
-        return tuple(ends)
+        self._layout = Layout(
+            size=len(self._kind.state(scene.initial)),
+            turns=bool(loads.reads_attitude or frame or (loads.rotor and scene.track)),
+            travels=loads.reads_centre or "centre" in frame,
+            declared=loads.states,
+        )
+        self._tapes: dict[Any, PieceTapes] = {}
 
     def system(self) -> System:
-        more = len(self.start) - len(self._natural)
-        spin, velocity = (
-            np.hstack([form, np.full((len(form), more), Fraction(0), dtype=object)])
-            for form in (self._equations.spin, self._equations.velocity)
+        equations, loads = self._kind.equations(self._scene.body), self._loads
+        spin, velocity = map(self._widened, (equations.spin, equations.velocity))
+        return System(
+            pieces=self.piece,
+            blocks=self._layout.blocks,
+            start=self.start,
+            spin=spin,
+            velocity=velocity,
+            current=loads.current if any(loads.current) else (),
+            begin=self._begin if loads.rotor else None,
+            exactly=self._exactly() if loads.held_values else None,
+            own=self._layout.own,
+            instants=loads.instants if loads.held_values else None,
+            taken=self._taken,
         )
-        current = self._loads.current if any(self._loads.current) else ()
-        return System(self.piece, self.blocks, self.start, spin, velocity, current)
+
+    @cached_property
+    def start(self) -> Vector:
+        """The state at the start, without the momentum of a rotor of texts."""
+        initial, layout = self._scene.initial, self._layout
+        start = self._kind.state(initial)
+        if self._loads.rotor:
+            start = self._kind.momentum(self._scene.body, start)
+        if layout.turns:
+            start += (Fraction(1), Fraction(0), Fraction(0), Fraction(0))
+        if layout.travels:
+            start += self._kind.centre(initial) or ()
+        for state in layout.states:
+            start += state.start or (Fraction(0),) * len(state.components)
+        return start
+
+    def _begin(self, time: Fraction) -> list[arb]:
+        """The start in balls, with the momentum of the rotor at an elapsed time."""
+        start = balls(self.start)
+        box = Box.about(start)
+        wheels = Image(self._tapes_at(time, is_later=True).wheels, box, time).outputs()
+        added = over_box(box, *wheels)
+        return [z + h for z, h in zip(start, added, strict=False)] + start[len(added) :]
+
+    def _exactly(self) -> list[Any]:
+        """The start in exact numbers; None for a component of H that is not rational."""
+        start: list[Any] = list(self.start)
+        if self._loads.rotor:
+            tape = self._tapes_at(Fraction(0), is_later=True).wheels
+            values = rational_values(tape, start, Fraction(0))
+            wheels = [values[place] for place in tape.outputs]
+            start[:3] = [None if h is None else z + h for z, h in zip(start, wheels, strict=False)]
+        return start
+
+    def _widened(self, form: Exact) -> Exact:
+        more = len(self.start) - self._layout.size
+        wide: Exact = np.hstack([form, np.full((len(form), more), Fraction(0), dtype=object)])
+        return wide
 
     def piece(self, elapsed: Fraction, is_later: bool) -> Piece:
         """The tape from an elapsed time on."""
+        piece, tapes = self._loads.piece(elapsed, is_later), self._tapes_at(elapsed, is_later)
+        image = tapes.image if self._loads.rotor else None
+        return Piece(tapes.rates, piece.end if is_later else piece.begin, image)
+
+    def _tapes_at(self, elapsed: Fraction, is_later: bool) -> PieceTapes:
         piece = self._loads.piece(elapsed, is_later)
-        key = piece.steps, piece.outputs
+        key = piece[2:]
         if key not in self._tapes:
-            self._tapes[key] = self._tape(piece)
-        return Piece(self._tapes[key], piece.end if is_later else piece.begin)
+            self._tapes[key] = PieceTapes(self._scene, self._layout, piece)
+        return self._tapes[key]
 
-    def _tape(self, piece: written.Piece) -> Tape:
-        graph = Graph()
-        states = graph.states(len(self.start))
-        z = states[: len(self._natural)]
-        frame = _Frame(graph, self._equations, states, self._scene, self._turns, self._travels)
-        expressions = Lowering(graph, self._inputs(z, frame)).expressions(piece.steps)
-        loads = [expressions[place] for place in piece.outputs]
-        pushed = self._kind.pushed(self._scene.body)
-        rates = [
-            rate + total(load.times(c) for c, load in zip(row, loads, strict=True))
-            for rate, row in zip(natural(graph, self._equations, z), pushed, strict=True)
-        ]
-        return Tape.of(graph, len(states), [*rates, *frame.rates()])
-
-    def _inputs(self, z: Sequence[Sum], frame: _Frame) -> Mapping[str, Sum]:
-        inputs = {"t": frame.graph.node(Time()), **_named("w", frame.spin)}
-        if frame.velocity:
-            inputs |= _named("u", frame.velocity) | _named("x", z[:3]) | _named("y", z[3:])
-        return inputs | frame.inputs()
-
-
-class _Frame:
-    """The attitude and the centre of the body as expressions of the state."""
-
-    def __init__(
-        self,
-        graph: Graph,
-        equations: Equations,
-        states: Sequence[Sum],
-        scene: Scene,
-        turns: bool,
-        travels: bool,
-    ) -> None:
-        self.graph, self._scene = graph, scene
-        size = len(equations.constant)
-        self.spin, self.velocity = (
-            _formed(form, states[:size]) for form in (equations.spin, equations.velocity)
-        )
-        self._turn = states[size : size + 4] if turns else []
-        self._centre = states[size + 4 : size + 7] if travels else []
-        self._rotation = self._of_turn() if turns else []
-        self._current = scene.body.loads.current if scene.body.loads is not None else ZERO_VECTOR
-
-    def _of_turn(self) -> list[list[Sum]]:
-        """R = R_0 R(e)."""
-        graph, e = self.graph, self._turn
-        pairs = {(i, j): graph.product(e[i], e[j]) for i in range(4) for j in range(i, 4)}
-
-        def double(*terms: tuple[int, int, int]) -> Sum:
-            return total(pairs[i, j].times(Fraction(2 * sign)) for sign, i, j in terms)
-
-        one = Sum(Fraction(1))
-        turned = [
-            [
-                one - double((1, 2, 2), (1, 3, 3)),
-                double((1, 1, 2), (-1, 0, 3)),
-                double((1, 1, 3), (1, 0, 2)),
-            ],
-            [
-                double((1, 1, 2), (1, 0, 3)),
-                one - double((1, 1, 1), (1, 3, 3)),
-                double((1, 2, 3), (-1, 0, 1)),
-            ],
-            [
-                double((1, 1, 3), (-1, 0, 2)),
-                double((1, 2, 3), (1, 0, 1)),
-                one - double((1, 1, 1), (1, 2, 2)),
-            ],
-        ]
-        # Each entry is one node, which all uses of it share.
-        shared = [[Sum(terms={graph.whole(entry): Fraction(1)}) for entry in row] for row in turned]
-        start = rotation_matrix(self._scene.initial.attitude)
-        return [
-            [total(shared[k][j].times(start[i][k]) for k in range(3)) for j in range(3)]
-            for i in range(3)
-        ]
-
-    def inputs(self) -> dict[str, Sum]:
-        inputs: dict[str, Sum] = {}
-        if self._turn:
-            inputs |= {f"r{i + 1}{j + 1}": self._rotation[i][j] for i in range(3) for j in range(3)}
-            inputs |= {f"q{i}": self._quaternion(i) for i in range(4)}
-        return inputs | _named("c", self._centre)
-
-    def _quaternion(self, i: int) -> Sum:
-        """Component i of q e, with the unit quaternion q of the start."""
-        a, b, c, d = self._scene.initial.attitude
-        row = ((a, -b, -c, -d), (b, a, -d, c), (c, d, a, -b), (d, -c, b, a))[i]
-        lowering = Lowering(self.graph, {})
-        length = lowering.root(Sum(a * a + b * b + c * c + d * d))
-        turned = total(e.times(factor) for e, factor in zip(self._turn, row, strict=True))
-        return lowering.quotient(turned, length)
-
-    def rates(self) -> list[Sum]:
-        """e' = e Omega/2 and c' = R U."""
-        if not self._turn:
-            return []
-        product = self.graph.product
-        e, w = self._turn, self.spin
-        turning = [
-            Sum() - product(e[1], w[0]) - product(e[2], w[1]) - product(e[3], w[2]),
-            product(e[0], w[0]) + product(e[2], w[2]) - product(e[3], w[1]),
-            product(e[0], w[1]) + product(e[3], w[0]) - product(e[1], w[2]),
-            product(e[0], w[2]) + product(e[1], w[1]) - product(e[2], w[0]),
-        ]
-        rates = [rate.times(Fraction(1, 2)) for rate in turning]
-        if self._centre:
-            rates += [
-                total(
-                    (Sum(drift), *(product(r, u) for r, u in zip(row, self.velocity, strict=True)))
-                )
-                for row, drift in zip(self._rotation, self._current, strict=True)
-            ]
-        return rates
-
-
-def _formed(form: Exact, z: Sequence[Sum]) -> list[Sum]:
-    """The rows of a linear form of the state."""
-    return [total(c.times(number) for c, number in zip(z, row, strict=True)) for row in form]
-
-
-def _named(letter: str, vector: Sequence[Sum]) -> dict[str, Sum]:
-    return {f"{letter}{i}": component for i, component in enumerate(vector, start=1)}
+    def _taken(self, instant: Instant) -> Taken:
+        """The values that are taken at an instant, by the later piece."""
+        places = [place for name in instant.names for place in self._layout.own[name]]
+        return Taken(self._tapes_at(instant.time, is_later=True).values(instant.places), places)

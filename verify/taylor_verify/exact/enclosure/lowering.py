@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Final
 
 from taylor_verify.exact.enclosure.functions import (
@@ -14,6 +15,7 @@ from taylor_verify.exact.enclosure.functions import (
     HyperbolicSine,
     Sine,
 )
+from taylor_verify.exact.enclosure.jumps import Choice, Jump
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import Bilinear
 from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
@@ -32,12 +34,14 @@ class Lowering:
         self._graph, self._inputs = graph, inputs
         self._operations = self._by_name()
 
-    def expressions(self, steps: Sequence[Step]) -> list[Sum]:
-        """The expression of every step."""
-        made: list[Sum] = []
-        for step in steps:
-            made.append(self._expression(step, [made[place] for place in step.operands]))
-        return made
+    def expressions(self, steps: Sequence[Step], places: Sequence[int]) -> list[Sum]:
+        """The expressions of the steps at some places, and of no step that these do not need."""
+        needed = _reached(steps, places)
+        made: dict[int, Sum] = {}
+        for place, step in enumerate(steps):
+            if place in needed:
+                made[place] = self._expression(step, [made[k] for k in step.operands])
+        return [made[place] for place in places]
 
     def _expression(self, step: Step, operands: list[Sum]) -> Sum:
         match step.operation:
@@ -76,6 +80,8 @@ class Lowering:
             "min": lambda a, b: (a + b - self.absolute(a - b)).times(_HALF),
             "max": lambda a, b: (a + b + self.absolute(a - b)).times(_HALF),
             "norm": lambda *parts: graph.node(Norm(tuple(map(graph.whole, parts)))),
+            "choose": lambda *parts: graph.node(Choice(*map(graph.whole, parts))),
+            **{name: partial(self._jump, name) for name in ("sign", "step", "floor")},
         }
 
     def quotient(self, above: Sum, below: Sum) -> Sum:
@@ -90,6 +96,9 @@ class Lowering:
 
     def root(self, a: Sum) -> Sum:
         return self._graph.node(Root(self._graph.whole(a)))
+
+    def _jump(self, name: str, a: Sum) -> Sum:
+        return self._graph.node(Jump(self._graph.whole(a), name))
 
     def absolute(self, a: Sum) -> Sum:
         if not a.terms:
@@ -131,3 +140,14 @@ class Lowering:
         one = Fraction(1)
         divisor = graph.place(Bilinear(Fraction(0), ((one, x, x), (one, y, y))))
         return graph.node(Angle(y, x, divisor))
+
+
+def _reached(steps: Sequence[Step], places: Sequence[int]) -> set[int]:
+    """The places and all that these need."""
+    reached, waiting = set[int](), list(places)
+    while waiting:
+        place = waiting.pop()
+        if place not in reached:
+            reached.add(place)
+            waiting += steps[place].operands
+    return reached

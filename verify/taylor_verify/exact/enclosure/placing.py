@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import add
 
 from flint import arb, arb_mat, ctx
 
@@ -36,7 +37,7 @@ from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.coefficients import Rows, value
 from taylor_verify.exact.enclosure.flow import Flow
-from taylor_verify.exact.enclosure.system import Forms, column, magnitudes
+from taylor_verify.exact.enclosure.system import Forms, column, magnitudes, reached
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, Tube
 from taylor_verify.exact.rotation import product, rotation_rows
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -145,7 +146,14 @@ def _deviations(box: Box, flow: Flow | None, tube: Tube) -> tuple[list[arb_mat],
     """Bounds e_k and e with |z(s) - p(s)| <= sum_k e_k s^k + e, component by component."""
     if flow is None:
         return [], tube.truncation
-    return flow.spread, magnitudes(flow.defect * box.apart + tube.truncation)
+    return flow.spread, _beside(reached(flow.defect, box.apart), tube.truncation)
+
+
+def _beside(moved: arb_mat, truncation: arb_mat) -> arb_mat:
+    """The sums of two bounds, the first of which has the components that move."""
+    sums = truncation.entries()
+    sums[: moved.nrows()] = map(add, sums, moved.entries())
+    return magnitudes(column(sums))
 
 
 def _accumulated(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:

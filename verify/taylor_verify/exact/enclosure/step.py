@@ -44,7 +44,8 @@ class Step:
     """A step of length h from a box, and everything that is known about the motion within it.
 
     ``terms`` are the sizes of the rates at its beginning if none of their terms cancelled; a step that
-    ``is_flat`` goes across a kink.
+    ``is_flat`` goes across a kink. ``reach`` is log2 of the radius of convergence as far as it is seen, and
+    ``image`` the tape of its piece of time.
     """
 
     length: Fraction
@@ -54,6 +55,8 @@ class Step:
     leg: Leg | None
     terms: list[arb]
     is_flat: bool
+    reach: float | None
+    image: Tape | None
 
 
 @dataclass(frozen=True)
@@ -80,16 +83,18 @@ class Stepper:
     def order(self) -> int:
         return ceil(_ORDERS_PER_BIT * ctx.prec) + 2
 
-    def step(self, box: Box, now: Fraction, guess: Fraction, left: Fraction) -> Step:
+    def step(
+        self, box: Box, now: Fraction, guess: Fraction, left: Fraction, reach: float | None = None
+    ) -> Step:
         """A step of at most the time that is left, and within one piece of it.
 
-        Raises StepTooLong where none closes, Touched at a kink that may not be crossed, and Domain where a
-        function has no value.
+        ``reach`` is that of a step before. Raises StepTooLong where none closes, Touched at a kink that may
+        not be crossed, and Domain where a function has no value.
         """
-        tape, end = self.system.pieces(now, left > 0)
+        tape, end, image = self.system.pieces(now, left > 0)
         if end is not None and abs(end - now) < abs(left):
             left = end - now
-        series, frame = self._fitted(tape, box, now, guess, left)
+        series, frame = self._fitted(tape, box, now, guess, left, self._enough(reach, guess, left))
         for _ in range(_HALVINGS):
             with ctx.workprec(BOUND_BITS):
                 bounds = Bounds(series)
@@ -102,20 +107,39 @@ class Stepper:
             if around is not None and excess <= 0:
                 way = self._leg(series, frame, around, moving, box)
                 terms, is_flat = bounds.terms(), bool(series.flat)
-                return Step(series.step, series.rows, around, moving, way, terms, is_flat)
+                radius = reach if is_flat else self._reach(series)
+                state, step = series.rows, series.step
+                return Step(step, state, around, moving, way, terms, is_flat, radius, image)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
             frame = scaled(frame, ball(share))
         raise StepTooLong
 
+    def _enough(self, reach: float | None, guess: Fraction, left: Fraction) -> int:
+        """The orders that a step needs; fewer where it ends long before its usual length."""
+        if reach is None or abs(left) >= abs(guess):
+            return self.order
+        gain = reach - _log2(left)
+        return self.order if gain <= 0 else min(self.order, ceil(ctx.prec / gain) + _LEAST_ORDER)
+
+    def _reach(self, series: Series) -> float | None:
+        """log2 of the radius of convergence; None where the series has ended."""
+        factor = self._root_test_of(series.rows)
+        return None if factor == float("inf") else self._radius(series, factor)
+
+    @staticmethod
+    def _radius(series: Series, factor: float) -> float:
+        return factor + ctx.prec / series.order + _log2(series.step)
+
     def _excess(self, series: Series, around: Tube) -> float:
         """The bits by which what is left out of the series exceeds some last bits of the state."""
-        rows, missed = series.rows[:3], around.truncation.entries()
+        rows, missed = series.rows, around.truncation.entries()
         excess = float("-inf")
         for span in self.system.spans:
-            size = max(size_of(row, span) for row in rows)
+            size = _moved_by(rows, span)
             lost = size_of(missed, span)
-            if lost > float("-inf"):
+            # A block that is zero throughout has no last bits.
+            if min(lost, size) > float("-inf"):
                 excess = max(excess, lost - size + ctx.prec - SPARE_BITS)
         return excess
 
@@ -130,12 +154,15 @@ class Stepper:
     # The length.
 
     def _fitted(
-        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
+        self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction, order: int
     ) -> tuple[Series, Rows]:
         """The series of state and frame of a step at whose end they fall below the last bit."""
         first = self._first(tape, box, now, guess, left)
         try:
-            series = Series(tape, box.point, now, first, self.order)
+            series = Series(tape, box.point, now, first, order)
+            while order < self.order and self._root_test_of(series.rows) < 0:
+                order = min(self.order, order + max(_LEAST_ORDER, order // 4))
+                series = Series(tape, box.point, now, first, order)
         except Kink as kink:
             # It lies within the rounding of the start.
             least = least_length(self._usual(tape, box, now, guess))
@@ -203,7 +230,7 @@ class Stepper:
 
     def _length(self, box: Box, series: Series, frame: Rows, left: Fraction) -> Fraction:
         rows = series.rows
-        tests = [self.root_test(rows, self.system.spans)]
+        tests = [self._root_test_of(rows)]
         if frame:
             tests.append(self.root_test(frame, [range(4)]))
         if timed := series.of_time():
@@ -216,18 +243,43 @@ class Stepper:
         fitted = _cut(series.step, factor)
         return left if abs(fitted) >= abs(left) * _NEARLY else fitted
 
+    def _root_test_of(self, rows: Rows) -> float:
+        """The root test of all blocks of the state.
+
+        An own state is as large as it moves by, too: a number passes through zero alone.
+        """
+        own = [_growing(rows, span, _moved_by(rows, span)) for span in self.system.own.values()]
+        return min([self.root_test(rows, self.system.others), *own])
+
     def root_test(self, rows: Rows, spans: Sequence[range]) -> float:
         """log2 of the factor by which the length may grow; infinite where the series has ended."""
-        factor, order = float("inf"), len(rows) - 1
+        factors = [float("inf")]
         for span in spans:
             # The size of the block, or of its first change.
-            sizes = (size_of(row, span) for row in rows[:3])
-            size = next((size for size in sizes if size > float("-inf")), float("-inf"))
-            for k in range(max(1, order - 2), order + 1):
-                last = size_of(rows[k], span)
-                if last > float("-inf"):
-                    factor = min(factor, (size - ctx.prec - last) / k)
-        return factor
+            factors.append(_growing(rows, span, _first_size(rows, span)))
+        return min(factors)
+
+
+def _first_size(rows: Rows, span: range) -> float:
+    """log2 of the size of a block, or of its first change; -inf where it is zero throughout."""
+    sizes = (size_of(row, span) for row in rows)
+    return next((size for size in sizes if size > float("-inf")), float("-inf"))
+
+
+def _moved_by(rows: Rows, span: range) -> float:
+    """log2 of the size of a block and of its first two orders, or of its first change."""
+    largest = max(size_of(row, span) for row in rows[:3])
+    return largest if largest > float("-inf") else _first_size(rows, span)
+
+
+def _growing(rows: Rows, span: range, size: float) -> float:
+    """log2 of the factor by which a step may grow until the last orders of a block of this size count."""
+    factor, order = float("inf"), len(rows) - 1
+    for k in range(max(1, order - 2), order + 1):
+        last = size_of(rows[k], span)
+        if last > float("-inf"):
+            factor = min(factor, (size - ctx.prec - last) / k)
+    return factor
 
 
 def _bounded(series: Series, factor: float) -> float:

@@ -7,11 +7,11 @@ a course.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -21,13 +21,25 @@ from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, vanishes
 from taylor_verify.exact.equations import Equations
 from taylor_verify.numbers.tensors import Vector
+from taylor_verify.scenes.loads.states import Instant
 
 
 class Piece(NamedTuple):
-    """A tape, and the first time at which it is another one, in the direction of the motion; or None."""
+    """A tape, and the first time at which it is another one, in the direction of the motion; or None.
+
+    Where ``image`` is a tape, its outputs are omega and the entries of R, and stand for them in rows.
+    """
 
     tape: Tape
     end: Fraction | None
+    image: Tape | None = None
+
+
+class Taken(NamedTuple):
+    """A tape of values that are taken at one instant, and the places of the state that they go to."""
+
+    tape: Tape
+    places: Sequence[int]
 
 
 @dataclass(frozen=True)
@@ -37,6 +49,11 @@ class System:
     ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends
     of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y. The centre drifts with the
     ``current`` of the fluid, if there is one.
+
+    ``begin`` makes balls of the start at a time, where that is no exact one. If values are taken there,
+    ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's
+    own states, behind all others. ``instants`` up to an elapsed time are those at which values are
+    ``taken``; None where no value is held.
     """
 
     pieces: Callable[[Fraction, bool], Piece]
@@ -45,6 +62,25 @@ class System:
     spin: Exact
     velocity: Exact
     current: Vector = ()
+    begin: Callable[[Fraction], list[arb]] | None = None
+    exactly: Sequence[Any] | None = None
+    own: Mapping[str, range] = field(default_factory=dict)
+    instants: Callable[[Fraction], Sequence[Instant]] | None = None
+    taken: Callable[[Instant], Taken] | None = None
+
+    def start_balls(self, time: Fraction = Fraction(0)) -> list[arb]:
+        """The start in balls at the ambient precision, for a motion that begins at an elapsed time."""
+        return balls(self.start) if self.begin is None else self.begin(time)
+
+    @property
+    def is_framed(self) -> bool:
+        """True if omega is linear in z, so that the frame may be followed apart from the state."""
+        return self.begin is None
+
+    @property
+    def others(self) -> list[range]:
+        """The places of each block but the own states."""
+        return self.spans[: len(self.blocks) - len(self.own)]
 
     @property
     def size(self) -> int:
@@ -97,6 +133,16 @@ class Forms:
 def magnitudes(matrix: arb_mat) -> arb_mat:
     """Upper bounds of the magnitudes of the entries: exact numbers."""
     return mapped(arb.abs_upper, matrix)
+
+
+def intervals(bounds: arb_mat) -> arb_mat:
+    """The interval from -b to b in place of every bound b."""
+    return mapped(lambda bound: arb(0, bound), bounds)
+
+
+def reached(matrix: arb_mat, bounds: arb_mat) -> arb_mat:
+    """Bounds of the components of matrix u for all |u_j| <= bounds_j, or of a matrix of such columns u."""
+    return magnitudes(matrix * intervals(bounds))
 
 
 def mapped(change: Callable[[arb], arb], matrix: arb_mat) -> arb_mat:

@@ -29,6 +29,7 @@ from taylor_verify.exact.enclosure.operations import (
 )
 from taylor_verify.numbers.irrational import Undecided
 
+_ZERO: Final = Bilinear(Fraction(0))
 # A polynomial of the time of a higher degree is a series like any other.
 _MOST_DEGREE: Final = 6
 
@@ -143,17 +144,20 @@ class Graph:
 
 @dataclass(frozen=True)
 class Tape:
-    """Operations in order, the places of the components of the state, and those of their rates."""
+    """Operations in order, the places of the components of the state, and those of the outputs.
+
+    The outputs are the rates of all components, or functions that are wanted at single times.
+    """
 
     operations: tuple[Operation, ...]
     states: tuple[int, ...]
-    rates: tuple[int, ...]
+    outputs: tuple[int, ...]
 
     @classmethod
-    def of(cls, graph: Graph, size: int, rates: Sequence[Sum]) -> Tape:
-        """The tape of the rates of a state of this size, by expressions of the graph."""
+    def of(cls, graph: Graph, size: int, expressions: Sequence[Sum]) -> Tape:
+        """The tape of some expressions of the graph, for a state of this size."""
         states = [graph.place(State(k)) for k in range(size)]
-        outputs = [graph.whole(rate) for rate in rates]
+        outputs = [graph.whole(expression) for expression in expressions]
         joined = _joined(graph.operations, outputs)
         order = sorted(_reached(joined, [*states, *outputs]))
         places = [0] * len(joined)
@@ -165,6 +169,17 @@ class Tape:
     @property
     def size(self) -> int:
         return len(self.states)
+
+    @property
+    def rates(self) -> tuple[int, ...]:
+        """The places of the rates, one for each component."""
+        return self.outputs
+
+    @cached_property
+    def moving(self) -> int:
+        """The number of components up to the last one whose rate is not zero throughout."""
+        still = [self.operations[rate] == _ZERO for rate in self.rates]
+        return next((k + 1 for k in reversed(range(len(still))) if not still[k]), 0)
 
     @cached_property
     def degrees(self) -> list[int | None]:

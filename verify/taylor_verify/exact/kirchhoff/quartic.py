@@ -29,6 +29,7 @@ class Nutation:
     """The constants of one motion of Clebsch's body, and the polynomial f that they make.
 
     ``z`` and ``speed`` are x3 and dx3/dt at the start; ``m1`` is that of Hydromechanics 49 (7).
+    ``weight`` s is that of a heavy top, which has s x3 in T; it enters f alone.
     """
 
     body: Clebsch
@@ -39,9 +40,16 @@ class Nutation:
     y3: Fraction
     m1: Fraction
     axes: Axes = UPRIGHT
+    weight: Fraction = Fraction(0)
 
     @classmethod
-    def of(cls, body: Clebsch, start: Impulse, axes: Axes = UPRIGHT) -> Nutation:
+    def of(
+        cls,
+        body: Clebsch,
+        start: Impulse,
+        axes: Axes = UPRIGHT,
+        weight: Fraction = Fraction(0),
+    ) -> Nutation:
         """The constants from the initial state; m1 from r (y1^2 + y2^2) at the start."""
         x, y, nu = start.linear, start.angular, axes.nu
         z, y3 = dot(axes.n, x), dot(axes.n, y)
@@ -53,16 +61,17 @@ class Nutation:
             F2=nu * dot(x, x),
             FG=nu * dot(x, y),
             y3=y3,
-            m1=body.r * (nu * dot(y, y) - y3**2) - linear * z**2 - 2 * screw * z * y3,
+            m1=body.r * (nu * dot(y, y) - y3**2) - linear * z**2 - 2 * (screw * y3 - weight) * z,
             axes=axes,
+            weight=weight,
         )
 
     @cached_property
     def f(self) -> Polynomial:
-        """f(z) = r (F^2 - z^2) [(p-p') z^2 + 2 (q-q') y3 z + m1] - r^2 (FG - y3 z)^2."""
+        """f(z) = r (F^2 - z^2) [(p-p') z^2 + 2 ((q-q') y3 - s) z + m1] - r^2 (FG - y3 z)^2."""
         r, F2, FG, y3, m1 = self.body.r, self.F2, self.FG, self.y3, self.m1
         linear = self.body.p - self.body.p_prime
-        screw = 2 * (self.body.q - self.body.q_prime) * y3
+        screw = 2 * ((self.body.q - self.body.q_prime) * y3 - self.weight)
         of_body = (
             -r * linear,
             -r * screw,
@@ -103,7 +112,7 @@ class Nutation:
             return value.near(bits) if isinstance(value, Irrational) else value
 
         of_body = Clebsch(*map(rational, astuple(self.body)))
-        names = ("z", "speed", "F2", "FG", "y3", "m1")
+        names = ("z", "speed", "F2", "FG", "y3", "m1", "weight")
         constants: dict[str, Any] = {name: rational(getattr(self, name)) for name in names}
         return replace(self, body=of_body, **constants)
 

@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
 NOT_LOOKED_FOR: Final = (
-    "likely causes are not looked for: this body has terms that the search does not know"
+    "likely causes are not looked for: this body has terms or states of its own that the search "
+    "does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
 _WITH_TERMS: Final = frozenset({"rotor"})
@@ -56,7 +57,8 @@ _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 def are_known(body: Body) -> bool:
     """Return True if every part of the body has its terms in the search."""
-    return body.others <= _WITH_TERMS and body.manufactured is None
+    own = body.loads is not None and bool(body.loads.states or any(body.loads.rotor))
+    return body.others <= _WITH_TERMS and body.manufactured is None and not own
 
 
 @dataclass(frozen=True)

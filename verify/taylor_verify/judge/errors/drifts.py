@@ -5,8 +5,11 @@ between two samples,
 
     drift(t_n) = | sum over k < n of Q(state_k+1) - Q(flow(state_k)) |.
 
-Without loads Q(flow(state)) = Q(state), and the sum telescopes to Q(state_n) - Q(start). With loads
+Where Q is conserved, Q(flow(state)) = Q(state), and the sum telescopes to Q(state_n) - Q(start). With loads
 Q(flow(state)) - Q(state) is the work or impulse along the arc, and the sum is the balance.
+
+Where no arc can begin at a sample, as under loads that read the sign of a quaternion, T is compared with
+that of the exact motion, which holds the work of all loads.
 
 For a damped body without loads Q is evaluated at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so
 on are conserved. With loads or wheels they are not conserved, and Q itself has a balance.
@@ -18,7 +21,7 @@ up from step to step, and the bound of the balance includes it (judge.errors.bal
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -26,11 +29,13 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive, invariants
 from taylor_verify.exact.taylor import arcs
-from taylor_verify.judge.errors.state import Errors, Series, joined
+from taylor_verify.judge.errors.state import Errors, Floats, Series, joined
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Motion, State
@@ -47,26 +52,41 @@ def drifts(
     answer: Motion,
     own: Mapping[str, Column],
     digits: int,
+    of: Sequence[Invariant] | None = None,
 ) -> list[tuple[Invariant, Errors]]:
     """Return the drift of every conserved quantity, as mpmath numbers at the ambient precision.
+
+    ``of`` are the quantities, where not all are wanted.
 
     ``start`` is the exact initial state as a Motion of one row. The scales come from the exact motion
     ``truth``, so that an answer that diverges does not hide its own drift. ``own`` are the answer's exact
     numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
     answer that is not finite drifts by NaN.
     """
-    total = Drifts(scene, start, digits)
+    total = Drifts(scene, start, digits, of)
     total.add(scene.clock.elapsed, truth, answer, own)
     return total.errors()
 
 
 class Drifts:
-    """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath."""
+    """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath.
+
+    ``arc_scene`` is the scene with the quantities that an arc can begin with. A quantity that is ``worked``
+    is compared with its value along the exact motion.
+    """
 
     def __init__(
-        self, scene: Scene, start: Motion, digits: int, of: Sequence[Invariant] | None = None
+        self,
+        scene: Scene,
+        start: Motion,
+        digits: int,
+        of: Sequence[Invariant] | None = None,
+        arc_scene: Scene | None = None,
+        worked: Collection[str] = (),
     ) -> None:
         self._scene, self._digits = scene, digits
+        self._arc_scene = scene if arc_scene is None else arc_scene
+        self._worked = worked
         self._invariants = invariants(scene) if of is None else of
         self._series = {invariant.name: Series() for invariant in self._invariants}
         self._begin = in_mpfr(start)
@@ -88,17 +108,19 @@ class Drifts:
     ) -> None:
         """Add the next rows. Raises Unsettled if an arc cannot be computed."""
         scene, quick = self._scene, in_mpfr(answer)
-        is_free = scene.body.is_conservative
-        self._is_lost = self._is_lost or not (is_free or _is_finite(answer))
-        moved = None if is_free or self._is_lost else in_mpfr(truth)
-        ends = None if moved is None else self._arc_ends(elapsed, moved, quick, own)
+        is_steady = not any(self._is_balanced(invariant) for invariant in self._invariants)
+        self._is_lost = self._is_lost or not (is_steady or _is_finite(answer))
+        moved = in_mpfr(truth)
+        has_arcs = not (is_steady or self._is_lost)
+        ends = self._arc_ends(elapsed, moved, quick, own) if has_arcs else None
         with precision():
-            if is_free:
-                quick = without_damping(scene, quick, elapsed)
-            self._widen(without_damping(scene, moved or in_mpfr(truth), elapsed))
+            quick = without_damping(scene, quick, elapsed)
+            self._widen(without_damping(scene, moved, elapsed))
             assert self._largest is not None
             for invariant in self._invariants:
-                if is_free:
+                if invariant.name in self._worked:
+                    change = invariant.value(quick) - invariant.value(moved)
+                elif invariant.is_conserved:
                     change = invariant.value(quick) - invariant.value(self._begin)[0]
                 elif ends is None:
                     change = to_mpfr(np.array([mp.nan] * len(elapsed), dtype=object))
@@ -125,6 +147,9 @@ class Drifts:
             drifts.append((invariant, errors))
         return drifts
 
+    def _is_balanced(self, invariant: Invariant) -> bool:
+        return not invariant.is_conserved and invariant.name not in self._worked
+
     def _widen(self, truth: Motion) -> None:
         rows = truth.at(decisive(self._scene, truth))
         if self._largest is not None:
@@ -150,7 +175,7 @@ class Drifts:
 
         It is computed as a neighbour of the scene's exact motion if it is close to it, else enclosed.
         """
-        scene, end, last = self._scene, self._end, [len(elapsed) - 1]
+        scene, end, last = self._arc_scene, self._end, [len(elapsed) - 1]
         begins = (end.time, *elapsed[:-1])
         with precision():
             earlier, beside = (
@@ -158,7 +183,12 @@ class Drifts:
                 for before, rows in ((end.truth, truth), (end.answer, answer))
             )
             arc_ends = neighbours(
-                scene, [*begins, *elapsed], (earlier, truth), beside, self._digits
+                scene,
+                [*begins, *elapsed],
+                (earlier, truth),
+                beside,
+                self._digits,
+                self._derivatives(begins, elapsed),
             )
         if arc_ends is None:
             states = _states(scene, own)
@@ -168,6 +198,13 @@ class Drifts:
         (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
         self._end = _End(elapsed[-1], state, truth.at(last), answer.at(last))
         return arc_ends
+
+    def _derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats | None:
+        """Return the derivatives of the motion over arcs under written loads; None where none are known."""
+        exact = truth(self._scene, self._digits)
+        if not isinstance(exact, Linearised):
+            return None
+        return exact.derivatives(Flow.of(self._scene), begins, ends)
 
 
 # The arcs.

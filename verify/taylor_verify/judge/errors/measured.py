@@ -11,7 +11,7 @@ errors among them.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
@@ -38,7 +38,7 @@ from taylor_verify.judge.errors.state import (
 from taylor_verify.judge.errors.velocity import VelocityErrors, velocity_shift
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
-from taylor_verify.records.quantities import GROUPS, VELOCITIES
+from taylor_verify.records.quantities import VELOCITIES, state_groups
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.motion import Clock, Motion
@@ -54,6 +54,8 @@ BLOCK: Final = 4096
 BLOCK_OF_SERIES: Final = 32768
 # The names of a state's quantities in a sensitivity, where they differ.
 _BLOCKS: Final = {"omega": "momentum"}
+# The quantity whose change is the work of all loads.
+_ENERGY: Final = "T"
 # Shifts of time are searched on at most this many evenly chosen rows, and on the worst rows.
 MOST_SHIFTED: Final = 4096
 
@@ -72,12 +74,14 @@ class Velocity:
 class Measured:
     """The errors of all rows; ``at_nodes`` is the exact motion at the requested samples.
 
+    Drifts that are ``worked`` are differences from the exact motion.
     ``excess`` is |q| - 1, if the answer has quaternions. ``shifts`` explain the errors of ``states``;
     ``is_shifted_whole`` is True if the shifts use all rows.
     """
 
     states: list[Errors]
     drifts: list[tuple[Invariant, Errors]]
+    worked: frozenset[str]
     velocities: list[Velocity]
     excess: Floats | None
     at_nodes: Motion
@@ -123,7 +127,10 @@ class Comparison:
         with costs.of(TRUTH):
             start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
         conserved = self._determined(start)
-        drifts = Drifts(self._balanced, self._balanced_part(start), self.digits, conserved)
+        worked = self._worked(conserved, start)
+        arc_scene = self._arc_scene
+        groups = state_groups(arc_scene.model, arc_scene.track)
+        drifts = Drifts(self.scene, start, self.digits, conserved, arc_scene, worked)
         velocities = [VelocityErrors(group) for group in self._velocities]
         wanted, at_nodes, last = set(nodes), list[Motion](), None
         for block in self.blocks(costs):
@@ -135,9 +142,8 @@ class Comparison:
                         one.add(block.scene.body, block.truth, block.velocities[one.group])
                 with costs.of(CONSERVED):
                     if conserved:
-                        truth, answer = map(self._balanced_part, (block.truth, block.answer))
-                        own = block.own if answer is block.answer else answer.quantities
-                        drifts.add(block.scene.clock.elapsed, truth, answer, own)
+                        own = {name: block.own[name] for name in groups}
+                        drifts.add(block.scene.clock.elapsed, block.truth, block.answer, own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
             first = block.places[0]
@@ -153,6 +159,7 @@ class Comparison:
         return Measured(
             errors,
             drifts.errors(),
+            worked,
             shifted,
             np.concatenate(excess) if excess else None,
             reduce(joined, at_nodes),
@@ -167,44 +174,51 @@ class Comparison:
         return {"attitude" if name == "quaternion" else name for name in self.quantities}
 
     def _has_quantity(self, quantity: str) -> bool:
-        return any(GROUPS[name].quantity == quantity for name in self._has)
+        groups = self.scene.known_groups
+        return any(groups[name].quantity == quantity for name in self._has)
 
     @property
-    def _balanced(self) -> Scene:
-        """The scene of the conserved quantities.
+    def _arc_scene(self) -> Scene:
+        """The scene with the quantities that an arc from a row can begin with.
 
-        The balances of a loaded body start an arc of the exact motion from every row, with a frame that is
-        a rotation to the last digit: a quaternion is one, and a matrix of rounded numbers is none.
+        Its frame is a rotation to the last digit: a quaternion is one, and a matrix of rounded numbers is
+        none.
         """
         has_frame = "quaternion" in self.quantities or "attitude" not in self.scene.track
-        is_whole = has_frame or self.scene.body.is_conservative
-        return self.scene if is_whole else replace(self.scene, track=frozenset())
-
-    def _balanced_part(self, motion: Motion) -> Motion:
-        """Return what the scene of the conserved quantities tracks of a motion."""
-        if self._balanced is self.scene:
-            return motion
-        names = self.scene.initial.MOVING
-        return replace(motion, quantities={name: motion[name] for name in names})
+        return self.scene if has_frame else replace(self.scene, track=frozenset())
 
     def _determined(self, start: Motion) -> list[Invariant]:
         """Return the conserved quantities that depend on nothing that the answer lacks."""
         has = {_BLOCKS.get(name, name) for name in self._has}
-        loads = self.scene.body.loads
-        if loads is not None and not self._has_arcs(loads):
-            return []
+        every = invariants(self.scene)
         return [
             invariant
-            for invariant in invariants(self._balanced)
-            if has.issuperset(invariant.sensitivity(start))
+            for invariant in every
+            if has.issuperset(blocks := invariant.sensitivity(start).keys())
+            and (invariant.is_conserved or self._has_balance(blocks) or invariant.name == _ENERGY)
         ]
+
+    def _worked(self, conserved: Collection[Invariant], start: Motion) -> frozenset[str]:
+        """Return the name of T where it changes and no arc shows by how much."""
+        return frozenset(
+            each.name
+            for each in conserved
+            if not (each.is_conserved or self._has_balance(each.sensitivity(start).keys()))
+        )
+
+    def _has_balance(self, blocks: Collection[str]) -> bool:
+        """Return True if a quantity that depends on these blocks is known at the end of an arc."""
+        loads, frame = self.scene.body.loads, self._arc_scene.track
+        is_known = frame >= {"attitude", "centre"}.intersection(blocks)
+        return is_known and (loads is None or self._has_arcs(loads))
 
     def _has_arcs(self, loads: Loads) -> bool:
         """Return True if an arc can begin at a row: where loads read the frame, it needs all of the frame.
 
-        Loads that read the quaternion itself read its sign, which a row does not determine.
+        Loads that read the quaternion itself read its sign, which a row does not determine. Nor do rows
+        determine states of the scene's own that are in flight.
         """
-        if not loads.inputs.isdisjoint(QUATERNION):
+        if loads.states or loads.rotor or not loads.inputs.isdisjoint(QUATERNION):
             return False
         frame = {"quaternion"} if loads.reads_attitude else set()
         frame |= {"centre"} if loads.reads_centre else set()

@@ -18,7 +18,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.judge.velocities import exact_matrix, velocity_forms
-from taylor_verify.records.quantities import Measure, Quantity, state_quantities
+from taylor_verify.records.quantities import Measure, Quantity
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -35,7 +35,8 @@ class Errors:
 
     ``parts`` maps each compared quantity of the motion to the scale of its error. ``truth_radius`` is the
     error bound of the truth, in the same unit. ``is_state`` is True for states and False for conserved
-    quantities. ``change`` is the signed error of the last sample, for a conserved scalar.
+    quantities. ``change`` is the signed error of the last sample, for a conserved scalar. ``sizes`` are
+    those by which each error was divided besides: of a state of a scene's own, its largest so far.
     """
 
     quantity: str
@@ -45,6 +46,7 @@ class Errors:
     parts: dict[str, Any]
     is_state: bool = False
     change: float | None = None
+    sizes: Floats | float = 1.0
 
 
 def in_doubles(values: Column) -> Floats:
@@ -59,7 +61,7 @@ class Distances:
     """Distances of one quantity from the truth at some samples, by part, not divided by a scale.
 
     ``widths`` are the error bounds of the truth, in the unit of the distances. The scale of a part is its
-    entry in ``sizes``, or 1 if that is zero.
+    entry in ``sizes``, or 1 if that is zero. With ``so_far`` each distance is divided by its own size.
     """
 
     quantity: str
@@ -67,6 +69,7 @@ class Distances:
     distances: Mapping[str, Column]
     widths: Mapping[str, Column]
     sizes: Mapping[str, Any]
+    so_far: Column | None = None
 
 
 def state_errors(scene: Scene, truth: Motion, answer: Motion) -> list[Errors]:
@@ -82,9 +85,12 @@ def state_distances(
 ) -> list[Distances]:
     """Return the distances of all tracked quantities; ``arc`` is the path before these samples."""
     distances = []
-    for quantity in state_quantities(scene.model, scene.track):
+    for quantity in scene.tracked:
         if quantity.measure is Measure.ANGLE:
             distances.append(_angles(quantity, truth, answer))
+            continue
+        if quantity.measure is Measure.SO_FAR:
+            distances.append(_so_far(quantity, truth, answer))
             continue
         is_path = quantity.measure is Measure.PATH
         length = (arc or Arc()).through(scene, truth) if is_path else None
@@ -114,6 +120,17 @@ def _angles(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
     widths = 2 * truth.radius_of(name)
     distances = np.array(angles, dtype=object)
     return Distances(name, quantity.unit, {name: distances}, {name: widths}, {name: mpf(1)})
+
+
+def _so_far(quantity: Quantity, truth: Motion, answer: Motion) -> Distances:
+    """Return the distances over the largest norm of the truth up to each row, absolute while it is zero."""
+    (part,) = quantity.groups
+    sizes = np.array([*map(or_one, truth.peaks[part])])
+    distances = norms(answer[part] - truth[part]) / sizes
+    widths = truth.radius_of(part)
+    return Distances(
+        quantity.name, quantity.unit, {part: distances}, {part: widths}, {part: mpf(1)}, sizes
+    )
 
 
 @dataclass
@@ -204,11 +221,15 @@ class States:
         self._sizes: dict[tuple[str, str], Any] = {}
         self._errors: defaultdict[tuple[str, str], Series] = defaultdict(Series)
         self._widths: defaultdict[tuple[str, str], Series] = defaultdict(Series)
+        # Of the quantities whose every error has a size of its own.
+        self._so_far: defaultdict[str, list[Column]] = defaultdict(list)
 
     def add(self, rows: Distances) -> dict[str, Any]:
         """Add the next rows of one quantity, and return its scales so far."""
         scales = {}
         self._about[rows.quantity] = rows
+        if rows.so_far is not None:
+            self._so_far[rows.quantity].append(in_doubles(rows.so_far))
         for part, distances in rows.distances.items():
             key = rows.quantity, part
             before, size = self._sizes.get(key), rows.sizes[part]
@@ -230,4 +251,5 @@ class States:
         scales = {part: scale for part, (_, scale) in values.items()}
         larger = np.maximum.reduce([rows for rows, _ in values.values()])
         width = np.maximum.reduce([self._widths[name, part].joined()[0] for part in values])
-        return Errors(name, about.unit, larger, width, scales, is_state=True)
+        sizes = np.concatenate(self._so_far[name]) if name in self._so_far else 1.0
+        return Errors(name, about.unit, larger, width, scales, is_state=True, sizes=sizes)

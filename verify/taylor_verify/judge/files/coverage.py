@@ -19,14 +19,12 @@ from taylor_verify.judge.rows import verdict_on
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import (
-    COLUMNS,
     COMPLETE,
-    GROUPS,
     MAIN,
     MOMENTA,
     TRACKED,
     VELOCITIES,
-    state_groups,
+    Group,
 )
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
@@ -110,9 +108,9 @@ class Extent:
         return len(self.inside) <= 1 and self.begin != self.end
 
 
-def not_judged(extent: Extent, missing: Sequence[str]) -> Iterator[str]:
+def not_judged(extent: Extent, missing: Sequence[Group]) -> Iterator[str]:
     """Yield the parts of the scene's question that a file does not answer, with its ``missing`` groups."""
-    yield from (f"the {GROUPS[name].noun}" for name in missing)
+    yield from (f"the {group.noun}" for group in missing)
     span = f"the scene's span of {float(extent.end):g}"
     if extent.is_one_state:
         yield f"the motion along {span} (one row within it is no trajectory)"
@@ -142,62 +140,76 @@ def complete_verdict(
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
     """Return the file's groups that can be compared with the scene. Raises Refused if there are none."""
     known = _known(scene)
-    # Quantities that the scene could track but does not track.
-    untracked = {name for name in TRACKED[scene.model] if name not in scene.track}
-    groups = [n for n in file.groups if n in known and GROUPS[n].quantity not in untracked]
+    every, untracked = scene.known_groups, _untracked(scene)
+    groups = [n for n in file.groups if n in known and every[n].quantity not in untracked]
     if groups:
         return groups
     foreign = [name for name in file.groups if name not in known]
     if foreign:
-        expected = f"expected columns of a scene of model {scene.model} ({_columns(known)})"
-        raise Refused([f"{expected}, got {_columns([name])} @ {file.name}" for name in foreign])
-    wanted = state_groups(scene.model, scene.track)
+        expected = f"expected columns of a scene of model {scene.model} ({_columns(scene, known)})"
+        raise Refused(
+            [f"{expected}, got {_columns(scene, [name])} @ {file.name}" for name in foreign]
+        )
+    wanted = [group.name for group in scene.groups]
     # A file with velocities needs no impulses.
     instead = [VELOCITIES] if scene.model == "kirchhoff" else []
-    expected = " or ".join(_columns(names) for names in (*instead, *([name] for name in wanted)))
+    choices = (*instead, *([name] for name in wanted))
+    expected = " or ".join(_columns(scene, names) for names in choices)
     notes = "; ".join(
-        (*file.notes, f"name other columns: --columns {COLUMNS[wanted[0]][0]}=NAME,...")
+        (*file.notes, f"name other columns: --columns {every[wanted[0]].columns[0]}=NAME,...")
     )
-    columns = _columns(file.groups) or "t alone"
+    columns = _columns(scene, file.groups) or "t alone"
     raise Refused(
         [f"expected {expected}, which {scene.name} tracks, got {columns} @ {file.name} ({notes})"]
     )
 
 
-def _columns(groups: Iterable[str]) -> str:
-    return " ".join(column for name in groups for column in COLUMNS[name])
+def _columns(scene: Scene, groups: Iterable[str]) -> str:
+    return " ".join(column for name in groups for column in scene.known_groups[name].columns)
+
+
+def _untracked(scene: Scene) -> set[str]:
+    """Return the quantities that the scene could track but does not track."""
+    return {*TRACKED[scene.model], *_own_states(scene)} - {each.name for each in scene.tracked}
+
+
+def _own_states(scene: Scene) -> list[str]:
+    loads = scene.body.loads
+    return [] if loads is None else [state.name for state in loads.states]
 
 
 def _known(scene: Scene) -> list[str]:
     """Return the groups that a file for this model may have; for a solid in a fluid also its velocities."""
-    quantities = {MAIN[scene.model], *TRACKED[scene.model]}
+    quantities = {MAIN[scene.model], *TRACKED[scene.model], *_own_states(scene)}
     velocities = VELOCITIES if scene.model == "kirchhoff" else ()
-    return [n for n, group in GROUPS.items() if group.quantity in quantities or n in velocities]
+    every = scene.known_groups
+    return [n for n, group in every.items() if group.quantity in quantities or n in velocities]
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:
     """Yield a sentence for each group that is not compared; groups of other models come first."""
-    known = _known(scene)
+    known, every = _known(scene), scene.known_groups
     for name in sorted(file.groups, key=lambda name: name in known):
         if name not in known:
-            why = f"{scene.name} is of model {scene.model}, whose motion has no {GROUPS[name].noun}"
+            why = f"{scene.name} is of model {scene.model}, whose motion has no {every[name].noun}"
         elif name not in groups:
-            why = f"{scene.name} does not track the {GROUPS[name].noun}"
+            why = f"{scene.name} does not track the {every[name].noun}"
         else:
             continue
-        yield f"{_columns([name])} not compared: {why}"
-    for name in missing_groups(groups, scene):
-        other = " or r11 ... r33" if name == "quaternion" else ""
-        yield (f"the {GROUPS[name].noun} is not judged: the file has no {_columns([name])}{other}")
+        yield f"{_columns(scene, [name])} not compared: {why}"
+    for group in missing_groups(groups, scene):
+        other = " or r11 ... r33" if group.is_frame else ""
+        yield f"the {group.noun} is not judged: the file has no {' '.join(group.columns)}{other}"
 
 
-def missing_groups(groups: Sequence[str], scene: Scene) -> list[str]:
+def missing_groups(groups: Sequence[str], scene: Scene) -> list[Group]:
     """Return the groups that the scene asks for and the file lacks."""
-    has = {"quaternion" if GROUPS[name].is_frame else name for name in groups}
+    every = scene.known_groups
+    has = {"quaternion" if every[name].is_frame else name for name in groups}
     if scene.model == "kirchhoff" and has.issuperset(VELOCITIES):
         # Both velocities together replace the impulses.
         has |= set(MOMENTA["kirchhoff"])
-    return [name for name in state_groups(scene.model, scene.track) if name not in has]
+    return [group for group in scene.groups if group.name not in has]
 
 
 def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:

@@ -37,13 +37,14 @@ from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
 from taylor_verify.judge.initial import initial_verdict
 from taylor_verify.judge.judgement import Judgement, unjudged
+from taylor_verify.judge.load_notes import breaks_of, load_notes
 from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import Convention, FileRead
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import COLUMNS, GROUPS, STATES, with_needs
+from taylor_verify.records.quantities import is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
@@ -55,10 +56,6 @@ NO_CONVENTIONS: Final = (
     "conventions and shifts of time are not looked for: under the loads of this scene a motion at another "
     "time, or in other axes, is another motion"
 )
-NO_BALANCES: Final = (
-    "energy and momenta are not judged: the loads depend on more of the attitude or the centre than a "
-    "row of the file determines"
-)
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
 
@@ -68,11 +65,13 @@ class FileJudgement(Judgement):
     """The verdicts on a file, its conventions and notes.
 
     ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected.
+    ``breaks`` says where the equations of the scene are not smooth in time; empty where they are.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
+    breaks: str = ""
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -81,7 +80,7 @@ class FileJudgement(Judgement):
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints."""
-        columns = (column for group in self.file.groups for column in COLUMNS[group])
+        columns = (column for group in self.file.groups for column in self.file.columns[group])
         file = FileRead(self.file.name, len(self.file.times), ("t", *columns), self.notes)
         conventions = [
             Convention(
@@ -124,8 +123,8 @@ def judge_file(
     groups = comparable(file, scene)
     asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
-    tracked = with_needs({GROUPS[name].quantity for name in groups})
-    scene = replace(scene, track=scene.track & tracked)
+    tracked = with_needs({scene.known_groups[name].quantity for name in groups})
+    scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
     known, explained = Conventions((), World(scene), {}), Explained()
     answer = FileRows.of(compared, rung, known)
     try:
@@ -155,12 +154,11 @@ def judge_file(
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
-    if scene.body.loads is not None and judged.record is not None:
-        has_balances = any(verdict.quantity == "T" for verdict in judged.verdicts)
-        notes += () if has_balances else (NO_BALANCES,)
+    if judged.record is not None:
+        notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, known.findings, accept_conventions)
+    of_file = (file, known.findings, accept_conventions, breaks_of(scene))
     return FileJudgement(verdicts, judged.record, *of_file, causes=explained.causes, notes=notes)
 
 
@@ -169,7 +167,7 @@ def _fits(judged: Judgement) -> bool:
 
     A tolerance that is nearly as large as the motion could let a wrong convention pass.
     """
-    states = [verdict for verdict in judged.verdicts if verdict.quantity in STATES]
+    states = [verdict for verdict in judged.verdicts if is_state(verdict.quantity)]
     return all(
         verdict.verdict is Status.PASS and (verdict.tolerance or 0.0) <= EXPLAINS
         for verdict in states

@@ -19,7 +19,7 @@ from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.quantities import COLUMNS, GROUPS, MAIN, MOMENTA, VELOCITIES
+from taylor_verify.records.quantities import GROUPS, MAIN, MOMENTA, VELOCITIES
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.trajectory import ByRows
@@ -119,8 +119,10 @@ def first_flaw(file: TrajectoryFile, quantity: str) -> str:
     made_of = [name for name, group in GROUPS.items() if group.quantity == quantity]
     if quantity == MAIN["kirchhoff"]:
         made_of += VELOCITIES
+    if quantity in file.groups:
+        made_of.append(quantity)
     # A conserved quantity may need any group.
-    groups = [name for name in made_of or GROUPS if name in file.groups]
+    groups = [name for name in made_of or file.columns if name in file.groups]
     lost = {name: np.flatnonzero(~file.groups[name].finite) for name in groups}
     first = {name: int(rows[0]) for name, rows in lost.items() if len(rows)}
     if not first:
@@ -129,7 +131,7 @@ def first_flaw(file: TrajectoryFile, quantity: str) -> str:
     row = first[group]
     name, value = next(
         (name, value)
-        for name, value in zip(COLUMNS[group], file.groups[group][row], strict=True)
+        for name, value in zip(file.columns[group], file.groups[group][row], strict=True)
         if not isinstance(value, Fraction)
     )
     return f"{name} is {value} in row {row + 1}, t = {float(file.times[row]):g}"

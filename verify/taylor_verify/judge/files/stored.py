@@ -23,7 +23,6 @@ from taylor_verify.records.precisions import bits_of
 from taylor_verify.records.quantities import (
     CONSERVED,
     GROUPS,
-    INITIAL,
     STATES,
     UNIT_QUATERNION,
     changed_by,
@@ -143,7 +142,7 @@ def _left_by_storing(verdict: Verdict) -> float:
     """Return the largest error that storing a row leaves, in units of u."""
     if verdict.unit == "rad":
         return _ATTITUDE
-    if verdict.quantity in (*STATES, INITIAL, UNIT_QUATERNION):
+    if not verdict.is_conserved or verdict.quantity == UNIT_QUATERNION:
         return _VECTOR
     floor = verdict.reason.floor
     return 0.0 if floor is None or floor.growth is None else _GRADIENT * floor.growth

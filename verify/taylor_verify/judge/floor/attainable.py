@@ -16,7 +16,7 @@ such a run counts as 2k - 1 steps, so that k steps count as k^2 (judge.floor.rep
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -27,15 +27,18 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path, path, transition
+from taylor_verify.exact.conditioning.loaded import DIGITS
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
+from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -77,7 +80,7 @@ class Floor:
             for part, scale in errors.parts.items()
         ]
         attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return larger_neighbour(attainable, self._path_times, self.times)
+        return larger_neighbour(attainable, self._path_times, self.times) / errors.sizes
 
     def of_velocity(self, group: str, errors: Errors, sizes: Floats) -> Floats:
         """Return the error of a velocity that the rounding of x and y, and of the velocity itself, leaves.
@@ -103,10 +106,34 @@ class Floor:
 
         The motion ``at_nodes`` is in numbers of MPFR.
         """
-        nodes, scene = self.nodes, self.orbit.scene
-        elapsed = [scene.clock.elapsed[k] for k in nodes]
+        nodes = self.nodes
         ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
         injected = np.zeros(len(nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            squares = self._squares(block, not invariant.is_conserved)
+            rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
+            injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
+        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
+        return larger_neighbour(drift, self.times[nodes], self.times)
+
+    def of_values(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
+        """Return the attainable error of the value of an invariant, over the ``scale`` of it.
+
+        The errors of the state reach it; the motion ``at_nodes`` is in numbers of MPFR.
+        """
+        times, squares = self.times[self.nodes], np.zeros(len(self.nodes))
+        for block, relative in self._relative(invariant, at_nodes, scale):
+            carried = larger_neighbour(self.carried[block], self._path_times, times)
+            squares += (np.linalg.norm(relative, axis=1) * carried) ** 2
+        error: Floats = self.unit_roundoff * np.sqrt(squares)
+        return larger_neighbour(error, times, self.times)
+
+    def _relative(
+        self, invariant: Invariant, at_nodes: Motion, scale: Any
+    ) -> Iterator[tuple[str, Floats]]:
+        """Yield the gradient of an invariant at the nodes by each block in its unit, over the scale."""
+        scene = self.orbit.scene
+        elapsed = [scene.clock.elapsed[k] for k in self.nodes]
         with precision():
             (whole,) = to_mpfr(np.array([mp.convert(scale)], dtype=object))
             gradients = invariant.sensitivity(without_damping(scene, at_nodes, elapsed))
@@ -114,11 +141,7 @@ class Floor:
                 (unit,) = to_mpfr(np.array([mp.convert(self.orbit.units[block])], dtype=object))
                 # Divided before conversion to float: the square of a small motion would underflow.
                 relative = (gradient * unit / whole).astype(float)
-                rounded = np.diff(self._squares(block)[ends - 1], axis=0, prepend=0.0)
-                shares = np.broadcast_to(relative.reshape(len(nodes), -1) ** 2, rounded.shape)
-                injected += np.sum(shares * rounded, axis=1)
-        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
-        return larger_neighbour(drift, self.times[nodes], self.times)
+                yield block, relative.reshape(len(self.nodes), -1)
 
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
@@ -170,17 +193,21 @@ class Floor:
         )
         return max(1, round(float(np.max(both[single > 0] / single[single > 0], initial=1.0))))
 
-    def _squares(self, block: str) -> Floats:
-        """Return the sums of squared roundings of a block over the steps so far, by component."""
-        first = 3 * self.orbit.blocks.index(block)
-        rows = self.rounded[:, first : first + 3]
+    def _squares(self, block: str, has_arcs: bool) -> Floats:
+        """Return the sums of squared roundings of a block over the steps so far, by component.
+
+        With arcs a balance adds what the rounded samples at their beginnings make.
+        """
+        span = self.orbit.span(block)
+        rows = self.rounded[:, span]
         factors = growths(self.orbit.scene, self.orbit.elapsed)
         if factors is not None and block in self.orbit.flow.momenta:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
         squares = self.steps_at[:, None] * rows**2
-        if block in self.orbit.flow.momenta and self.orbit.scene.body.loads is not None:
-            squares = squares + self._by_arcs[:, first : first + 3]
+        has_loads = self.orbit.scene.body.loads is not None
+        if has_arcs and has_loads and block in self.orbit.flow.momenta:
+            squares = squares + self._by_arcs[:, span]
         return np.cumsum(squares, axis=0)
 
     @cached_property
@@ -189,11 +216,12 @@ class Floor:
 
         The arc of a balance begins at a sample, and written loads act along the arc as its errors say.
         """
-        orbit, size = self.orbit, 3 * len(self.orbit.blocks)
+        orbit, size = self.orbit, len(self.orbit.places)
         d, samples = orbit.momentum.shape[1], set(orbit.scene.clock.elapsed)
+        among = np.ix_(orbit.places, orbit.places)
         squares, begin, arc = np.zeros((len(orbit.elapsed), size)), 0, np.eye(size)
         for k, step in enumerate(orbit.carried.steps, start=1):
-            arc = step[:size, :size] @ arc
+            arc = step[among] @ arc
             if orbit.elapsed[k] in samples:
                 moved = arc[:d] * self.single[begin]
                 squares[k, :d] = np.sum(moved**2, axis=1)
@@ -228,19 +256,20 @@ def floor(
     With ``velocities`` each step rounds U and Omega of a solid in a fluid, and not its impulses.
 
     The condition of the orbit is computed once for all rungs, from the scene ``asked``. Only if the
-    rounding of the data moves the orbit too much is it computed from the rounded scene.
+    rounding of the data moves the orbit too much, or where it comes with the exact motion, is it computed
+    from the rounded scene.
     """
     # Every row has at least one rounding.
     count = max(steps, len(given.clock.instants))
     bits = unit_roundoff.denominator.bit_length() - 1
-    for conditioned in (asked, given):
-        orbit = orbit_of(conditioned)
+    for orbit in _orbits(given, asked, bits):
         steps_at = _steps_at(orbit.elapsed, count)
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
+        rounded = _at_instants(rounded, orbit, steps_at)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
-            times=np.array([abs(float(t)) for t in conditioned.clock.elapsed]),
+            times=np.array([abs(float(t)) for t in orbit.scene.clock.elapsed]),
             orbit=orbit,
             steps_at=steps_at,
             rounded=rounded,
@@ -253,18 +282,32 @@ def floor(
     return result
 
 
+def _orbits(given: Scene, asked: Scene, bits: int) -> Iterator[Path]:
+    yield orbit_of_run(given, asked, bits)
+    if given.body.loads is None:
+        yield orbit_of(given)
+
+
+def orbit_of_run(given: Scene, asked: Scene, bits: int) -> Path:
+    """Return the orbit of a run on a rung of ``bits`` bits, of the rounded scene ``given``.
+
+    Under written loads it comes with the exact motion of this scene. Elsewhere it is that of the scene
+    ``asked``, which all rungs share.
+    """
+    return orbit_of(asked) if given.body.loads is None else orbit_of(given, truth_digits(bits))
+
+
 @lru_cache(maxsize=32)
-def orbit_of(scene: Scene) -> Path:
+def orbit_of(scene: Scene, digits: int = DIGITS) -> Path:
     """Return the orbit of a scene and its condition, computed once for all that ask."""
-    return path(scene)
+    return path(scene, digits)
 
 
-def radians(scene: Scene) -> float:
+def radians(orbit: Path) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
-    orbit = orbit_of(scene)
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
     times = np.array([abs(float(t)) for t in orbit.elapsed])
-    if scene.body.loads is not None and len(times) > 1:
+    if orbit.scene.body.loads is not None and len(times) > 1:
         # What the loads do to the momenta, over their largest size.
         size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
         pushed = np.linalg.norm(np.gradient(orbit.momentum, times, axis=0), axis=1) / size
@@ -272,16 +315,34 @@ def radians(scene: Scene) -> float:
     return float(np.sum(np.maximum(rates[1:], rates[:-1]) * np.diff(times)))
 
 
-def looked_at(scene: Scene) -> list[int]:
+def looked_at(orbit: Path) -> list[int]:
     """Return the samples at which the floor is computed: many or all if the orbit has short passages."""
-    points = set(orbit_of(scene).elapsed)
-    return [k for k, t in enumerate(scene.clock.elapsed) if t in points]
+    points = set(orbit.elapsed)
+    return [k for k, t in enumerate(orbit.scene.clock.elapsed) if t in points]
 
 
 @lru_cache(maxsize=8)
 def condition(scene: Scene) -> Path:
     """Return the transition matrices along the scene's orbit, between evenly chosen samples."""
     return transition(scene, chosen(scene.clock.elapsed, _MOST_NODES))
+
+
+def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
+    """Return the roundings with those of held values at their instants alone, and not in each step."""
+    loads = orbit.scene.body.loads
+    if loads is None or not loads.held_values:
+        return rounded
+    result, times = rounded.copy(), [abs(float(t)) for t in orbit.elapsed]
+    counts = {state.name: np.zeros(len(times)) for state in loads.states}
+    for instant in loads.instants(orbit.elapsed[-1]):
+        place = min(int(np.searchsorted(times, float(instant.time))), len(times) - 1)
+        for name in instant.names:
+            counts[name][place] += 1
+    for state in loads.states:
+        if isinstance(state, Held):
+            taken = np.sqrt(counts[state.name] / steps_at)
+            result[:, orbit.span(state.name)] *= taken[:, None]
+    return result
 
 
 def _steps_at(elapsed: Sequence[Fraction], steps: int) -> Floats:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Final
 
 import numpy as np
 
+from taylor_verify.exact.conditioning.condition import Path
+from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors.state import largest, norms
 from taylor_verify.judge.floor.attainable import condition
+from taylor_verify.judge.floor.loads import Along
 from taylor_verify.scenes.scene import Scene
 
 # The sizes of the state are needed only to the digits of a sentence.
@@ -56,13 +60,14 @@ class Carrying:
         )
 
 
-def carrying(scene: Scene) -> Carrying | None:
+def carrying(scene: Scene, along: Path | None = None) -> Carrying | None:
     """Return the growth factors of the scene's orbit; None for a body at rest.
 
-    Raises Unsettled if the transition matrix is not known.
+    ``along`` is the orbit under written loads, with as many times as are wanted. Raises Unsettled if the
+    transition matrix is not known.
     """
-    kind, path = kind_of(scene.body), condition(scene)
-    states = solution(replace(scene, track=frozenset())).evaluate(path.elapsed, _DIGITS)
+    kind, path = kind_of(scene.body), along or condition(scene)
+    states = _states(scene, path)
     momentum = kind.momentum_rows(scene.body, {n: rows[:1] for n, rows in states.items()})
     factors = []
     for out, rows in states.items():
@@ -75,3 +80,12 @@ def carrying(scene: Scene) -> Carrying | None:
         return None
     instants = [float(scene.clock.start + elapsed) for elapsed in path.elapsed]
     return Carrying(tuple(instants), tuple(float(factor) for factor in np.max(factors, axis=0)))
+
+
+def _states(scene: Scene, path: Path) -> Mapping[str, Array]:
+    """Return omega or the impulses at every time of a path."""
+    if scene.body.loads is None:
+        return solution(replace(scene, track=frozenset())).evaluate(path.elapsed, _DIGITS)
+    z = Along(path).state.astype(object)
+    moving = kind_of(scene.body).moving
+    return {name: z[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}

@@ -33,7 +33,12 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import norms, state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
-from taylor_verify.judge.floor.attainable import larger_neighbour, looked_at, orbit_of
+from taylor_verify.judge.floor.attainable import (
+    larger_neighbour,
+    looked_at,
+    orbit_of,
+    orbit_of_run,
+)
 from taylor_verify.judge.floor.moves import Moves
 from taylor_verify.judge.velocities import has_velocities, velocity
 from taylor_verify.numbers.precision import Rung
@@ -69,8 +74,8 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     large during short passages, which evenly chosen samples could miss.
     """
     if given.body.loads is not None:
-        return _by_derivative(given, rung, given if asked is None else asked)
-    nodes = looked_at(given if asked is None else asked)
+        return _by_derivative(given, rung)
+    nodes = looked_at(orbit_of(given if asked is None else asked))
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
     digits, numbers = truth_digits(rung.bits, _MORE_DIGITS), len(_numbers(scene))
@@ -95,17 +100,18 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     return InputRounding(words, _at_samples(total, nodes, len(given.clock.instants)))
 
 
-def _by_derivative(given: Scene, rung: Rung, asked: Scene) -> InputRounding:
+def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
     """Return the response under written loads, whose numbers are inputs too."""
-    nodes, path = looked_at(asked), orbit_of(asked)
+    path = orbit_of_run(given, given, rung.bits)
+    nodes = looked_at(path)
     places = {time: k for k, time in enumerate(path.elapsed)}
-    rows = [places[asked.clock.elapsed[k]] for k in nodes]
-    instants = tuple(asked.clock.instants[k] for k in nodes)
-    scene = replace(asked, clock=Clock(asked.clock.start, instants))
-    changes = [partial(_with_one, asked, place) for place in _numbers(asked)]
+    rows = [places[given.clock.elapsed[k]] for k in nodes]
+    instants = tuple(given.clock.instants[k] for k in nodes)
+    scene = replace(given, clock=Clock(given.clock.start, instants))
+    changes = [partial(_with_one, given, place) for place in _numbers(given)]
     with mp.workprec(working_bits(rung.bits)):
         moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
-        here = moves.beside(rows, np.zeros((len(rows), path.momentum.shape[1] + 6)))
+        here = moves.here(rows)
         draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
         words = f"each of the {moves.count} numbers of body, loads and start that are not zero"

@@ -30,7 +30,11 @@ Values = Sequence[Floats]
 
 @dataclass(frozen=True)
 class Piece:
-    """The steps of the loads at some times of a path: their values, and dM/dv by output and step."""
+    """The steps of the loads at some times of a path: their values, and dM/dv by output and step.
+
+    ``outputs`` are those of the loads, of the rates of own states, of their values that are held, and of
+    the momentum of wheels.
+    """
 
     places: Sequence[int]
     steps: Sequence[Step]
@@ -100,26 +104,85 @@ class Along:
 
     def pieces(self) -> Iterator[Piece]:
         """Yield the loads piece by piece."""
+        for piece, places in self._groups:
+            inputs = {name: rows[places] for name, rows in self._inputs.items()}
+            values = _values(piece.steps, inputs, len(places))
+            outputs = (*piece.outputs, *piece.rates, *piece.values, *piece.rotor)
+            yield Piece(places, piece.steps, outputs, values)
+
+    @cached_property
+    def _groups(self) -> Sequence[tuple[Steps, list[int]]]:
+        """The pieces of time, each with the places of its times."""
         elapsed, groups = self.path.elapsed, dict[int, tuple[Steps, list[int]]]()
         is_later = elapsed[-1] >= 0
         for k, time in enumerate(elapsed):
             piece = self.loads.piece(time, is_later)
             groups.setdefault(id(piece), (piece, []))[1].append(k)
-        for piece, places in groups.values():
-            inputs = {name: rows[places] for name, rows in self._inputs.items()}
-            values = _values(piece.steps, inputs, len(places))
-            yield Piece(places, piece.steps, piece.outputs, values)
+        return list(groups.values())
 
     def forces(self, body: Body | None = None) -> Floats:
         """Return the loads at every time; those at another body's velocities with the same state."""
+        return self.outputs(body)[:, : self.loads_count]
+
+    def outputs(self, body: Body | None = None) -> Floats:
+        """Return the loads, rates and values of own states, and the momentum of wheels, at every time."""
         along = self if body is None else _Beside(self.path, body)
         return _placed(
             along, lambda piece: np.column_stack([piece.values[k] for k in piece.outputs])
         )
 
+    def split(self, outputs: Floats) -> list[Floats]:
+        """Return the columns of outputs: loads, rates, values, and the momentum of wheels."""
+        first = self.loads.piece(Fraction(0))
+        ends = np.cumsum([len(first.outputs), len(first.rates), len(first.values)])
+        return np.split(outputs, ends, axis=1)
+
+    @property
+    def loads_count(self) -> int:
+        """The number of components of the loads."""
+        return len(self.loads.piece(Fraction(0)).outputs)
+
+    @property
+    def own_starts(self) -> list[float]:
+        """The starts of own states by component, those with a rate first."""
+        starts = {s.name: s.start or [0] * len(s.components) for s in self.loads.states}
+        return [float(value) for name in self.path.carried.own for value in starts[name]]
+
+    @cached_property
+    def taken(self) -> Floats:
+        """1 where a held value is taken at a time of the path, else 0: a column for each of them."""
+        rows = np.zeros((len(self.path.elapsed), len(self.loads.held_values)))
+        places = {time: k for k, time in enumerate(self.path.elapsed)}
+        for instant in self.loads.instants(self.path.elapsed[-1]) if rows.size else ():
+            if instant.time in places:
+                rows[places[instant.time], list(instant.places)] = 1.0
+        return rows
+
+    @cached_property
+    def wheels(self) -> Floats:
+        """The derivative of the momentum of wheels by each component of own states, (times, 3, n)."""
+        names = [*self.loads.continuous, *self.loads.held_values]
+        rows = np.zeros((len(self.path.elapsed), 3, len(names)))
+        for piece in self.pieces():
+            inputs = {s.name: k for k, s in enumerate(piece.steps) if s.operation == "input"}
+            for i, by in enumerate(piece.gradients[-3:]):
+                for j, name in enumerate(names):
+                    if name in inputs:
+                        rows[piece.places, i, j] = by[inputs[name]]
+        return rows
+
     def sizes(self) -> Floats:
-        """Return what the roundings inside the loads add up to, in units of roundoff."""
+        """Return what the roundings inside the texts add up to by output, in units of roundoff."""
         return _placed(self, Piece.sizes)
+
+    def by_numbers(self) -> Floats:
+        """Return what a rounding of each number of the texts adds up to by output."""
+
+        def total(piece: Piece) -> Floats:
+            parts = [abs(by) for _, by in piece.numbers()]
+            return sum(parts, np.zeros((len(piece.places), len(piece.outputs))))
+
+        return _placed(self, total)
 
     @property
     def body(self) -> Body:
@@ -140,13 +203,24 @@ class Along:
                 equations.velocity,
             )
         )
-        pushed = self.forces(body) @ np.array(kind.pushed(other), dtype=float).T
+        pushed = (self.forces(body) + self._of_wheels(z @ spin.T)) @ np.array(
+            kind.pushed(other), dtype=float
+        ).T
         rate = constant + z @ linear.T + np.einsum("iab,ta,tb->ti", hessian, z, z) / 2 + pushed
         turn = np.einsum("tij,tj->ti", self.attitude, z @ spin.T)
         if not len(velocity):
             return rate, turn, np.zeros_like(turn)
         current = np.array(self.loads.current, dtype=float)
         return rate, turn, np.einsum("tij,tj->ti", self.attitude, z @ velocity.T) + current
+
+    def _of_wheels(self, spin: Floats) -> Floats | float:
+        """Return h x omega - h', the moment of wheels on the body; the time alone changes no h here."""
+        if not self.loads.rotor:
+            return 0.0
+        _, rates, values, wheels = self.split(self.outputs())
+        changes = np.hstack([rates, np.zeros_like(values)])
+        moment: Floats = np.cross(wheels, spin) - np.einsum("tij,tj->ti", self.wheels, changes)
+        return moment
 
     @cached_property
     def _inputs(self) -> Mapping[str, Floats]:
@@ -160,11 +234,14 @@ class Along:
             vectors["c"] = self.centre
         for letter, rows in vectors.items():
             inputs |= {f"{letter}{i + 1}": rows[:, i] for i in range(3)}
+        for state in self.loads.states:
+            rows = self.path.carried.own[state.name]
+            inputs |= dict(zip(state.components, rows.T, strict=True))
         inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
-        return inputs | {f"q{i}": rows for i, rows in enumerate(self._quaternions.T)}
+        return inputs | {f"q{i}": rows for i, rows in enumerate(self.quaternions.T)}
 
     @cached_property
-    def _quaternions(self) -> Floats:
+    def quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
         rows, start = quaternions(self.attitude), self.path.scene.initial.attitude
         return rows if rows[0] @ np.array(start, dtype=float) >= 0 else -rows
@@ -187,7 +264,8 @@ class _Beside(Along):
 
 def _placed(along: Along, of: Callable[[Piece], Floats]) -> Floats:
     """Return rows of each piece, in the order of the times."""
-    width = len(along.loads.piece(Fraction(0)).outputs)
+    first = along.loads.piece(Fraction(0))
+    width = len((*first.outputs, *first.rates, *first.values, *first.rotor))
     rows = np.zeros((len(along.path.elapsed), width))
     for piece in along.pieces():
         rows[piece.places] = of(piece)
@@ -274,6 +352,8 @@ _SLOPES: Final[Mapping[str, Callable[..., tuple[Floats, ...]]]] = {
     "max": lambda s, v, a, b: (1.0 * (a >= b), 1.0 * (a < b)),
     "atan2": lambda s, v, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
     "norm": lambda s, v, *parts: tuple(p / v for p in parts),
+    "choose": lambda s, v, a, b, c: (0 * a, 1.0 * (a >= 0), 1.0 * (a < 0)),
+    **{name: lambda s, v, a: (0 * a,) for name in ("sign", "step", "floor")},
     "power": lambda s, v, a: (_exponent(s) * a ** (_exponent(s) - 1),),
     **{name: lambda s, v, a, d=d: (d(v, a),) for name, d in _DERIVATIVES.items()},
 }

@@ -106,7 +106,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
         for name in moving:
             rounded[name] = np.where(sizes[name] > 0, np.maximum(rounded[name], _least(bits)), 0.0)
     columns = []
-    for block in path.blocks:
+    for block in _of_body(path):
         if block == "attitude":
             turn = _ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
             columns += [turn / np.sqrt(3.0)] * 3
@@ -117,7 +117,25 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     if velocities and has_velocities(given.body):
         by_inertia = _through_velocities(given.body, path)
         roundings_at[:, :6] = np.maximum(roundings_at[:, :6], by_inertia)
+    if path.carried.own:
+        own = _of_own_states(path, h * float(problem.units.time))
+        roundings_at = np.hstack([roundings_at, own])
     return roundings_at
+
+
+def _of_body(path: Path) -> list[str]:
+    return [block for block in path.blocks if block not in path.carried.own]
+
+
+def _of_own_states(path: Path, h: float) -> Floats:
+    """Return r of states of the scene's own, those with a rate first; of a held one that of its value."""
+    along, own = Along(path), path.carried.own
+    _, rates, taken, _ = along.split(along.sizes())
+    values = np.abs(np.hstack([*own.values()]))
+    rounded = np.hstack([values[:, : rates.shape[1]] + h * rates, taken])
+    units = [float(path.units[name]) for name, rows in own.items() for _ in rows[0]]
+    counted: Floats = rounded / np.array(units)
+    return counted
 
 
 def _without_loads(given: Scene, path: Path) -> Scene:
@@ -131,8 +149,7 @@ def _without_loads(given: Scene, path: Path) -> Scene:
 def _with_loads(rates: Mapping[str, Floats], problem: Problem, path: Path) -> dict[str, Floats]:
     """Return the rates with the sizes of the steps of the loads, each carried to the load."""
     sizes, more = Along(path).sizes(), dict(rates)
-    momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
-    for k, block in enumerate(momenta):
+    for k, block in enumerate(path.flow.momenta):
         unit = float(problem.units.time / _unit(problem, block))
         for name, size in zip(_COMPONENTS[block], sizes[:, 3 * k : 3 * k + 3].T, strict=True):
             more[name] = more[name] + unit * size
@@ -158,8 +175,7 @@ def _posed(given: Scene, bits: int) -> Problem:
 def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
     """Return |component| at every time, by name, in the problem's units."""
     sizes: dict[str, Floats] = {}
-    momenta = [block for block in path.blocks if block not in ("attitude", "centre")]
-    for k, block in enumerate(momenta):
+    for k, block in enumerate(path.flow.momenta):
         unit = float(path.units[block] / _unit(problem, block))
         rows = np.abs(path.momentum[:, 3 * k : 3 * k + 3]) * unit
         sizes |= dict(zip(_COMPONENTS[block], rows.T, strict=True))

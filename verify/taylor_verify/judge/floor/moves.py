@@ -47,6 +47,11 @@ class Moves:
         """The numbers of body, start and loads."""
         return len(self._responses)
 
+    def here(self, places: Sequence[int]) -> Motion:
+        """Return the motion itself at these times of the path."""
+        width = len(self._momentum) + 6 + self._own
+        return self.beside(places, np.zeros((len(places), width)))
+
     def motions(self, places: Sequence[int], roundoff: float) -> Iterator[Motion]:
         """Yield draws of all numbers changed at once, up or down at random, at these times of the path."""
         coin = random.Random(1)
@@ -59,7 +64,7 @@ class Moves:
         times = np.array(
             [float(t) for t in self._path.scene.clock.start + np.array(self._path.elapsed)]
         )
-        rates = self._errors(*self._along.rates()) * times[:, None]
+        rates = self._errors(*self._along.rates(), self._own_rates()) * times[:, None]
         return self.beside(places, roundoff * rates[places])
 
     def beside(self, places: Sequence[int], errors: Floats) -> Motion:
@@ -75,13 +80,36 @@ class Moves:
             turned = cross_matrices(errors[:, d : d + 3]) @ R
             quantities["attitude"] = _exact(R) + _exact(turned)
         if "centre" in scene.track:
-            quantities["centre"] = _exact(along.centre[places]) + _exact(errors[:, d + 3 :])
-        return Motion(quantities, np.array([mp.zero] * len(places), dtype=object))
+            quantities["centre"] = _exact(along.centre[places]) + _exact(errors[:, d + 3 : d + 6])
+        peaks, first = {}, d + 6
+        for name, rows in self._path.carried.own.items():
+            last = first + rows.shape[1]
+            if name in scene.states:
+                quantities[name] = _exact(rows[places]) + _exact(errors[:, first:last])
+                largest = np.maximum.accumulate(np.linalg.norm(rows, axis=1))
+                peaks[name] = _exact(largest[places])
+            first = last
+        zeros = np.array([mp.zero] * len(places), dtype=object)
+        return Motion(quantities, zeros, peaks=peaks)
 
     # The response to one number.
 
-    def _errors(self, rate: Floats, turn: Floats, centre: Floats) -> Floats:
-        return np.hstack([rate @ self._momentum.T, turn, centre])
+    def _errors(
+        self, rate: Floats, turn: Floats, centre: Floats, own: Floats | None = None
+    ) -> Floats:
+        if own is None:
+            own = np.zeros((len(rate), self._own))
+        return np.hstack([rate @ self._momentum.T, turn, centre, own])
+
+    def _own_rates(self) -> Floats:
+        """Return the rates of own states, those of held ones zero."""
+        _, rates, values, _ = self._along.split(self._along.outputs())
+        return np.hstack([rates, np.zeros_like(values)])
+
+    @property
+    def _own(self) -> int:
+        """The number of components of the scene's own states."""
+        return sum(rows.shape[1] for rows in self._path.carried.own.values())
 
     def _of_scene(self, changed: Scene) -> Floats:
         """Return the response to a change of body and start, over the change."""
@@ -96,6 +124,7 @@ class Moves:
         ends = [kind.centre(s.initial) for s in (scene, changed)]
         shift = [float(b - a) for a, b in zip(ends[0] or (), ends[1] or (), strict=True)]
         first.append(np.array(shift or [0.0] * 3))
+        first.append(np.zeros(self._own))
         push = np.zeros((len(self._path.elapsed), sum(map(len, first))))
         if changed.body != scene.body:
             here, there = self._along.rates(), self._along.rates(changed.body)
@@ -103,28 +132,52 @@ class Moves:
         return self._carried(np.concatenate(first), push) / float(_CHANGE)
 
     def _of_numbers(self) -> Iterator[Floats]:
-        """Yield the response to each number of the loads."""
-        pushed = np.array(kind_of(self._path.scene.body).pushed(self._path.scene.body), dtype=float)
-        pushes: dict[Fraction, Floats] = {}
+        """Yield the response to each number of the texts, and of the starts of own states."""
+        changes: dict[Fraction, Floats] = {}
         for piece in self._along.pieces():
             for number, by in piece.numbers():
-                rows = np.zeros((len(self._path.elapsed), len(self._momentum) + 6))
-                rows[piece.places, :-6] = by @ pushed.T @ self._momentum.T
-                pushes[number] = pushes.get(number, 0) + rows
-        for push in pushes.values():
-            yield self._carried(np.zeros(push.shape[1]), push)
+                rows = np.zeros((len(self._path.elapsed), by.shape[1]))
+                rows[piece.places] = by
+                changes[number] = changes.get(number, 0) + rows
+        d = len(self._momentum)
+        for change in changes.values():
+            yield self._carried(np.zeros(d + 6 + self._own), *self._of_outputs(change))
+        still = np.zeros((len(self._path.elapsed), d + 6 + self._own))
+        for k, value in enumerate(self._along.own_starts):
+            if value:
+                first = np.zeros(d + 6 + self._own)
+                first[d + 6 + k] = value
+                yield self._carried(first, still)
 
-    def _carried(self, first: Floats, push: Floats) -> Floats:
-        """Return what an error of the start, and errors of the rates, become at every time."""
+    def _of_outputs(self, change: Floats) -> tuple[Floats, Floats]:
+        """Return the errors of the rates, and of held values, by changes of what the texts give."""
+        body, along, d = self._path.scene.body, self._along, len(self._momentum)
+        pushed = np.array(kind_of(body).pushed(body), dtype=float)
+        loads, rates, values, _ = along.split(change)
+        push = np.zeros((len(change), d + 6 + self._own))
+        # The wheels take from the momentum of the body what they gain.
+        push[:, :d] = loads @ pushed.T @ self._momentum.T
+        push[:, d + 6 : d + 6 + rates.shape[1]] = rates
+        if along.loads.rotor:
+            wheels = along.wheels[:, :, : rates.shape[1]]
+            push[:, :d] -= np.einsum("tij,tj->ti", wheels, rates)
+        taken = np.zeros_like(push)
+        taken[:, d + 6 + rates.shape[1] :] = values * along.taken
+        return push, taken
+
+    def _carried(self, first: Floats, push: Floats, taken: Floats | None = None) -> Floats:
+        """Return what errors of the start, of the rates and of ``taken`` values become at every time."""
         path = self._path
         units = [float(unit) for unit in path.flow.components] + [1.0] * 3
-        size = np.array([*units, *[float(path.flow.length)] * 3])
+        own = [float(path.units[n]) for n, rows in path.carried.own.items() for _ in rows[0]]
+        size = np.array([*units, *[float(path.flow.length)] * 3, *own])
         times = np.array([float(t) for t in path.elapsed])
         counted, error = push / size, first / size
-        errors = [error]
+        values = np.zeros_like(push) if taken is None else taken / size
+        errors = [error + values[0]]
         for k, step in enumerate(path.carried.steps):
             span = (times[k + 1] - times[k]) / 2
-            error = step @ (error + span * counted[k]) + span * counted[k + 1]
+            error = step @ (errors[-1] + span * counted[k]) + span * counted[k + 1] + values[k + 1]
             errors.append(error)
         every: Floats = np.array(errors) * size
         return every

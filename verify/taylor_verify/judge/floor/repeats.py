@@ -26,6 +26,7 @@ from taylor_verify.exact.conditioning.flow import applied
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers.precision import floor_log2
+from taylor_verify.scenes.loads.states import Held
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -98,7 +99,7 @@ def _courses(path: Path) -> list[Course]:
 
 def _by_differences(path: Path) -> list[Course]:
     """Return the courses under written loads, whose derivatives are differences along the path."""
-    momenta = _differences(path, path.momentum)
+    momenta, loads = _differences(path, path.momentum), path.scene.body.loads
     courses = [momenta]
     if "attitude" in path.blocks:
         courses.append(_turns(path, momenta))
@@ -106,6 +107,11 @@ def _by_differences(path: Path) -> list[Course]:
         length = path.units["centre"]
         start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
         courses.append(_differences(path, path.centre + start))
+    taken = {} if loads is None else {s.name for s in loads.states if isinstance(s, Held)}
+    for name, rows in path.carried.own.items():
+        x = rows / float(path.units[name])
+        still = np.zeros_like(x)
+        courses.append(Course(x, still, still) if name in taken else _differences(path, x))
     return courses
 
 

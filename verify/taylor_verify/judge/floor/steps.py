@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from taylor_verify.judge.floor.attainable import radians
+from taylor_verify.judge.floor.attainable import orbit_of_run, radians
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.reason import ClaimedSteps
 from taylor_verify.solvers.solver import Solver
@@ -44,7 +44,8 @@ def count_steps(problem: Problem, solver: Solver, claimed: int, seconds: float |
     samples = len(problem.times)
     if solver.counts_steps or claimed <= samples:
         return Steps(claimed)
-    turned = radians(problem.scene)
+    orbit = orbit_of_run(problem.given, problem.scene, problem.rung.bits)
+    turned = radians(orbit)
     most = int(WIDENING**2 * (samples + STEPS_PER_RADIAN * turned))
     limit = (
         f"{WIDENING}^2 x ({samples} samples + {STEPS_PER_RADIAN} for each of the {turned:.3g} radians "

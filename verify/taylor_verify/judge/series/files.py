@@ -16,7 +16,7 @@ from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused, brief
 from taylor_verify.records.json_text import complete
-from taylor_verify.records.quantities import INITIAL, STATES
+from taylor_verify.records.quantities import INITIAL, states_among
 from taylor_verify.records.showing import counts, html_table
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import summary
@@ -28,6 +28,8 @@ Asked = TypeVar("Asked")
 
 # Orders of two states that differ by more than this belong to different methods.
 _LOWER: Final = 0.5
+# An order below this is that of steps which do not end where the equations change.
+_OVER_BREAKS: Final = 1.5
 # Steps with a smaller ratio show no order, because noise dominates the ratio of the errors.
 _ALIKE: Final = 1.01
 _HOW: Final = (
@@ -220,7 +222,13 @@ def _notes(
         )
     known = {record.quantity: record.order for record in order if record.order is not None}
     # The body's own state comes first.
-    states = [name for name in STATES if name in known]
+    states = states_among(known)
+    breaks = next((judgement.breaks for judgement in judged if judgement.breaks), "")
+    if breaks and states and known[states[0]] < _OVER_BREAKS:
+        yield (
+            f"{states[0]} is of order {known[states[0]]:.1f}: no method has a higher one than 1 unless its "
+            f"steps end at {breaks}"
+        )
     for name in states[1:]:
         first = states[0]
         if known[name] < known[first] - _LOWER:

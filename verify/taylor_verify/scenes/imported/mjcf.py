@@ -15,7 +15,7 @@ from typing import Final
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import shown
-from taylor_verify.scenes.imported import rotation
+from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
@@ -29,7 +29,7 @@ _LENGTHS: Final = {"quat": 4, "euler": 3, "axisangle": 4}
 _BY_QUATERNION: Final = (
     "The tensor was turned by quat, exactly: MuJoCo divides it by its length, and so does this."
 )
-_AXES: Final = dict(zip("xyz", rotation.AXES, strict=True))
+_AXES: Final = dict(zip("xyz", turns.AXES, strict=True))
 _ORDER: Final = ("M(1,1)", "M(2,2)", "M(3,3)", "M(1,2)", "M(1,3)", "M(2,3)")
 
 _Turn = tuple[Quaternion, tuple[str, ...]]
@@ -62,7 +62,7 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     turn = _turn(inertial, settings, reading)
     if not is_valid or mass is None or centre is None or tensor is None or turn is None:
         return None
-    return Link(name, mass, centre, rotation.turned(tensor, turn[0]), remarks=turn[1])
+    return Link(name, mass, centre, turns.turned(tensor, turn[0]), remarks=turn[1])
 
 
 def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:
@@ -131,8 +131,8 @@ def _turn(inertial: Node, settings: dict[str, str], reading: Reading) -> _Turn |
     if not any(axis):
         reading.fault("an axis that is not zero", "0 0 0", inertial)
         return None
-    turn = rotation.Turn(axis, angle, degrees)
-    return rotation.combined([turn]), rotation.remarks_on("axisangle, by", (angle,), degrees)
+    turn = turns.Turn(axis, angle, degrees)
+    return turns.combined([turn]), turns.remarks_on("axisangle, by", (angle,), degrees)
 
 
 def _euler(
@@ -141,12 +141,12 @@ def _euler(
     if len(sequence) != 3 or not set(sequence.lower()) <= set(_AXES):
         reading.fault("three letters of x y z X Y Z for eulerseq", shown(sequence), inertial)
         return None
-    turns: list[rotation.Turn] = []
+    each: list[turns.Turn] = []
     for letter, angle in zip(sequence, angles, strict=True):
-        turn = rotation.Turn(_AXES[letter.lower()], angle, degrees)
-        turns.insert(len(turns) if letter.islower() else 0, turn)
+        turn = turns.Turn(_AXES[letter.lower()], angle, degrees)
+        each.insert(len(each) if letter.islower() else 0, turn)
     name = f"euler (eulerseq {sequence})"
-    return rotation.combined(turns), rotation.remarks_on(name, angles, degrees)
+    return turns.combined(each), turns.remarks_on(name, angles, degrees)
 
 
 FORMAT: Final = Format(

@@ -15,7 +15,7 @@ from typing import Final
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import cut, near, shown
-from taylor_verify.scenes.imported import rotation
+from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
@@ -61,7 +61,7 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     if mass is None or tensor is None or placed is None or (added_node and added is None):
         return None
     centre, turn, remarks = placed
-    result = Link(name, mass, centre, rotation.turned(tensor, turn), added, remarks)
+    result = Link(name, mass, centre, turns.turned(tensor, turn), added, remarks)
     if added_node and not tensors.is_positive_definite(result.mass_matrix):
         expected = "a positive definite mass matrix of link and added mass"
         mend = "an added mass is minus a naval derivative"
@@ -114,8 +114,8 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
     six = reading.vector(node, node.text, "x y z roll pitch yaw", length=6)
     if six is None:
         return None
-    turn = rotation.roll_pitch_yaw(six[3:], degrees)
-    return six[:3], turn, rotation.remarks_on("roll, pitch, yaw", six[3:], degrees)
+    turn = turns.roll_pitch_yaw(six[3:], degrees)
+    return six[:3], turn, turns.remarks_on("roll, pitch, yaw", six[3:], degrees)
 
 
 def _added_mass(node: Node, reading: Reading) -> Matrix | None:

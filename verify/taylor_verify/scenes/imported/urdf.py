@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Final
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR
-from taylor_verify.scenes.imported import rotation
+from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
@@ -40,8 +40,8 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     angles = reading.vector(origin, origin.attributes.get("rpy"), "rpy", default=ZERO_VECTOR)
     if not isinstance(mass, Fraction) or not isinstance(tensor, tuple) or not centre or not angles:
         return None
-    inertia = rotation.turned(tensor, rotation.roll_pitch_yaw(angles))
-    return Link(name, mass, centre, inertia, remarks=rotation.remarks_on("rpy", angles))
+    inertia = turns.turned(tensor, turns.roll_pitch_yaw(angles))
+    return Link(name, mass, centre, inertia, remarks=turns.remarks_on("rpy", angles))
 
 
 def _part(inertial: Node, name: str, reading: Reading) -> Node | None:

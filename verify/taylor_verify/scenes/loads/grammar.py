@@ -12,7 +12,8 @@ import warnings
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Final, NamedTuple
+from operator import ge, gt, le, lt
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.scenes.loads.steps import FUNCTIONS, NoStep, Steps
 
@@ -31,6 +32,14 @@ _OPERATIONS: Final[dict[type[ast.operator], str]] = {
 _OTHERS: Final = {"atan2": 2, "pow": 2, "clip": 3, "step": 1, "sign": 1, "floor": 1}
 _OF_SEVERAL: Final = ("min", "max", "norm")
 ALL_FUNCTIONS: Final = (*FUNCTIONS, *_OTHERS, *_OF_SEVERAL)
+_JUMPS: Final[dict[str, Callable[[Fraction], Fraction]]] = {
+    "step": lambda value: Fraction(int(value >= 0)),
+    "sign": lambda value: Fraction((value > 0) - (value < 0)),
+    "floor": lambda value: Fraction(value // 1),
+}
+_COMPARISONS: Final[dict[type[ast.cmpop], Callable[[Any, Any], bool]]] = {
+    ast.Lt: lt, ast.LtE: le, ast.Gt: gt, ast.GtE: ge,
+}  # fmt: skip
 
 
 class Fault(NamedTuple):
@@ -49,14 +58,20 @@ class Unread(Exception):
 class Grammar:
     """Reads texts into steps.
 
-    ``named`` gives the step of a name. It raises NoStep for one that is unknown. ``after`` says whether a
-    switch is past: it belongs to the later piece. ``faults`` are those of the texts read so far.
+    ``named`` gives the step of a name. It raises NoStep for one that is unknown. ``is_past`` says whether
+    slope t + value is not negative: a switch belongs to the later piece; ``on_stairs`` gives its floor.
+    With ``may_jump`` a text may jump with the state. ``faults`` are those of the texts read so far.
     """
 
     def __init__(
-        self, steps: Steps, named: Callable[[str], int], after: Callable[[Fraction], bool]
+        self,
+        steps: Steps,
+        named: Callable[[str], int],
+        is_past: Callable[[Fraction, Fraction], bool],
+        on_stairs: Callable[[Fraction, Fraction], int],
     ) -> None:
-        self.steps, self._named, self._after = steps, named, after
+        self.steps, self._named, self._is_past, self._on_stairs = steps, named, is_past, on_stairs
+        self.may_jump = False
         self.faults: list[Fault] = []
         self._source = Source.of("0", "")
         self._outer_depth = 0
@@ -196,21 +211,29 @@ class Grammar:
                 return steps.angle(*places)
             case "pow":
                 return self._raised(*places)
-            case "step":
-                return steps.number(Fraction(int(self._is_past(places[0]))))
-            case "sign":
-                value = steps.value(places[0])
-                if value is None:
-                    value = Fraction(1 if self._is_past(places[0]) else -1)
-                return steps.number(Fraction((value > 0) - (value < 0)))
-            case "floor":
-                value = steps.value(places[0])
-                if value is None:
-                    raise NoStep("a number for floor, which would jump", "an expression")
-                return steps.number(Fraction(value // 1))
+            case "step" | "sign" | "floor":
+                return self._jump(name, places[0])
         return steps.function(name, places[0])
 
-    # Switches.
+    def _jump(self, name: str, place: int) -> int:
+        """step, sign or floor: of a number, by the time alone, or else a step of its own."""
+        value, line = self.steps.value(place), self.steps.line(place)
+        if value is not None:
+            return self.steps.number(_JUMPS[name](value))
+        if line is None:
+            return self._by_state(name, (place,))
+        if name == "floor":
+            return self.steps.number(Fraction(self._on_stairs(*line)))
+        is_past = self._is_past(*line)
+        return self.steps.number(Fraction(int(is_past) if name == "step" else 2 * is_past - 1))
+
+    def _by_state(self, name: str, operands: tuple[int, ...]) -> int:
+        if self.may_jump:
+            return self.steps.jump(name, operands)
+        raise NoStep(
+            "a condition that is linear in t alone, with rational numbers, outside held values",
+            "another one: the load would jump with the state",
+        )
 
     def _choice(self, test: ast.expr, body: ast.expr, other: ast.expr, depth: int) -> int | None:
         """The branch that the piece of time asks for; both are read, so that all faults are noted."""
@@ -222,31 +245,28 @@ class Grammar:
                 a, b = self._place(left, depth + 1), self._place(right, depth + 1)
             case _:
                 return self._fault(test, "one comparison with < or >", self._shown(test))
-        if a is None or b is None or None in places:
+        if a is None or b is None:
             return None
-        is_less = isinstance(operator, ast.Lt | ast.LtE)
+        first, second = places
+        if first is None or second is None:
+            return None
+        return self._made(test, lambda: self._chosen(type(operator), (a, b), (first, second)))
 
-        def chosen() -> int:
-            is_past = self._is_past(self.steps.combined("-", a, b))
-            place = places[int(is_past) if is_less else int(not is_past)]
-            assert place is not None
-            return place
-
-        return self._made(test, chosen)
-
-    def _is_past(self, place: int) -> bool:
-        """Return True if a step that is linear in t is not negative in this piece of time."""
-        line = self.steps.line(place)
-        if line is None:
-            raise NoStep(
-                "a condition that is linear in t alone, with rational numbers",
-                "another one: the load would jump with the state",
-            )
-        slope, value = line
-        if not slope:
-            return value >= 0
-        past = self._after(-value / slope)
-        return past if slope > 0 else not past
+    def _chosen(
+        self, operator: type[ast.cmpop], sides: tuple[int, int], places: tuple[int, int]
+    ) -> int:
+        """The first place if the sides compare, else the second; by the time, equal sides do not matter."""
+        is_less, is_swapped = operator in (ast.Lt, ast.LtE), operator in (ast.LtE, ast.Gt)
+        difference = self.steps.combined("-", *sides)
+        value, line = self.steps.value(difference), self.steps.line(difference)
+        if value is not None:
+            return places[int(not _COMPARISONS[operator](value, 0))]
+        if line is not None:
+            return places[int(self._is_past(*line) is is_less)]
+        # With a - b >= 0, or b - a >= 0 where equal sides count on the other hand.
+        condition = self.steps.combined("-", *sides[::-1]) if is_swapped else difference
+        ordered = places[::-1] if operator in (ast.Lt, ast.Gt) else places
+        return self._by_state("choose", (condition, *ordered))
 
     # Faults.
 

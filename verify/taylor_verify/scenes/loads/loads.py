@@ -2,52 +2,34 @@
 
 from __future__ import annotations
 
-import keyword
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property, partial
-from itertools import chain, pairwise
+from functools import cached_property
 from typing import Final, NamedTuple
 
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS, Fault, Grammar, Unread
+from taylor_verify.scenes.loads.grammar import Fault
+from taylor_verify.scenes.loads.piece import Piece, PieceReader
 from taylor_verify.scenes.loads.rounding import finished
-from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
+from taylor_verify.scenes.loads.states import Continuous, Held, Instant, State, instants
+from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Table
+from taylor_verify.scenes.loads.vocabulary import (
+    CENTRE,
+    QUATERNION,
+    ROTATION,
+    TAKEN,
+    VECTORS,
+    Entries,
+    Entry,
+    names,
+)
 
-MOST_SWITCHES: Final = 10_000
-
-Entry = Fraction | str
-"""A number, or the text of an expression."""
-Entries = tuple[Entry, ...]
-
-ROTATION: Final = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
-QUATERNION: Final = ("q0", "q1", "q2", "q3")
-CENTRE: Final = ("c1", "c2", "c3")
-_INERTIA: Final = tuple(f"I{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
-_RATES: Final = ("w1", "w2", "w3")
-_OF_BODY: Final[Mapping[str, tuple[str, ...]]] = {
-    "euler": _RATES,
-    "kirchhoff": (*_RATES, *(f"{letter}{i}" for letter in "uxy" for i in (1, 2, 3)), *CENTRE),
-}
-# The loads of a model, in the order of its outputs.
-VECTORS: Final[Mapping[str, tuple[str, ...]]] = {
-    "euler": ("moment",),
-    "kirchhoff": ("force", "couple"),
-}
-
-
-def names(model: str) -> frozenset[str]:
-    """The names that a scene of this model may use without defining them."""
-    inertia = _INERTIA if model == "euler" else ()
-    return frozenset(("t", "pi", *_OF_BODY[model], *QUATERNION, *ROTATION, *inertia))
-
-
-# No scene may define these, so that a text has one meaning in both models. Words of Python are no names.
-TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), ALL_FUNCTIONS, keyword.kwlist))
+_NO_JUMP: Final = "a rotor that does not jump: no `step`, `sign`, `floor`, `if` or hold table"
+_OF_TIME: Final = "a rotor of t and of the scene's own states that have a rate"
 
 
 class Hung(NamedTuple):
@@ -57,25 +39,19 @@ class Hung(NamedTuple):
     at: Vector = ZERO_VECTOR
 
 
-class Piece(NamedTuple):
-    """The steps between two switches, None where there is none; ``outputs`` are those of the loads."""
-
-    begin: Fraction | None
-    end: Fraction | None
-    steps: tuple[Step, ...]
-    outputs: tuple[int, ...]
-
-
 @dataclass(frozen=True)
 class Loads:
     """Loads in body axes as a scene writes them: the moment, or force and couple.
 
     ``vectors`` are their entries by name; ``hung`` are weight and buoyancy. ``definitions``, ``space`` and
     ``tables`` are what the texts may name; ``inertia`` is the tensor of a rigid body, for I11 to I33.
-    ``current`` is the velocity of the fluid, space axes.
+    ``current`` is the velocity of the fluid, space axes. ``states`` are the scene's own, and ``rotor`` is
+    the momentum of the wheels where a text writes it, else empty.
 
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
-    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once.
+    With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
+    follow from rounded numbers. The stairs
+    of floor are known as far as the time ``reach``.
     """
 
     model: str
@@ -88,13 +64,30 @@ class Loads:
     current: Vector = ZERO_VECTOR
     origin: Fraction = Fraction(0)
     rung: Rung | None = None
+    states: tuple[State, ...] = ()
+    rotor: Entries = ()
+    reach: Fraction = Fraction(0)
+
+    @property
+    def is_written(self) -> bool:
+        """True if there is more than constant loads in body axes."""
+        entries = (*self.rotor, *(entry for _, each in self.vectors for entry in each))
+        has_text = any(isinstance(entry, str) for entry in entries)
+        return has_text or bool(self.hung or any(self.current) or self.states)
+
+    def reaching(self, elapsed: Fraction) -> Loads:
+        """Return these loads with the stairs of floor as far as a time, if they reached less far."""
+        is_known = min(self.reach, Fraction(0)) <= elapsed <= max(self.reach, Fraction(0))
+        return self if is_known or not self._scan.known else replace(self, reach=elapsed)
 
     def on_rung(self, rung: Rung) -> Loads:
         """The loads that a solver on a rung receives.
 
         Raises ValueError where two knots of a table round to the same time.
         """
-        rounded = replace(self, rung=rung)
+        rounded = replace(
+            self, rung=rung, states=tuple(state.on_rung(rung) for state in self.states)
+        )
         try:
             _ = rounded.switches
         except NoStep as fault:
@@ -102,7 +95,10 @@ class Loads:
         return rounded
 
     def piece(self, time: Fraction, is_later: bool = True) -> Piece:
-        """The piece that holds just after a time, or just before it."""
+        """The piece that holds just after a time, or just before it.
+
+        Raises ValueError beyond the stairs of floor that are known.
+        """
         switches = self.switches
         k = bisect_right(switches, time)
         if not is_later and k and switches[k - 1] == time:
@@ -114,11 +110,24 @@ class Loads:
             switches = self.switches
             begin = switches[k - 1] if k else None
             end = switches[k] if k < len(switches) else None
-            reading = _Reading(self, begin, end)
-            outputs = reading.outputs()
-            steps, outputs = finished(reading.steps.steps, outputs, self.rung)
-            self._pieces[k] = Piece(begin, end, tuple(steps), tuple(outputs))
+            self._check_reach(begin, end)
+            self._pieces[k] = self._made(PieceReader(self, begin, end), begin, end)
         return self._pieces[k]
+
+    def _check_reach(self, begin: Fraction | None, end: Fraction | None) -> None:
+        for first, last in self._scan.known:
+            if begin is None or begin < first or end is None or end > last:
+                raise ValueError(
+                    f"expected times as far as {self.origin + self.reach}, where the stairs of floor end"
+                )
+
+    def _made(self, reader: PieceReader, begin: Fraction | None, end: Fraction | None) -> Piece:
+        groups = reader.outputs(), reader.rates(), reader.values(), reader.rotor()
+        places = [place for group in groups for place in group]
+        steps, left = finished(reader.steps.steps, places, self.rung)
+        in_turn = iter(left)
+        split = (tuple(next(in_turn) for _ in group) for group in groups)
+        return Piece(begin, end, tuple(steps), *split)
 
     @cached_property
     def _pieces(self) -> dict[int, Piece]:
@@ -131,14 +140,45 @@ class Loads:
 
     @cached_property
     def inputs(self) -> frozenset[str]:
-        """The names of all inputs that the steps have in any piece."""
-        return frozenset(s.name for s in self._scan.steps.steps if s.operation == "input")
+        """The names of all inputs that the steps have in any piece, own states among them."""
+        return self._scan.reads()
 
     @cached_property
-    def _scan(self) -> _Reading:
-        reading = _Reading(self, is_scan=True)
-        reading.outputs()
-        return reading
+    def _scan(self) -> PieceReader:
+        reader = PieceReader(self, is_scan=True)
+        for read in (reader.outputs, reader.rates, reader.values, reader.rotor):
+            read()
+        return reader
+
+    # States of the scene's own.
+
+    @cached_property
+    def continuous(self) -> tuple[str, ...]:
+        """The components of all continuous states, in the scene's order; so are `Piece.rates`."""
+        return tuple(n for s in self.states if isinstance(s, Continuous) for n in s.components)
+
+    @cached_property
+    def held_values(self) -> tuple[str, ...]:
+        """The components of all held states, in the scene's order; so are `Piece.values`."""
+        return tuple(name for state in self._held_states for name in state.components)
+
+    @property
+    def _held_states(self) -> tuple[Held, ...]:
+        return tuple(state for state in self.states if isinstance(state, Held))
+
+    def starting(self, own: Mapping[str, Vector]) -> Loads:
+        """Return the same loads with other starts of the states, by their names."""
+        states = tuple(
+            state.starting(own[state.name]) if state.name in own else state for state in self.states
+        )
+        return replace(self, states=states)
+
+    def instants(self, until: Fraction) -> tuple[Instant, ...]:
+        """The elapsed times at which held states take their values, up to one, both ends included.
+
+        Raises ValueError for more than ten thousand, and where two of them are one number of the rung.
+        """
+        return instants(self._held_states, until, self.rung)
 
     @property
     def reads_attitude(self) -> bool:
@@ -151,183 +191,48 @@ class Loads:
         return not self.inputs.isdisjoint(CENTRE)
 
     def faults(self) -> Iterator[Fault]:
-        """Yield the faults of all texts, also of definitions that no load names."""
-        yield from _Reading(self, is_scan=True).faults()
+        """Yield the faults of all texts, also of definitions that nothing names."""
+        faults = list(PieceReader(self, is_scan=True).faults())
+        yield from faults
+        if not faults:
+            yield from self._faults_of_rotor()
+            yield from self._missing_starts()
+
+    def _faults_of_rotor(self) -> Iterator[Fault]:
+        for i, entry in enumerate(self.rotor):
+            reader, place = PieceReader(self, is_scan=True), f"body.rotor[{i}]"
+            reader.entries((entry,), place)
+            others = sorted(reader.reads().difference(("t", *self.continuous)))
+            if others:
+                yield Fault(place, 1, _OF_TIME, ", ".join(f"`{name}`" for name in others))
+            if reader.jumps:
+                yield Fault(place, 1, _NO_JUMP, "a jump by the time")
+
+    def _missing_starts(self) -> Iterator[Fault]:
+        """Yield held states that are read before they are first taken, and have no start."""
+        at_once = [state for state in self._held_states if not state.offset]
+        first = self._read_by(at_once)
+        for state in self._held_states:
+            if state.start is None and (state.offset or not first.isdisjoint(state.components)):
+                expected = "a start, as the state is read before it is first taken"
+                yield Fault(f"states.{state.name}", 0, expected, "nothing")
+
+    def _read_by(self, states: Sequence[Held]) -> frozenset[str]:
+        reader = PieceReader(self, is_scan=True)
+        reader.values_of(states)
+        return reader.reads()
 
 
-class _Reading:
-    """The steps of all texts for the times between ``begin`` and ``end``.
-
-    A scan notes the times of all switches; which branch it takes does not matter, as all are read.
-    """
-
-    def __init__(
-        self,
-        loads: Loads,
-        begin: Fraction | None = None,
-        end: Fraction | None = None,
-        is_scan: bool = False,
-    ) -> None:
-        self._loads = loads
-        self._is_scan = is_scan
-        self._inside = _between(begin, end)
-        self.steps = Steps()
-        self.switches: set[Fraction] = set()
-        self._grammar = Grammar(self.steps, self._named, self._is_after)
-        self._definitions, self._tables = dict(loads.definitions), dict(loads.tables)
-        self._space = {f"{n}{i + 1}": (n, i) for n, _ in loads.space for i in range(3)}
-        self._vectors = dict(loads.space)
-        self._places: dict[str, int] = {}
-        self._faulty: set[str] = set()
-        self._open: list[str] = []
-
-    def outputs(self) -> list[int]:
-        """The steps of the loads: three of a moment, or six of force and couple."""
-        entries = dict(self._loads.vectors)
-        vectors = [
-            [
-                self._entry(entry, f"body.{name}[{i}]")
-                for i, entry in enumerate(entries.get(name, ZERO_VECTOR))
-            ]
-            for name in VECTORS[self._loads.model]
-        ]
-        for hung in self._loads.hung:
-            force = [self._in_body_axes(hung.force, j, "body") for j in range(3)]
-            parts = [force, self._moment(hung.at, force)][-len(vectors) :]
-            for vector, part in zip(vectors, parts, strict=True):
-                vector[:] = [
-                    self.steps.combined("+", a, b) for a, b in zip(vector, part, strict=True)
-                ]
-        return [place for vector in vectors for place in vector]
-
-    def _entry(self, entry: Entry, place: str) -> int:
-        if isinstance(entry, str):
-            return self._grammar.read(entry, place)
-        return self.steps.number(entry)
-
-    def _in_body_axes(self, vector: Sequence[Entry], j: int, place: str) -> int:
-        """Component j of R^T v, for a vector by its components in space."""
-        return self.steps.total(
-            [
-                self.steps.combined(
-                    "*",
-                    self.steps.input(f"r{i + 1}{j + 1}"),
-                    self._entry(vector[i], f"{place}[{i}]"),
-                )
-                for i in range(3)
-            ]
-        )
-
-    def _moment(self, at: Vector, force: Sequence[int]) -> list[int]:
-        """The cross product of a point and a force."""
-        steps = self.steps
-
-        def product(i: int, j: int) -> int:
-            return steps.combined("*", steps.number(at[i]), force[j])
-
-        return [
-            steps.combined("-", product(j, k), product(k, j)) for j, k in ((1, 2), (2, 0), (0, 1))
-        ]
-
-    # Names.
-
-    def _named(self, name: str) -> int:
-        if name not in self._places:
-            if name in self._open:
-                way = " -> ".join((*self._open, name))
-                raise NoStep("a definition without itself", way)
-            if name in self._faulty:
-                raise Unread
-            self._open.append(name)
-            try:
-                self._places[name] = self._meaning(name)
-            except Unread:
-                self._faulty.add(name)
-                raise
-            finally:
-                self._open.pop()
-        return self._places[name]
-
-    def _meaning(self, name: str) -> int:
-        if name in self._definitions:
-            return self._entry(self._definitions[name], f"define.{name}")
-        if name in self._space:
-            vector, j = self._space[name]
-            return self._in_body_axes(self._vectors[vector], j, f"space.{vector}")
-        if name in self._tables:
-            return self._tabulated(self._tables[name])
-        if name == "pi":
-            return self.steps.constant("pi")
-        if name in _INERTIA and self._loads.inertia is not None:
-            return self.steps.number(self._loads.inertia[int(name[1]) - 1][int(name[2]) - 1])
-        if name == "t":
-            time, begin = self.steps.input("t"), self.steps.number(self._loads.origin)
-            return self.steps.combined("+", time, begin)
-        if name in names(self._loads.model):
-            return self.steps.input(name)
-        raise NoStep("a known name", f"`{name}`")
-
-    def _tabulated(self, table: Table) -> int:
-        """The polynomial of a table, by Horner's rule."""
-        table = self._since_start(table)
-        if self._is_scan:
-            self.switches.update(table.times)
-        knot, coefficients = table.polynomial(self._inside)
-        steps = self.steps
-        time = steps.combined("-", steps.input("t"), steps.number(knot))
-        place = steps.number(Fraction(0))
-        for coefficient in reversed(coefficients):
-            place = steps.combined("+", steps.combined("*", place, time), steps.number(coefficient))
-        return place
-
-    def _since_start(self, table: Table) -> Table:
-        loads = self._loads
-        times = [time - loads.origin for time in table.times]
-        if loads.rung is not None:
-            times = [loads.rung.round(time) for time in times]
-            if any(a >= b for a, b in pairwise(times)):
-                raise NoStep(
-                    "knots of a table that differ", f"two that {loads.rung.name} makes one"
-                )
-        return replace(table, times=tuple(times))
-
-    def _is_after(self, switch: Fraction) -> bool:
-        if self._is_scan:
-            self.switches.add(switch)
-            if len(self.switches) > MOST_SWITCHES:
-                raise NoStep(f"at most {MOST_SWITCHES} switches", "more")
-        return self._inside >= switch
-
-    # Faults.
-
-    def faults(self) -> Iterator[Fault]:
-        loads = self._loads
-        for name, entries in loads.vectors:
-            for i, entry in enumerate(entries):
-                self._look_at(f"body.{name}[{i}]", partial(self._entry, entry))
-        for name in self._definitions:
-            self._look_at(f"define.{name}", partial(self._definition, name))
-        for name, entries in loads.space:
-            for i, entry in enumerate(entries):
-                self._look_at(f"space.{name}[{i}]", partial(self._entry, entry))
-        # The components of a vector share their texts.
-        yield from dict.fromkeys(self._grammar.faults)
-
-    def _definition(self, name: str, place: str) -> int:
-        del place
-        return self._named(name)
-
-    def _look_at(self, place: str, read: Callable[[str], int]) -> None:
-        try:
-            read(place)
-        except NoStep as fault:
-            self._grammar.faults.append(Fault(place, 1, fault.expected, fault.got))
-        except Unread:
-            pass
-
-
-def _between(begin: Fraction | None, end: Fraction | None) -> Fraction:
-    """A time between two others, one of which may be missing."""
-    if begin is None or end is None:
-        return (end or Fraction(0)) - 1 if begin is None else begin + 1
-    return (begin + end) / 2
+__all__ = [
+    "CENTRE",
+    "QUATERNION",
+    "ROTATION",
+    "TAKEN",
+    "VECTORS",
+    "Entries",
+    "Entry",
+    "Hung",
+    "Loads",
+    "Piece",
+    "names",
+]

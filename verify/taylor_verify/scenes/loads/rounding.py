@@ -9,10 +9,12 @@ from typing import Any, Final
 from flint import arb, ctx, fmpq
 
 from taylor_verify.numbers.precision import Rung, power_of_two
-from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.loads.steps import NoStep, Step
 
 # A constant such as sqrt(2) is rounded to a rung from so many bits more than the rung has.
 _SPARE_BITS: Final = 64
+# A constant that so many bits do not tell from zero, or from a jump, has no value.
+_MOST_BITS: Final = 2**16
 
 
 def finished(
@@ -61,12 +63,15 @@ def _on_rung(steps: Sequence[Step], rung: Rung) -> list[Step]:
 
 
 def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
-    """The number that a step without inputs is, to so many bits."""
+    """The number that a step without inputs is, to so many bits.
+
+    Raises NoStep where it may be zero, or may lie on a jump.
+    """
     number = steps[place].number
     if steps[place].operation == "number" and number is not None:
         return number
     working = bits
-    while True:
+    while working <= _MOST_BITS:
         with ctx.workprec(working):
             ball = _ball(steps, place)
             if ball.rel_accuracy_bits() >= bits:
@@ -75,6 +80,7 @@ def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
             if ball.is_zero():
                 return Fraction(0)
         working *= 2
+    raise NoStep("constants that are told from zero and from jumps", "one that may be either")
 
 
 def _ball(steps: Sequence[Step], place: int) -> arb:
@@ -90,6 +96,13 @@ def _ball(steps: Sequence[Step], place: int) -> arb:
     return value
 
 
+def _choice(condition: arb, first: arb, second: arb) -> arb:
+    """The first if the condition is not negative; both, where that is not decided."""
+    if condition >= 0 or condition < 0:
+        return first if condition >= 0 else second
+    return first.union(second)
+
+
 _FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
     "pi": arb.pi,
     "+": lambda a, b: a + b,
@@ -101,6 +114,10 @@ _FUNCTIONS: Final[Mapping[str, Callable[..., Any]]] = {
     "norm": lambda *parts: sum((part * part for part in parts), arb(0)).sqrt(),
     "atan2": lambda y, x: arb.atan2(y, x),
     "abs": abs,
+    "sign": arb.sgn,
+    "floor": arb.floor,
+    "step": lambda a: _choice(a, arb(1), arb(0)),
+    "choose": lambda a, b, c: _choice(a, b, c),
     **{
         name: getattr(arb, name)
         for name in (

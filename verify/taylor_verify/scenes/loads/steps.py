@@ -179,6 +179,10 @@ class Steps:
                 return self.number(root)
         return self._place(Step(name, (a,)))
 
+    def jump(self, name: str, operands: tuple[int, ...]) -> int:
+        """The place of "step", "sign" or "floor" of one step, or of "choose" among two by a third."""
+        return self._place(Step(name, operands))
+
     def angle(self, y: int, x: int) -> int:
         """The place of atan2(y, x)."""
         if self.value(y) == 0 and self.value(x) == 0:

@@ -15,31 +15,34 @@ from typing import Final
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text
-from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
-from taylor_verify.scenes.reading.loads import entry, hanging, texts
+from taylor_verify.scenes.loads.loads import Entries, Loads
 from taylor_verify.scenes.reading.table import Table, complete
 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
-def rigid_body(table: Table) -> RigidBody | Gyrostat | None:
-    """Return the body of model euler, a gyrostat if wheels turn; None after a fault."""
+def rigid_body(table: Table, loads: Loads | None) -> RigidBody | Gyrostat | None:
+    """Return the body of model euler, a gyrostat if wheels turn by a number; None after a fault."""
     inertia = _inertia(table)
-    moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
-    hung = hanging(table)
-    rotor = table.vector("rotor", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
-    if inertia is None or moment is None or rotor is None or damping is None or hung is None:
+    if inertia is None or loads is None or damping is None:
         return None
-    loads = texts(RigidBody.MODEL, {"moment": moment}, hung)
-    if loads is not None:
-        moment, loads = ZERO_VECTOR, replace(loads, inertia=inertia)
-    if any(rotor):
-        return Gyrostat(inertia, rotor, moment, damping=damping, loads=loads)
-    return RigidBody(inertia, moment, damping=damping, loads=loads)
+    moment, rotor = dict(loads.vectors)["moment"], loads.rotor
+    turns_by_text = any(isinstance(entry, str) for entry in rotor)
+    loads = replace(loads, inertia=inertia, rotor=rotor if turns_by_text else ())
+    constant = _numbers(ZERO_VECTOR if loads.is_written else moment)
+    acting = loads if loads.is_written else None
+    if any(rotor) and not turns_by_text:
+        return Gyrostat(inertia, _numbers(rotor), constant, damping=damping, loads=acting)
+    return RigidBody(inertia, constant, damping=damping, loads=acting)
+
+
+def _numbers(entries: Entries) -> Vector:
+    return tuple(Fraction(entry) for entry in entries)
 
 
 def _inertia(table: Table) -> Matrix | None:
@@ -86,23 +89,17 @@ def _is_positive(
     return True
 
 
-def immersed_body(table: Table) -> ImmersedBody | None:
+def immersed_body(table: Table, loads: Loads | None) -> ImmersedBody | None:
     """Return the body of model kirchhoff; None after a fault."""
-    force = table.vector("force", default=ZERO_VECTOR, number=entry)
-    couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
-    hung = hanging(table)
-    current = table.vector("current", default=ZERO_VECTOR)
     damping = table.number(DAMPING.name, default=Fraction(0))
     form = _form(table)
     body = form(table) if form else None
-    if body is None or force is None or couple is None or current is None:
+    if body is None or loads is None or damping is None:
         return None
-    if damping is None or hung is None:
-        return None
-    loads = texts(ImmersedBody.MODEL, {"force": force, "couple": couple}, hung, current)
-    if loads is not None:
-        force = couple = ZERO_VECTOR
-    return replace(body, force=force, couple=couple, damping=damping, loads=loads)
+    if loads.is_written:
+        return replace(body, damping=damping, loads=loads)
+    constant = {name: _numbers(entries) for name, entries in loads.vectors}
+    return replace(body.with_parts(constant), damping=damping)
 
 
 def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:

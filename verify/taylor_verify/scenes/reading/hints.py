@@ -15,6 +15,8 @@ gravity fluid environment drag forces current: loads stand in [body]: `weight`, 
   `moment`, or `force` and `couple`, whose entries may be text such as "-0.1*abs(w1)*w1"
 constants parameters variables definitions: write [define], names for numbers and expressions
 loads: write them in [body]: `moment`, or `force` and `couple`
+state own_states controller controllers: write [states], such as `h = { start = 0, rate = "-h/5" }`, or
+  `m = { every = "1/10", value = "-w1" }` for a value that is held
 tolerance tol rtol atol: a scene holds no tolerance: the bound follows from precision, steps and
   conditioning
 units unit: leave it out: units are any consistent set, and angles are in radians
@@ -44,7 +46,8 @@ force: a force does not turn a body; write its moment, in body axes, as `moment`
 current: a fluid is `model = "kirchhoff"`, there as `current`
 mass_matrix added_mass fluid_added_mass fluid_density: a body in a fluid is `model = "kirchhoff"`, there
   as `mass_matrix`
-wheels reaction_wheels: write `rotor`, the momentum of all wheels
+wheels reaction_wheels: write `rotor`, the momentum of all wheels: numbers, or text in t and the scene's own
+  states, such as "h1" with `h = { start = [0, 0, 0], rate = [..] }` in [states]
 angular_damping linear_damping damping_coefficient: write `damping`, the rate at which the momentum decays
 drag friction viscosity: write it in `moment`, as in "-0.1*w1" or "-0.1*abs(w1)*w1"
 omega angular_velocity attitude quaternion: it stands in [initial]
@@ -70,8 +73,11 @@ thrust forces wrench propeller thrusters: write `force` and `couple`, in body ax
 linear_velocity angular_velocity linear_impulse angular_impulse attitude: it stands in [initial]
 """
 _INITIAL: Final = """\
-quaternion orientation q quat pose rotation rpy euler euler_angles roll pitch yaw attitude_deg: write
-  `attitude = [q0, q1, q2, q3]`, a quaternion, scalar first, body to space
+quaternion orientation q quat pose: write `attitude = [q0, q1, q2, q3]`, scalar first, body to space
+rpy euler_angles roll pitch yaw ypr attitude_deg: write `euler = { sequence = "zyx", degrees = [yaw, pitch,
+  roll] }`: turns about axes that move along
+rotation rotvec rotation_matrix: write `rotation_vector`, the axis times the angle in radians, or `attitude`
+rodrigues: write `mrp`, the axis times the tangent of a quarter of the angle
 t t0 time: the time of the initial state is `start` in [time]
 """
 _EULER_INITIAL: Final = (
@@ -97,6 +103,19 @@ impulse momentum momenta linear_momentum angular_momentum: write `linear_impulse
 )
 
 
+_HELD: Final = """\
+period dt sample_time ts sampling: write `every`, the time from one instant to the next
+rate: a state has a `rate`, or a `value` that is taken `every` so often
+frequency hz: write `every`, one over the frequency
+delay latency: write `offset`, or hold the value once more: another state with the same `every` and `offset`
+"""
+_CONTINUOUS: Final = """\
+initial x0: write `start`
+derivative dot equation: write `rate`
+offset period dt sample_time: a state that is taken at instants has `every` and `value`
+"""
+
+
 def _by_key(text: str) -> Mapping[str, str]:
     rows = (line.split(": ", 1) for line in text.replace("\n  ", " ").splitlines())
     return {key: sentence for keys, sentence in rows for key in keys.split()}
@@ -110,6 +129,8 @@ _HINTS: Final[Mapping[tuple[str, str], Mapping[str, str]]] = {
     ("kirchhoff", "body"): _by_key(_KIRCHHOFF_BODY),
     ("euler", "initial"): _by_key(_EULER_INITIAL),
     ("kirchhoff", "initial"): _by_key(_KIRCHHOFF_INITIAL),
+    ("", "held"): _by_key(_HELD),
+    ("", "continuous"): _by_key(_CONTINUOUS),
 }
 
 

@@ -1,8 +1,8 @@
 """The ``[initial]`` table of a scene becomes a state.
 
 Legend: ``linear_impulse`` x and ``angular_impulse`` y, or ``linear_velocity`` U of the origin and
-``angular_velocity`` Omega in their place; ``attitude`` is the quaternion of R, v_space = R v_body;
-``centre`` is the body's origin in space.
+``angular_velocity`` Omega in their place; ``attitude`` is the quaternion of R, v_space = R v_body,
+or one of its other forms; ``centre`` is the body's origin in space.
 
 A degree is pi/180 of a radian, which is irrational. Each rate is an exact multiple of pi: zero stays zero,
 and 2 deg/s is minus twice -1 deg/s exactly. scenes.stand_in says what a scene holds in its place.
@@ -17,10 +17,10 @@ from typing import Final
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import PI
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
-from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import Body, ImmersedBody
-from taylor_verify.scenes.motion import IDENTITY, State
+from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Shape, Value
+from taylor_verify.scenes.reading.attitude import attitude
 from taylor_verify.scenes.reading.table import Table, exact_number, quantity
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in, written
 
@@ -47,7 +47,7 @@ def state(
 def place(table: Table, kind: type[State]) -> Mapping[str, Value] | None:
     """Return the parts of a state that do not move by equations of their own; None after a fault."""
     values = {
-        part.name: _attitude(table)
+        part.name: attitude(table)
         if part.shape is Shape.QUATERNION
         else table.vector(part.name, default=ZERO_VECTOR)
         for part in kind.PARTS
@@ -92,15 +92,6 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
     )
     mass_matrix = tensors.inverse(written(body.energy_matrix))
     return tuple(map(stand_in, tensors.apply(mass_matrix, written(velocity + spin))))
-
-
-def _attitude(table: Table) -> Vector | None:
-    """Return a quaternion of any norm but zero, scalar first."""
-    entries = table.vector("attitude", default=IDENTITY, length=4)
-    if entries is not None and not any(entries):
-        table.fault("a quaternion that is not zero", shown(list(entries)), "attitude")
-        return None
-    return entries
 
 
 # Angular velocities: bare numbers, or text with a unit such as "2 deg/s".

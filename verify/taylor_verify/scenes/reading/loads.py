@@ -7,10 +7,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import chain, pairwise
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,14 +18,16 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.faults import Faults, shown
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import TAKEN, Entries, Entry, Hung, Loads
+from taylor_verify.scenes.loads.states import MOST_INSTANTS, State
 from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.measured import columns
 from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral, quantity
 
 HANGING: Final = ("weight", "buoyancy")
-_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _WORD: Final = re.compile(r"[^\W\d_]+|[%°]")
 _UNITS: Final = frozenset(
     ("deg", "rad", "rpm", "rev", "s", "ms", "min", "h", "m", "mm", "cm", "km", "g", "kg", "N", "mN", "kN",
@@ -65,10 +67,10 @@ def _hung(table: Table, name: str) -> Hung | None:
 
 
 class Vocabulary:
-    """Words that the texts of a scene may use: its tables [define], [space] and [tables]."""
+    """Words that the texts of a scene may use: [define], [space], [tables], and its states."""
 
-    def __init__(self, top: Table, folder: Path | None) -> None:
-        self._folder = folder
+    def __init__(self, top: Table, folder: Path | None, states: Sequence[State]) -> None:
+        self._folder, self._states = folder, states
         self.is_complete = True
         self.definitions = self._named(top, "define", self._definition)
         self.space = self._named(top, "space", self._direction)
@@ -83,7 +85,7 @@ class Vocabulary:
             return ()
         pairs = [(name, read(table, name)) for name in table.left()]
         for name, _ in pairs:
-            if not _NAME.fullmatch(name):
+            if not NAME.fullmatch(name):
                 table.fault("a name of letters, digits and _", f"`{name[:40]}`", name[:40])
         known = tuple((name, value) for name, value in pairs if value is not None)
         self.is_complete &= len(known) == len(pairs)
@@ -104,6 +106,8 @@ class Vocabulary:
             yield f"tables.{name}", name
         for name, _ in self.space:
             yield from ((f"space.{name}", f"{name}{i}") for i in (1, 2, 3))
+        for state in self._states:
+            yield from ((f"states.{state.name}", name) for name in state.components)
 
     @staticmethod
     def _definition(table: Table, name: str) -> Entry | None:
@@ -160,42 +164,67 @@ def _rises(table: Table, times: Vector) -> bool:
     return True
 
 
-def loaded(
-    body: Body | None, top: Table, folder: Path | None, start: Fraction | None
-) -> Body | None:
-    """Return the body under its texts, with what these name, from this start; None after a fault."""
-    words = Vocabulary(top, folder)
-    if body is None:
+def rigid_loads(table: Table) -> Loads | None:
+    """Return what acts on a rigid body, numbers and texts alike; None after a fault."""
+    moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
+    rotor = table.vector("rotor", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
+    if moment is None or rotor is None or hung is None:
         return None
-    # What no load names is read all the same.
+    return Loads("euler", (("moment", moment),), hung, rotor=rotor)
+
+
+def immersed_loads(table: Table) -> Loads | None:
+    """Return what acts on a solid in a fluid, numbers and texts alike; None after a fault."""
+    force = table.vector("force", default=ZERO_VECTOR, number=entry)
+    couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
+    hung = hanging(table)
+    current = table.vector("current", default=ZERO_VECTOR)
+    if force is None or couple is None or hung is None or current is None:
+        return None
+    return Loads("kirchhoff", (("force", force), ("couple", couple)), hung, current=current)
+
+
+def loaded(
+    body: Body | None, loads: Loads, top: Table, folder: Path | None, time: Clock | None
+) -> Body | None:
+    """Return the body under its texts, with what these name; None after a fault.
+
+    ``loads`` are those of a body that has faults: its texts, and what no load names, are read all the same.
+    """
+    words = Vocabulary(top, folder, loads.states)
     loads = replace(
-        body.loads or Loads(body.MODEL, ()),
+        (body.loads if body is not None else None) or loads,
         definitions=words.definitions,
         space=words.space,
         tables=words.tables,
-        origin=start or Fraction(0),
+        origin=Fraction(0) if time is None else time.start,
+        reach=Fraction(0) if time is None else time.elapsed[-1],
     )
     if words.is_complete:
         for place, column, expected, got in loads.faults():
-            top.faults.add(expected, got, f"{place}, column {column}")
-    if top.faults.lines or body.loads is None:
+            where = f"{place}, column {column}" if column else place
+            top.faults.add(expected, got, where)
+    if top.faults.lines or body is None or body.loads is None:
         return body
+    return body.with_loads(loads) if _fits(loads, top, time) else None
+
+
+def _fits(loads: Loads, top: Table, time: Clock | None) -> bool:
+    """Return True if switches and instants of the loads can be listed; else the reason is a fault."""
     try:
         _ = loads.switches
     except NoStep as fault:
         top.fault(fault.expected, fault.got, "body")
-        return None
-    return body.with_loads(loads)
-
-
-def texts(
-    model: str,
-    vectors: Mapping[str, Entries],
-    hung: tuple[Hung, ...],
-    current: Vector = ZERO_VECTOR,
-) -> Loads | None:
-    """Return the loads of these vectors; None if all are numbers, nothing hangs and the fluid rests."""
-    entries = chain.from_iterable(vectors.values())
-    if hung or any(current) or any(isinstance(each, str) for each in entries):
-        return Loads(model, tuple(vectors.items()), hung, current=current)
-    return None
+        return False
+    if time is None or not loads.held_values:
+        return True
+    if time.elapsed[-1] < 0:
+        top.fault("an end after the start, as held states run forward", "one before it", "time")
+        return False
+    try:
+        loads.instants(time.elapsed[-1])
+    except ValueError:
+        top.fault(f"at most {MOST_INSTANTS} instants of held states", "more", "states")
+        return False
+    return True

@@ -10,6 +10,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 from functools import partial
 from pathlib import Path
@@ -21,15 +22,18 @@ from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import escaped
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
-from taylor_verify.scenes.reading.loads import loaded
+from taylor_verify.scenes.reading.loads import immersed_loads, loaded, rigid_loads
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.regular_file import read_bytes
+from taylor_verify.scenes.reading.states import own_states
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify.scenes.scene import Scene
 
@@ -53,7 +57,8 @@ class Model(NamedTuple):
     """
 
     kind: type[Body]
-    body: Callable[[Table], Body | None]
+    loads: Callable[[Table], Loads | None]
+    body: Callable[[Table, Loads | None], Body | None]
     moving: Callable[[Table, Body | None], Vector | None]
     velocities: tuple[str, ...] = ()
 
@@ -65,8 +70,8 @@ class Model(NamedTuple):
 MODELS: Final = {
     model.name: model
     for model in (
-        Model(RigidBody, rigid_body, turning),
-        Model(ImmersedBody, immersed_body, impulses, VELOCITIES),
+        Model(RigidBody, rigid_loads, rigid_body, turning),
+        Model(ImmersedBody, immersed_loads, immersed_body, impulses, VELOCITIES),
     )
 }
 
@@ -101,10 +106,11 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     top = Table(parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
     model = _model(top)
-    track = _track(top, model)
-    body, initial = _posed(top, model) if model else _unread(top)
+    own, states = own_states(top)
+    track = _track(top, model, own)
+    body, loads, initial = _posed(top, model, states or ()) if model else _unread(top)
     time = _part(top, "time", clock)
-    body = loaded(body, top, folder, None if time is None else time.start)
+    body = loaded(body, loads, top, folder, time)
     top.close(hints(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
@@ -114,7 +120,8 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
         name=escaped(name),
         title=title,
         model=model.name,
-        track=track,
+        track=track - own,
+        states=track & own,
         body=body,
         initial=initial,
         clock=time,
@@ -160,26 +167,40 @@ def _part(
     return part
 
 
-def _unread(top: Table) -> tuple[None, None]:
+def _unread(top: Table) -> tuple[None, Loads, None]:
     """Take the tables whose contents are not known without a model."""
     needed = {"body"} if top.has("manufactured") else {"body", "initial"}
     for key in ("body", "manufactured", "initial"):
         if key in needed or top.has(key):
             top.table(key)
-    return None, None
+    return None, Loads("euler", ()), None
 
 
-def _posed(top: Table, model: Model) -> tuple[Body | None, State | None]:
-    """Return the body and its initial state; None after a fault."""
-    body = _part(top, "body", model.body, model)
+def _posed(
+    top: Table, model: Model, states: tuple[Own, ...]
+) -> tuple[Body | None, Loads, State | None]:
+    """Return the body and its initial state, None after a fault, and what acts on the body."""
+    body, loads = _loaded_body(top, model, states)
     if top.has("manufactured"):
-        return _manufactured(top, model, body)
+        body, initial = _manufactured(top, model, body)
+        return body, loads, initial
 
-    def initial(table: Table) -> State | None:
+    def start(table: Table) -> State | None:
         moving = model.moving(table, body)
         return state(model.kind.STATE, moving, place(table, model.kind.STATE))
 
-    return body, _part(top, "initial", initial, model)
+    return body, loads, _part(top, "initial", start, model)
+
+
+def _loaded_body(top: Table, model: Model, states: tuple[Own, ...]) -> tuple[Body | None, Loads]:
+    """Return the body, None after a fault, and what acts on it, as far as it was read."""
+    table = top.table("body")
+    loads = None if table is None else model.loads(table)
+    loads = None if loads is None else replace(loads, states=states)
+    body = None if table is None else model.body(table, loads)
+    if table is not None:
+        table.close(hints("body", model.name))
+    return body, loads or Loads(model.name, (), states=states)
 
 
 def _model(top: Table) -> Model | None:
@@ -192,14 +213,14 @@ def _model(top: Table) -> Model | None:
     return None
 
 
-def _track(top: Table, model: Model | None) -> frozenset[str] | None:
-    """Return what the scene requires besides omega or impulse, and what that needs."""
+def _track(top: Table, model: Model | None, own: frozenset[str]) -> frozenset[str] | None:
+    """Return what the scene requires besides omega or impulse, and what that needs; ``own`` are states."""
     models = [model.name] if model else list(MODELS)
     known = frozenset(name for each in models for name in (MAIN[each], *TRACKED[each]))
-    words = top.words("track", known)
+    words = top.words("track", known | own)
     if words is None or model is None:
         return None
-    return with_needs(words) & frozenset(TRACKED[model.name])
+    return with_needs(words) & (own | frozenset(TRACKED[model.name]))
 
 
 def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | None, State | None]:
@@ -220,6 +241,9 @@ def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | N
         if any(load):
             expected = "no load beside a manufactured motion, which determines its own"
             top.fault(expected, shown(list(load)), f"body.{name}", f"remove `{name}`")
+    if body is not None and body.loads is not None:
+        expected = "no texts, hanging forces or states beside a manufactured motion"
+        top.fault(expected, "some", "body")
     if body is not None and body.damping:
         expected, mend = "no damping beside a manufactured motion", f"remove `{DAMPING.name}`"
         top.fault(expected, shown(body.damping), f"body.{DAMPING.name}", mend)

@@ -200,6 +200,10 @@ class Table:
         value = self._left.get(key)
         return value if isinstance(value, list) else []
 
+    def is_array(self, key: str) -> bool:
+        """Return True if the scene writes the key with an array, without taking it."""
+        return isinstance(self._left.get(key), list)
+
     def _table(self, value: object, key: str) -> Table | None:
         if isinstance(value, dict):
             return Table(value, self.path(key), self.faults)

@@ -147,7 +147,8 @@ class Outside(Solver):
         return answer if isinstance(answer, Lack) else ""
 
     def unsuited(self, problem: Problem) -> str:
-        if reason := super().unsuited(problem):
+        takes_written = self.engine.script.about.loads == "written"
+        if not takes_written and (reason := super().unsuited(problem)):
             return reason
         models = self.engine.script.about.models
         if problem.given.model not in models:

@@ -39,7 +39,7 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     alike: tuple[str, ...] = ()
     rungs: tuple[str, ...] = ("f64",)
     models: tuple[str, ...] = ("euler", "kirchhoff")
-    loads: bool = True
+    loads: bool | Literal["written"] = True
     data: Literal["inverse", "tensor"] = "inverse"
     serves: bool = False
     methods: Mapping[str, str] = {}

@@ -11,7 +11,7 @@ from __future__ import annotations
 import operator
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
@@ -22,8 +22,9 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.columns.selection import select
+from taylor_verify.solvers.files.columns.selection import Taken, select
 from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.rows import Rows, check_numbers, written_digits
@@ -60,7 +61,8 @@ class TrajectoryFile:
     ``groups`` maps the names of COLUMNS to rows of values, which are formed when they are looked at.
     ``digits`` is the largest number of significant decimals that any value is written with, None where
     one is binary or a fraction. ``notes`` say how the format was read, which columns were taken for
-    which, and which were ignored. ``step`` is the integrator's step, where the file states it.
+    which, and which were ignored. ``step`` is the integrator's step, where the file states it. ``columns``
+    are the names of the columns of each group, states of the scene's own among them.
     """
 
     name: str
@@ -69,6 +71,7 @@ class TrajectoryFile:
     digits: int | None = None
     notes: tuple[str, ...] = ()
     step: FileStep | None = None
+    columns: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: COLUMNS)
 
     @cached_property
     def is_single_precision(self) -> bool:
@@ -91,29 +94,45 @@ class TrajectoryFile:
         return replace(self, times=tuple(self.times[k] for k in places), groups=groups)
 
 
-def read(file: str | os.PathLike[str], columns: Request = ()) -> TrajectoryFile:
+def read(
+    file: str | os.PathLike[str], columns: Request = (), scene: Scene | None = None
+) -> TrajectoryFile:
     """Return the trajectory in a file of any format of formats/reading.py, or in FILE#PART.
 
     Columns: ``t``; ``w1 w2 w3``, ``u1 u2 u3`` and ``x1 x2 x3 y1 y2 y3`` in body axes; ``q0 q1 q2 q3``
-    (scalar first) or ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes. Usual other names are
-    taken, and ``columns`` names what has any other name, by pairs of our name and the file's. Raises
-    Refused with every fault of it.
+    (scalar first) or ``r11 ... r33``, body to space; ``c1 c2 c3`` in space axes; and the states of the
+    scene's own by their names. Usual other names are taken, and ``columns`` names what has any other name,
+    by pairs of our name and the file's. Raises Refused with every fault of it.
     """
     table = read_table(file)
-    trajectory = from_columns(table.columns, str(file), columns, table.notes)
+    trajectory = from_columns(table.columns, str(file), columns, table.notes, own_columns(scene))
     return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 
 
+def own_columns(scene: Scene | None) -> Mapping[str, tuple[str, ...]]:
+    """Return the columns of each state of the scene's own, tracked or not."""
+    loads = None if scene is None else scene.body.loads
+    return {} if loads is None else {state.name: state.components for state in loads.states}
+
+
 def from_columns(
-    columns: Iterable[Column], place: str, wanted: Request = (), notes: Sequence[str] = ()
+    columns: Iterable[Column],
+    place: str,
+    wanted: Request = (),
+    notes: Sequence[str] = (),
+    own: Mapping[str, tuple[str, ...]] | None = None,
 ) -> TrajectoryFile:
     """Return the trajectory in columns as they are written; ``place`` names their file in messages.
 
-    ``notes`` are sentences about the columns that their reader has. Raises Refused with every fault.
+    ``notes`` are sentences about the columns that their reader has, and ``own`` the columns of states of
+    the scene's own. Raises Refused with every fault.
     """
-    faults = Faults()
-    selection = select(_named_once(columns, place, faults), wanted, place, faults)
-    taken = {column.name: column for column in selection.columns}
+    faults, own = Faults(), own or {}
+    by_name = _named_once(columns, place, faults)
+    apart, left, asked = _apart(by_name, wanted, own, place, faults)
+    selection = select(left, asked, place, faults)
+    own = _whole(apart, own, place, faults)
+    taken = {column.name: column for column in (*selection.columns, *apart)}
     read = {
         name: column.column._replace(values=_packed(column.column.values))
         for name, column in taken.items()
@@ -130,13 +149,49 @@ def from_columns(
             np.logical_and.reduce([finite[name] for name in names]),
             [taken[name].factor for name in names],
         )
-        for group, names in COLUMNS.items()
+        for group, names in {**COLUMNS, **own}.items()
         if names[0] in read
     }
     if clock and (factor := taken["t"].factor) != 1:
         times = tuple(t * factor for t in times)
     digits = written_digits(read.values())
-    return TrajectoryFile(place, times, groups, digits, (*notes, *selection.notes))
+    said = (*notes, *selection.notes)
+    return TrajectoryFile(place, times, groups, digits, said, columns={**COLUMNS, **own})
+
+
+def _apart(
+    columns: list[Column],
+    wanted: Request,
+    own: Mapping[str, tuple[str, ...]],
+    place: str,
+    faults: Faults,
+) -> tuple[list[Taken], list[Column], Request]:
+    """Return the columns of states of the scene's own, the others, and what is asked of those."""
+    names = {name for group in own.values() for name in group}
+    ours_of = {column.name: column.name for column in columns}
+    numbered = {str(k): column.name for k, column in enumerate(columns, start=1)}
+    for ours, theirs in wanted:
+        if ours not in names:
+            continue
+        if (written := theirs if theirs in ours_of else numbered.get(theirs)) is None:
+            faults.add(f"a column of the file for {ours}", f"`{cut(theirs)}`", place)
+        else:
+            ours_of[written] = ours
+    apart = [Taken(ours_of[c.name], c) for c in columns if ours_of[c.name] in names]
+    left = [column for column in columns if ours_of[column.name] not in names]
+    return apart, left, tuple(pair for pair in wanted if pair[0] not in names)
+
+
+def _whole(
+    taken: Sequence[Taken], own: Mapping[str, tuple[str, ...]], place: str, faults: Faults
+) -> dict[str, tuple[str, ...]]:
+    """Return the states of the scene's own that are there; a part of one is a fault."""
+    has = {column.name for column in taken}
+    there = {group: names for group, names in own.items() if not has.isdisjoint(names)}
+    for names in there.values():
+        if missing := [name for name in names if name not in has]:
+            faults.add(f"the columns {' '.join(names)}", f"no {' '.join(missing)}", place)
+    return there
 
 
 def _packed(values: Sequence[Any]) -> Any:

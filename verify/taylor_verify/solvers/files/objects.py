@@ -16,7 +16,7 @@ from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
+from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, own_columns
 from taylor_verify.solvers.files.formats.column import Column, check_size
 
 _ACCEPTED: Final = (
@@ -50,7 +50,7 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
         For an object of another kind.
     """
     place = f"the {type(answer).__name__}"
-    gathered = _Gathered(place)
+    gathered = _Gathered(place, own_columns(scene))
     if hasattr(answer, "data_vars") and hasattr(answer, "dims"):
         gathered.take_data_set(answer)
     elif hasattr(answer, "columns") and hasattr(answer, "__getitem__"):
@@ -72,14 +72,18 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
         raise Refused(gathered.faults.lines)
     taken = gathered.columns
     check_size(len(taken), max((len(c.values) for c in taken), default=0), place)
-    return from_columns(taken, place, columns, gathered.notes)
+    return from_columns(taken, place, columns, gathered.notes, own_columns(scene))
 
 
 class _Gathered:
-    """The columns so far, notes about them, and faults of other columns."""
+    """The columns so far, notes about them, and faults of other columns.
 
-    def __init__(self, place: str) -> None:
+    ``own`` are the columns of states of the scene's own.
+    """
+
+    def __init__(self, place: str, own: Mapping[str, tuple[str, ...]]) -> None:
         self.place, self.faults = place, Faults()
+        self._groups = {**COLUMNS, **own}
         self.columns: list[Column] = []
         self.notes: list[str] = []
 
@@ -94,8 +98,9 @@ class _Gathered:
         """Return the columns of the first groups of a state, so many together; none is a fault."""
         names: list[str] = []
         sizes: list[str] = []
-        for group in state_groups(scene.model, TRACKED[scene.model]):
-            names += COLUMNS[group]
+        of_body = state_groups(scene.model, TRACKED[scene.model])
+        for group in (*of_body, *(name for name in self._groups if name in scene.states)):
+            names += self._groups[group]
             sizes.append(str(len(names)))
             if len(names) == count:
                 taken = " ".join(names)
@@ -154,7 +159,7 @@ class _Gathered:
             return
         array = _array(values)
         if array is None:
-            if name in COLUMNS:
+            if name in self._groups:
                 self._refuse("an array", "rows of different lengths", name)
             self.columns.append(Column(name, list(values)))
         elif array.ndim == 1:
@@ -172,10 +177,10 @@ class _Gathered:
 
     def _group(self, name: str, array: Any) -> str:
         """Return the group that an array is by its name, ours to the letter, and its shape; or empty."""
-        if name not in COLUMNS:
+        if name not in self._groups:
             return ""
         group = "quaternion" if name == "attitude" and array.shape[1:] == (4,) else name
-        shapes = ((3, 3), (9,)) if group == "attitude" else ((len(COLUMNS[group]),),)
+        shapes = ((3, 3), (9,)) if group == "attitude" else ((len(self._groups[group]),),)
         if array.shape[1:] in shapes:
             return group
         expected = " or ".join(str(("n", *shape)).replace("'", "") for shape in shapes)
@@ -183,7 +188,7 @@ class _Gathered:
         return ""
 
     def _own(self, group: str, rows: Any, subject: str, unit: str = "") -> None:
-        names = COLUMNS[group]
+        names = self._groups[group]
         order = ", scalar first" if group == "quaternion" else ""
         self.notes.append(f"{subject} taken as {' '.join(names)}{order}")
         for name, values in zip(names, rows.T, strict=True):

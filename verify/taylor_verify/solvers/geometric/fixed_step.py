@@ -24,7 +24,16 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.solvers.geometric.vectors import Matrix, Quaternion, Vector, conjugate, product
+from taylor_verify.solvers.geometric.kicks import Kicks, Unreached
+from taylor_verify.solvers.geometric.vectors import (
+    Matrix,
+    Quaternion,
+    Vector,
+    conjugate,
+    into,
+    product,
+)
+from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, float64_alone, made_without
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 
@@ -113,9 +122,13 @@ class FixedStep(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem) or self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
-        # Counts use the scene's exact times: rounded ones may be slightly longer than a multiple of the
-        # step.
-        counts = [ceil(abs(t) / self.step) for t in _spans(problem.scene.clock.elapsed)]
+        return piece_by_piece(problem, self._solve)
+
+    def _solve(self, problem: Problem) -> Trajectory:
+        spans, unit = _spans(problem.begin, problem.times), problem.units.time / self.step
+        # Times that were rounded may be slightly longer than a multiple of the step.
+        little = 2 * problem.rung.unit_roundoff * max(map(abs, problem.times))
+        counts = [ceil((abs(span) - little) * unit) for span in spans]
         if not sum(counts) <= _MOST_STEPS:
             detail = f"{float(sum(counts)):.3g} steps, more than {float(_MOST_STEPS):.3g}"
             return Trajectory(Outcome.STEP_LIMIT, detail=detail)
@@ -123,7 +136,7 @@ class FixedStep(Solver):
         began = perf_counter()
         try:
             rows = run.rows(problem, counts)
-        except Unsolved as error:
+        except (Unsolved, Unreached) as error:
             return run.ended(Outcome.INTERRUPTED, began, str(error))
         except (ArithmeticError, ValueError):
             # Python's floats raise where those of NumPy are no number: sin(inf), 1/0.
@@ -158,13 +171,40 @@ class _Run:
         axes = None
         if self.solver.in_principal_axes and not body.is_diagonal:
             body, axes = principal(body)
-            H, q = _into(axes, H), q and product(q, axes)
+            H, q = into(axes, H), q and product(q, axes)
         rows = []
-        for span, count in zip(_spans(problem.times), counts, strict=True):
+        kicks = None if problem.given.body.loads is None else Kicks(problem, body.K, axes)
+        begin = float(problem.begin)
+        spans = _spans(problem.begin, problem.times)
+        for span, count, end in zip(spans, counts, problem.times, strict=True):
             if count:
-                H, q = self._to_sample(body, H, q, float(span / count), count)
+                h = float(span / count)
+                if kicks is None:
+                    H, q = self._to_sample(body, H, q, h, count)
+                else:
+                    H, q = self._kicked(kicks, body, H, q, begin, h, count)
+            begin = float(end)
             rows.append([*H, *(q or ())] if axes is None else _out_of(axes, H, q))
         return rows
+
+    def _kicked(
+        self,
+        kicks: Kicks,
+        body: Body,
+        H: Vector,
+        q: Quaternion | None,
+        t: float,
+        h: float,
+        count: int,
+    ) -> tuple[Vector, Quaternion | None]:
+        """Return momentum and attitude after so many steps between kicks, from t on."""
+        for k in range(count):
+            H = kicks.before(t + k * h, H, q, h)
+            H, q = self._to_sample(body, H, q, h, 1)
+            H = kicks.after(t + (k + 1) * h, H, q, h)
+        self.evaluations += kicks.evaluations
+        kicks.evaluations = 0
+        return H, q
 
     def _to_sample(
         self, body: Body, H: Vector, q: Quaternion | None, h: float, count: int
@@ -179,9 +219,9 @@ class _Run:
         return H, q
 
 
-def _spans(times: Sequence[Fraction]) -> list[Fraction]:
+def _spans(begin: Fraction, times: Sequence[Fraction]) -> list[Fraction]:
     """Return the times from the start, which is not always a sample, and from sample to sample."""
-    return [after - before for before, after in pairwise((Fraction(0), *times))]
+    return [after - before for before, after in pairwise((begin, *times))]
 
 
 def principal(body: Body) -> tuple[Body, Quaternion]:
@@ -196,7 +236,7 @@ def principal(body: Body) -> tuple[Body, Quaternion]:
     k1, k2, k3 = (float(value) for value in values)
     K = ((k1, 0.0, 0.0), (0.0, k2, 0.0), (0.0, 0.0, k3))
     axes = _quaternion(vectors)
-    return Body(K, (0.0, 0.0, 0.0), _into(axes, body.r)), axes
+    return Body(K, (0.0, 0.0, 0.0), into(axes, body.r)), axes
 
 
 def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:
@@ -215,13 +255,7 @@ def _quaternion(R: np.ndarray[Any, Any]) -> Quaternion:
     return (q0, q1, q2, q3)
 
 
-def _into(axes: Quaternion, a: Vector) -> Vector:
-    """Return a vector of body axes in principal ones."""
-    _, *rest = product(product(conjugate(axes), (0.0, *a)), axes)
-    return (rest[0], rest[1], rest[2])
-
-
 def _out_of(axes: Quaternion, H: Vector, q: Quaternion | None) -> list[float]:
     """Return momentum and attitude of principal axes in those of the body."""
     back = conjugate(axes)
-    return [*_into(back, H), *(product(q, back) if q else ())]
+    return [*into(back, H), *(product(q, back) if q else ())]

@@ -4,7 +4,8 @@
 
 The flow of Ti alone turns the frame about axis i at the constant rate ki Hi, and H + r with it, r the
 momentum of wheels. Each is exact, so that the step is a Poisson map and |H + r|^2 and R (H + r) are
-conserved; T is conserved only up to a swing of order h^2.
+conserved; T is conserved only up to a swing of order h^2. Loads that a scene writes down are kicks between
+such steps (kicks.py).
 
 R. I. McLachlan, Explicit Lie-Poisson integration and the Euler equations, Phys. Rev. Lett. 71 (1993)
 3043-3046; S. Reich, Momentum conserving symplectic integrators, Physica D 76 (1994) 375-383;
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 from math import cos, sin
 from typing import ClassVar, final
 
+from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.geometric.fixed_step import Body, FixedStep, Step, Stepped
 from taylor_verify.solvers.geometric.vectors import Quaternion, Vector, product
 
@@ -33,7 +35,14 @@ class Splitting(FixedStep):
 
     name: str = "geometric:splitting"
     in_principal_axes: ClassVar[bool] = True
-    takes = ("rotor",)
+    takes = ("rotor", "loads")
+    takes_loads = True
+
+    def unsuited(self, problem: Problem) -> str:
+        loads = problem.given.body.loads
+        if loads is not None and (loads.states or loads.rotor):
+            return f"{self.name} is made for bodies without states of the scene's own"
+        return super().unsuited(problem)
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:
         del H

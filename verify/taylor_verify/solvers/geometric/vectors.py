@@ -91,3 +91,9 @@ def turned_back(theta: Vector, a: Vector) -> Vector:
     once = cross(a, theta)
     twice = cross(once, theta)
     return ahead(ahead(a, half_sine * half_sine / 2, twice), sine_over(angle), once)
+
+
+def into(axes: Quaternion, a: Vector) -> Vector:
+    """Return a vector of body axes in others, from which ``axes`` is the turn to the body's."""
+    _, *rest = product(product(conjugate(axes), (0.0, *a)), axes)
+    return (rest[0], rest[1], rest[2])

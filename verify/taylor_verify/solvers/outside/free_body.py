@@ -13,6 +13,11 @@ An engine with a fixed step leaves the loop over the samples to `stepped`:
 
 ``advance(steps)`` goes on by that many steps, and ``row()`` reads the present state. The first row is
 read before any step, so that it shows the state that the engine really begins with.
+
+A script with ``loads = "written"`` in its metadata ends with ``answer(solve, pushed_body)``. Where
+``body.is_pushed`` it hands ``body.moment`` or ``body.moment_in_space`` to its engine: the moment of all
+that acts but the body's own inertia. A remark says how: an engine that holds it over a step has order 1 by
+that.
 """
 
 from __future__ import annotations
@@ -26,6 +31,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
+from acting import Acting
 from question import (
     Question,
     Row,
@@ -46,6 +52,7 @@ Matrix = Sequence[Vector]
 Engine = tuple[Callable[[int], Any], Callable[[], Row]]
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0)
+_NAMES = ("w1", "w2", "w3", "q0", "q1", "q2", "q3")
 # Each squares what is left of the products, once they are small: a few of them reach the roundoff.
 _TURNS = 15
 
@@ -66,6 +73,11 @@ class Body:
         """A sentence on what an engine is given in place of what the question has."""
         return ""
 
+    def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
+        """Return the engine that ``start`` builds, with what goes on beside it."""
+        del step
+        return start()
+
     def steps(self, step: float) -> list[int]:
         """Return the number of steps to each instant; raises Unsuited if one is no multiple."""
         counts = [round(instant / step) for instant in self.instants]
@@ -77,18 +89,85 @@ class Body:
         return counts
 
 
+class Push:
+    """All that acts on the body of a question, and its own states, beside an engine that moves the body.
+
+    ``state`` is the last one that was read, in the axes and the time of the question.
+    """
+
+    def __init__(self, scene: Any, start: Row) -> None:
+        self._scene, self._start = scene, start
+        self.begin()
+
+    def begin(self) -> None:
+        """Go back to the start."""
+        self.state = self._start
+        self.acting = Acting(self._scene, lambda: self.state)
+
+
 @dataclass(frozen=True)
 class FreeBody(Body):
     """Inertia, omega in body axes and attitude (unit, scalar first, body to space), as doubles.
 
     A motion backwards in time is the motion forwards with omega reversed, and is given as that one.
     ``turn`` leads from the axes given here to those of the question: they differ in principal axes.
+    ``push`` is what acts on the body, if anything does.
     """
 
     inertia: Matrix
     omega: Vector
     attitude: Quaternion
     turn: Quaternion = _IDENTITY
+    push: Push | None = None
+
+    @property
+    def is_pushed(self) -> bool:
+        """True if anything acts on the body."""
+        return self.push is not None
+
+    def moment(self, omega: Vector, attitude: Quaternion, time: float | None = None) -> Vector:
+        """Return the moment on the body that is given here, at a state and a time of the engine.
+
+        All are in body axes; without a time it is that of the last step.
+        """
+        assert self.push is not None
+        acting, sign = self.push.acting, self.question.sign
+        moment = acting.moment(
+            acting.t if time is None else sign * time, self._state(omega, unit(attitude))
+        )
+        return moment if self.turn == _IDENTITY else to_body(self.turn, moment)
+
+    def moment_in_space(self, omega: Vector, attitude: Quaternion) -> Vector:
+        """Return the same in space axes, of omega in space axes, at the time of the last step."""
+        return to_space(attitude, self.moment(to_body(attitude, omega), attitude))
+
+    def begin(self) -> None:
+        """Go back to the start with what acts."""
+        if self.push is not None:
+            self.push.begin()
+
+    def goes_on(self, steps: int, step: float) -> None:
+        """Go on with what acts, after so many steps of the engine; its row was read."""
+        if self.push is not None:
+            self.push.acting.move_to(self.question.sign * steps * step)
+
+    def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
+        """Return the engine; where anything acts, that goes on after each step."""
+        if self.push is None:
+            return start()
+        self.begin()
+        advance, row = start()
+        done = 0
+
+        def one_by_one(steps: int) -> None:
+            nonlocal done
+            for _ in range(steps):
+                advance(1)
+                row()
+                done += 1
+                self.goes_on(done, step)
+
+        return one_by_one, row
 
     @property
     def moments(self) -> Vector:
@@ -130,13 +209,22 @@ class FreeBody(Body):
 
     def row(self, omega: Vector, attitude: Quaternion) -> Row:
         """Return a row of the answer, of omega in body axes and the attitude that an engine has."""
+        state, columns = self._state(omega, attitude), self.question.columns
+        if self.push is None:
+            return state[: len(columns)]
+        self.push.state = state
+        own = self.push.acting.own
+        named = dict(zip(_NAMES, state, strict=True)) | own
+        return [named[name] for name in columns]
+
+    def _state(self, omega: Vector, attitude: Quaternion) -> list[float]:
+        """Return omega and the attitude in the axes and the time of the question."""
         sign, turn = self.question.sign, self.turn
         omega = [sign * float(w) for w in omega]
         attitude = [float(q) for q in attitude]
         if turn != _IDENTITY:
             omega, attitude = to_space(turn, omega), product(attitude, conjugate(turn))
-        row = [*omega, *attitude]
-        return row[: len(self.question.columns)]
+        return [*omega, *attitude]
 
     def row_from_space(self, omega: Vector, attitude: Quaternion) -> Row:
         """Return a row of the answer, of omega in space axes and the attitude."""
@@ -174,20 +262,26 @@ def _solved(solve: Callable[[Any, Settings], Solved], body: Body, settings: Sett
 
 def free_body(scene: Any) -> FreeBody:
     """Return the body of a question; raises Unsuited where it is not free."""
-    question = read(scene)
-    if (
-        scene["model"] != "euler"
-        or {"rotor", "damping"} & scene["body"].keys()
-        or any(floats(scene["body"]["moment"]))
-    ):
-        raise Unsuited(
-            "expected a free rigid body, got a moment, wheels, damping or a fluid @ body"
-        )
+    body = pushed_body(scene)
+    if body.is_pushed:
+        raise Unsuited("expected a free rigid body, got a moment, wheels or damping @ body")
+    return body
+
+
+def pushed_body(scene: Any) -> FreeBody:
+    """Return the body of a question, with what acts on it; raises Unsuited where it is in a fluid."""
+    question = read(scene, takes_loads=True)
+    if scene["model"] != "euler":
+        raise Unsuited("expected a free rigid body, got one in a fluid @ body")
+    attitude = unit(floats(scene["initial"]["attitude"]))
+    acts = {"rotor", "damping"} & scene["body"].keys() or any(floats(scene["body"]["moment"]))
+    start = [*floats(scene["initial"]["omega"]), *attitude]
     return FreeBody(
         inertia=floats(scene["body"]["inertia"]),
         omega=[question.sign * w for w in floats(scene["initial"]["omega"])],
-        attitude=unit(floats(scene["initial"]["attitude"])),
+        attitude=attitude,
         question=question,
+        push=Push(scene, start) if acts or "loads" in scene else None,
     )
 
 
@@ -199,7 +293,7 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
     counts = body.steps(step)
 
     def seconds_and_rows() -> tuple[float, list[Row]]:
-        advance, row = start()
+        advance, row = body.accompanied(start, step)
         began = time.perf_counter()
         rows = [row()]
         for before, count in pairwise(counts):
@@ -218,6 +312,12 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
         compile_seconds=compiling,
         remark=remark or body.remark,
     )
+
+
+def pushed_once(body: FreeBody) -> str:
+    """Return the remark of an engine that is pushed once a step; the body's own where nothing acts."""
+    push = "what acts is held over each step" if body.is_pushed else ""
+    return "; ".join(filter(None, (body.remark, push)))
 
 
 def repeated(step: Callable[[], Any]) -> Callable[[int], None]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from free_body import Body, Matrix, Quaternion, Vector, free_body, to_body, to_space
+from free_body import Body, Matrix, Quaternion, Vector, pushed_body, to_body, to_space
 from question import Row, Unsuited, floats, read, unit
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -91,5 +91,5 @@ def immersed_body(scene: Any) -> ImmersedBody:
 
 
 def any_body(scene: Any) -> Body:
-    """Return the body of a question of either model."""
-    return immersed_body(scene) if scene["model"] == "kirchhoff" else free_body(scene)
+    """Return the body of a question of either model; a rigid one with what acts on it."""
+    return immersed_body(scene) if scene["model"] == "kirchhoff" else pushed_body(scene)

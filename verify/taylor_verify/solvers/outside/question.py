@@ -224,16 +224,22 @@ COLUMNS = {
 }
 
 
-def read(scene: Any) -> Question:
-    """Return the question in a document; raises Unsuited if it asks for what is not computed."""
+def read(scene: Any, takes_loads: bool = False) -> Question:
+    """Return the question in a document; raises Unsuited if it asks for what is not computed.
+
+    Loads and states that a scene writes down are left to whoever takes them (acting.py).
+    """
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
     if "manufactured" in scene:
         raise Unsuited("expected constant loads, got a manufactured motion")
+    if "loads" in scene and not takes_loads:
+        raise Unsuited("expected constant loads, got some that the scene writes down")
     columns = scene["columns"][1:]
+    own = [state["name"] for state in scene.get("states", [])]
     if scene["model"] not in COLUMNS:
         raise Unsuited(f"expected the model {' or '.join(COLUMNS)}, got {scene['model']}")
     known = COLUMNS[scene["model"]]
-    if unknown := [name for name in columns if name not in known.split()]:
+    if unknown := [name for name in columns if name not in (*known.split(), *own)]:
         raise Unsuited(f"expected columns among {known}, got {' '.join(unknown)} @ columns")
     if scene["model"] == "euler":
         wheels = floats(body["rotor"]) if "rotor" in body else [0.0, 0.0, 0.0]

@@ -200,6 +200,10 @@ int main(int arguments, char **argument)
         printf("{\"unsuited\": \"rk4: expected constant loads, got a manufactured motion\"}\n");
         return EXIT_SUCCESS;
     }
+    if (strstr(scene, "\"loads\":")) {
+        printf("{\"unsuited\": \"rk4: expected constant loads, got some that the scene writes down\"}\n");
+        return EXIT_SUCCESS;
+    }
     is_euler = has(scene, "model", "euler", ',');
     if (is_euler) {
         read_numbers(scene, "inverse_inertia", K, 9);

@@ -6,7 +6,7 @@
 # ]
 # [tool.taylor-verify]
 # title = "DART"
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.001
@@ -22,7 +22,16 @@ puts slow bodies to sleep as it comes, which is on.
 
 from __future__ import annotations
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_once,
+    repeated,
+    stepped,
+)
 from immersed_body import ORIGIN, ImmersedBody, any_body
 from question import Row
 
@@ -66,9 +75,17 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
                 return body.row(moving[3:], moving[:3], attitude, place.translation())
             return body.row(moving[:3], attitude)
 
-        return repeated(world.step), row
+        def step() -> None:
+            if pushed is not None:
+                moving, attitude = node.getSpatialVelocity(), node.getWorldTransform().quaternion()
+                moment = pushed.moment(moving[:3], attitude.wxyz())
+                node.addExtTorque(numpy.array(moment), isLocal=True)
+            world.step()
 
-    return stepped(body, settings.step, start)
+        return repeated(step), row
+
+    pushed = body if isinstance(body, FreeBody) and body.is_pushed else None
+    return stepped(body, settings.step, start, pushed_once(body) if pushed else "")
 
 
 if __name__ == "__main__":

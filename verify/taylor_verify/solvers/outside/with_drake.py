@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "Drake"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.001
@@ -29,12 +29,26 @@
 
 `integrator=discrete` is a plant with a time step, which contact needs; any other is a continuous plant
 under that scheme, its error control off. Drake does not normalise the quaternion of its state, and
-reads a rotation of it as if it were unit: so do we. Velocities are in space axes.
+reads a rotation of it as if it were unit: so do we. Velocities are in space axes. What acts on the body
+enters by a port of the plant: each stage of an integrator asks for it, and a discrete plant once a step.
 """
 
 from __future__ import annotations
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from typing import Any
+
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    stepped,
+    to_body,
+    to_space,
+)
 from question import Row, unit
 
 
@@ -46,18 +60,23 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         ResetIntegratorFromFlags,
         Simulator,
     )
+    from pydrake.systems.framework import DiagramBuilder
 
     is_discrete = settings.integrator == "discrete"
-    plant = MultibodyPlant(time_step=settings.step if is_discrete else 0.0)
+    builder = DiagramBuilder()
+    plant = builder.AddSystem(MultibodyPlant(time_step=settings.step if is_discrete else 0.0))
     plant.mutable_gravity_field().set_gravity_vector([0, 0, 0])
     (a, d, e), (_, b, f), (_, _, c) = body.inertia
     inertia = SpatialInertia(1.0, [0, 0, 0], UnitInertia(a, b, c, d, e, f))
     plant.AddRigidBody("body", inertia)
     plant.Finalize()
+    if body.is_pushed:
+        pushed(builder, plant, body)
+    diagram = builder.Build()
 
     def start() -> Engine:
-        simulator = Simulator(plant)
-        context = simulator.get_mutable_context()
+        simulator = Simulator(diagram)
+        context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
         plant.SetPositions(context, [*body.attitude, 0, 0, 0])
         plant.SetVelocities(context, [*body.omega_in_space, 0, 0, 0])
         if not is_discrete:
@@ -78,8 +97,39 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, row
 
-    return stepped(body, settings.step, start)
+    in_stages = "what acts is asked for in each stage of a step" if body.is_pushed else ""
+    return stepped(body, settings.step, start, pushed_once(body) if is_discrete else in_stages)
+
+
+def pushed(builder: Any, plant: Any, body: FreeBody) -> None:
+    """Connect a system that has the moment on the body as its output."""
+    from pydrake.common.value import Value
+    from pydrake.multibody.math import SpatialForce
+    from pydrake.multibody.plant import ExternallyAppliedSpatialForce
+    from pydrake.systems.framework import LeafSystem
+
+    class Push(LeafSystem):
+        def __init__(self) -> None:
+            super().__init__()
+            self.DeclareVectorInputPort("state", 13)
+            output = self.DeclareAbstractOutputPort(
+                "forces", lambda: Value[list[ExternallyAppliedSpatialForce]](), self.push
+            )
+            self.output = output
+
+        def push(self, context: Any, output: Any) -> None:
+            state = self.get_input_port().Eval(context)
+            attitude, omega = unit(state[:4]), state[7:10]
+            force = ExternallyAppliedSpatialForce()
+            force.body_index = plant.GetBodyByName("body").index()
+            moment = body.moment(to_body(attitude, omega), attitude, context.get_time())
+            force.F_Bq_W = SpatialForce(to_space(attitude, moment), [0, 0, 0])
+            output.set_value([force])
+
+    push = builder.AddSystem(Push())
+    builder.Connect(plant.get_state_output_port(), push.get_input_port())
+    builder.Connect(push.get_output_port(), plant.get_applied_spatial_force_input_port())
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

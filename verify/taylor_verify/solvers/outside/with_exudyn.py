@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "Exudyn"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # integrator = [
@@ -24,15 +24,18 @@ integrator works on the group; the explicit ones refuse EulerParameters, which h
 two with an error estimate, DOPRI5 and ODE23, take the given step too: their tolerances are lifted. There
 is no damping, no sleep and no cap to switch off. The start is the reference configuration: in 1.13.6 an
 ``initialRotationMatrix`` makes another omega of the one that is given. One run has all samples, as
-sensors, because to go on after a stop begins GeneralizedAlpha anew.
+sensors, because to go on after a stop begins GeneralizedAlpha anew. What acts on the body is the user
+function of a torque in body axes, which is asked for in each stage of a step. GeneralizedAlpha carries its
+accelerations over a jump of the torque, and has order 1 there.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
-from free_body import FreeBody, Settings, Solved, answer
+from free_body import FreeBody, Settings, Solved, answer, pushed_body
 from question import Unsuited, twice
 
 IMPLICIT = ("GeneralizedAlpha", "TrapezoidalIndex2")
@@ -56,6 +59,19 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     system, sensors = system_of(container, body, f"Rotation{settings.coordinates}")
     solver = getattr(exudyn.DynamicSolverType, settings.integrator)
     asked = simulation_settings(settings.step, counts[-1], every)
+    if body.is_pushed:
+        rows = Pushed(body, system, settings.step)
+        _, seconds, more = twice(
+            lambda: rows.solve(lambda: system.SolveDynamic(asked, solverType=solver))
+        )
+        return Solved(
+            [rows.of[count] for count in counts],
+            counts[-1],
+            evaluations=0,
+            seconds=seconds,
+            compile_seconds=more,
+            remark="what acts is asked for in each stage of a step",
+        )
     _, seconds, more = twice(lambda: system.SolveDynamic(asked, solverType=solver))
     omegas, matrices = (system.GetSensorStoredData(sensor) for sensor in sensors)
     rows = []
@@ -65,6 +81,43 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
             raise SystemExit(f"Exudyn: expected a record at t = {instant!r}, got {time!r}")
         rows.append(body.row(omega, quaternion(matrices[count // every][1:])))
     return Solved(rows, counts[-1], evaluations=0, seconds=seconds, compile_seconds=more)
+
+
+class Pushed:
+    """A torque on the body by what acts on it, and the rows ``of`` each number of steps."""
+
+    def __init__(self, body: FreeBody, system: Any, step: float) -> None:
+        self._body, self._system, self._step = body, system, step
+        self.of: list[Any] = []
+        system.CreateTorque(
+            bodyNumber=0, bodyFixed=True, loadVectorUserFunction=lambda _, t, __: self._moment(t)
+        )
+        system.SetPreStepUserFunction(lambda _, __: self._before_step())
+        system.Assemble()
+
+    def solve(self, go: Callable[[], Any]) -> None:
+        self.of = []
+        self._body.begin()
+        go()
+        self._before_step()
+
+    def _before_step(self) -> bool:
+        state = self._state()
+        self._body.row(*state)
+        self._body.goes_on(len(self.of), self._step)
+        self.of.append(self._body.row(*state))
+        return True
+
+    def _moment(self, t: float) -> list[float]:
+        return list(self._body.moment(*self._state(), t))
+
+    def _state(self) -> tuple[list[float], list[float]]:
+        import exudyn
+
+        shown = exudyn.OutputVariableType
+        outputs = (shown.AngularVelocityLocal, shown.RotationMatrix)
+        omega, matrix = (self._system.GetNodeOutput(0, output) for output in outputs)
+        return list(omega), quaternion(matrix.ravel() if hasattr(matrix, "ravel") else matrix)
 
 
 def system_of(container: Any, body: FreeBody, node: str) -> tuple[Any, tuple[Any, Any]]:
@@ -121,4 +174,4 @@ def quaternion(matrix: Any) -> list[float]:
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "MuJoCo"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.002
@@ -19,6 +19,7 @@
 `inertia=full` hands over the tensor as `fullinertia`, and MuJoCo's compiler finds the principal axes.
 `inertia=principal` hands over ours, as `diaginertia` and `quat`, and tells the compiler's error from
 that of the integrator. The remark says how far the compiled tensor is from the one that was given.
+What acts on the body is a passive force, which MuJoCo asks for in each stage of a step.
 
 qvel[3:6] is omega in body axes, qpos[3:7] the attitude, scalar first.
 """
@@ -27,7 +28,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, principal, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    principal,
+    pushed_body,
+    stepped,
+)
 
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
@@ -36,17 +46,24 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     require_integrator(settings)
     model = mujoco.MjModel.from_xml_string(mjcf(body, settings))
 
+    def push(model: Any, data: Any) -> None:
+        data.qfrc_passive[3:6] = body.moment(data.qvel[3:6], data.qpos[3:7], data.time)
+
     def start() -> Engine:
         data = mujoco.MjData(model)
         data.qpos[3:7] = body.attitude
         data.qvel[3:6] = body.omega
+        mujoco.set_mjcb_passive(push if body.is_pushed else None)
         mujoco.mj_forward(model, data)
         return (
             lambda steps: mujoco.mj_step(model, data, steps),
             lambda: body.row(data.qvel[3:6], data.qpos[3:7]),
         )
 
-    return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+    try:
+        return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+    finally:
+        mujoco.set_mjcb_passive(None)
 
 
 def require_integrator(settings: Settings) -> None:
@@ -99,8 +116,9 @@ def remark(body: FreeBody, compiled: list[list[float]]) -> str:
     given = [entry for row in body.inertia for entry in row]
     has = [entry for row in compiled for entry in row]
     error = max(abs(a - b) for a, b in zip(given, has, strict=True)) / max(map(abs, given))
-    return f"the compiled inertia is off by {error:.1e} of its largest entry"
+    push = "; what acts is asked for in each stage of a step" if body.is_pushed else ""
+    return f"the compiled inertia is off by {error:.1e} of its largest entry{push}"
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

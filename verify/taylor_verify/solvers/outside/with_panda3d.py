@@ -4,7 +4,7 @@
 # [tool.taylor-verify]
 # title = "Panda3D"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # rungs = ["f32"]
 # [tool.taylor-verify.methods]
@@ -25,7 +25,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    repeated,
+    stepped,
+)
 
 METHODS = {"ode": "step", "ode-quick": "quick_step", "bullet": "do_physics"}
 
@@ -33,8 +43,9 @@ METHODS = {"ode": "step", "ode-quick": "quick_step", "bullet": "do_physics"}
 def solve(body: FreeBody, settings: Settings) -> Solved:
     if settings.method == "bullet":
         turned = body.in_principal_axes()
-        return stepped(turned, settings.step, lambda: bullet(turned, settings))
-    return stepped(body, settings.step, lambda: ode(body, settings))
+        remark = pushed_once(turned)
+        return stepped(turned, settings.step, lambda: bullet(turned, settings), remark)
+    return stepped(body, settings.step, lambda: ode(body, settings), pushed_once(body))
 
 
 def ode(body: FreeBody, settings: Settings) -> Engine:
@@ -50,12 +61,18 @@ def ode(body: FreeBody, settings: Settings) -> Engine:
     made.set_finite_rotation_mode(settings.rotation == "finite")
     if settings.defaults == "off":
         made.set_auto_disable_flag(False)
-    step = getattr(world, METHODS[settings.method])
+    go_on = getattr(world, METHODS[settings.method])
+
+    def step() -> None:
+        if body.is_pushed:
+            state = made.get_angular_vel(), made.get_quaternion()
+            made.add_torque(core.Vec3(*body.moment_in_space(*state)))
+        go_on(settings.step)
 
     def row() -> Any:
         return body.row_from_space(made.get_angular_vel(), made.get_quaternion())
 
-    return repeated(lambda: step(settings.step)), row
+    return repeated(step), row
 
 
 def bullet(turned: FreeBody, settings: Settings) -> Engine:
@@ -75,9 +92,15 @@ def bullet(turned: FreeBody, settings: Settings) -> Engine:
     def row() -> Any:
         return turned.row_from_space(made.get_angular_velocity(), made.get_transform().get_quat())
 
-    # No substeps: the step is that of the engine.
-    return repeated(lambda: world.do_physics(settings.step, 0)), row
+    def step() -> None:
+        if turned.is_pushed:
+            state = made.get_angular_velocity(), made.get_transform().get_quat()
+            made.apply_torque(core.Vec3(*turned.moment_in_space(*state)))
+        # No substeps: the step is that of the engine.
+        world.do_physics(settings.step, 0)
+
+    return repeated(step), row
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

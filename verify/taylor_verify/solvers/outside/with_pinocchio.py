@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "Pinocchio's dynamics, under a thin integrator of ours"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # integrator = ["RK4", "semi-implicit"]
@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import Engine, FreeBody, Settings, Solved, answer, pushed_body, stepped
 
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
@@ -39,19 +39,30 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         data = model.createData()
         place = numpy.array([0.0, 0.0, 0.0, x, y, z, body.attitude[0]])
         velocity = numpy.array([0.0, 0.0, 0.0, *body.omega])
+        done = 0
 
-        def accelerations(place: Any, velocity: Any) -> Any:
+        def accelerations(place: Any, velocity: Any, later: float) -> Any:
             import pinocchio
 
-            return pinocchio.aba(model, data, place, velocity, numpy.zeros(6))
+            force = numpy.zeros(6)
+            if body.is_pushed:
+                attitude = place[6], *place[3:6]
+                force[3:] = body.moment(velocity[3:], attitude, done * settings.step + later)
+            return pinocchio.aba(model, data, place, velocity, force)
 
         def advance(steps: int) -> None:
+            nonlocal done
             for _ in range(steps):
                 place[:], velocity[:] = step(model, accelerations, place, velocity, settings.step)
+                done += 1
 
         return advance, lambda: body.row(velocity[3:], (place[6], *place[3:6]))
 
-    return stepped(body, settings.step, start)
+    return stepped(body, settings.step, start, asked_in_stages(body))
+
+
+def asked_in_stages(body: FreeBody) -> str:
+    return "what acts is asked for in each stage of a step" if body.is_pushed else ""
 
 
 def model_of(body: FreeBody) -> Any:
@@ -69,7 +80,7 @@ def model_of(body: FreeBody) -> Any:
 def semi_implicit(model: Any, a: Any, place: Any, velocity: Any, h: float) -> Any:
     import pinocchio
 
-    velocity = velocity + h * a(place, velocity)
+    velocity = velocity + h * a(place, velocity, 0.0)
     return pinocchio.integrate(model, place, h * velocity), velocity
 
 
@@ -77,18 +88,18 @@ def runge_kutta(model: Any, a: Any, place: Any, velocity: Any, h: float) -> Any:
     import numpy
     import pinocchio
 
-    def rates(u: Any, v: Any) -> Any:
+    def rates(u: Any, v: Any, later: float) -> Any:
         """Return u', for the place that u leads to on the group, and v'."""
         along = pinocchio.dIntegrate(model, place, u, pinocchio.ARG1)
-        return numpy.linalg.solve(along, v), a(pinocchio.integrate(model, place, u), v)
+        return numpy.linalg.solve(along, v), a(pinocchio.integrate(model, place, u), v, later)
 
-    k1, l1 = rates(numpy.zeros(6), velocity)
-    k2, l2 = rates(h / 2 * k1, velocity + h / 2 * l1)
-    k3, l3 = rates(h / 2 * k2, velocity + h / 2 * l2)
-    k4, l4 = rates(h * k3, velocity + h * l3)
+    k1, l1 = rates(numpy.zeros(6), velocity, 0.0)
+    k2, l2 = rates(h / 2 * k1, velocity + h / 2 * l1, h / 2)
+    k3, l3 = rates(h / 2 * k2, velocity + h / 2 * l2, h / 2)
+    k4, l4 = rates(h * k3, velocity + h * l3, h)
     u = h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
     return pinocchio.integrate(model, place, u), velocity + h / 6 * (l1 + 2 * l2 + 2 * l3 + l4)
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

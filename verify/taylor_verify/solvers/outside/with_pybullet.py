@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "Bullet, by PyBullet"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # body = ["multibody", "rigid"]
@@ -27,7 +27,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    repeated,
+    stepped,
+)
 
 NO_CAP = 1e30
 
@@ -47,10 +57,18 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
             _, omega = pybullet.getBaseVelocity(made)
             return turned.row_from_space(omega, (w, x, y, z))
 
-        return repeated(pybullet.stepSimulation), row
+        def step() -> None:
+            if turned.is_pushed:
+                _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(made)
+                _, omega = pybullet.getBaseVelocity(made)
+                moment = list(turned.moment_in_space(omega, (w, x, y, z)))
+                pybullet.applyExternalTorque(made, -1, moment, pybullet.WORLD_FRAME)
+            pybullet.stepSimulation()
+
+        return repeated(step), row
 
     pybullet.connect(pybullet.DIRECT)
-    return stepped(turned, settings.step, start)
+    return stepped(turned, settings.step, start, pushed_once(turned))
 
 
 def body_of(turned: FreeBody, settings: Settings) -> int:
@@ -79,4 +97,4 @@ def body_of(turned: FreeBody, settings: Settings) -> int:
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "PhysX 5, by SAPIEN"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # rungs = ["f32"]
 # [tool.taylor-verify.settings]
@@ -27,12 +27,24 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    repeated,
+    stepped,
+)
 
 NO_CAP = 1e18
 
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
+    import numpy
+
     turned = body.in_principal_axes()
 
     def start() -> Engine:
@@ -42,9 +54,15 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         def row() -> Any:
             return turned.row_from_space(made.angular_velocity, made.entity.pose.q)
 
-        return repeated(lambda: scene.physx_system.step()), row
+        def step() -> None:
+            if turned.is_pushed:
+                moment = turned.moment_in_space(made.angular_velocity, made.entity.pose.q)
+                made.add_force_torque(numpy.zeros(3), numpy.array(moment))
+            scene.physx_system.step()
 
-    return stepped(turned, settings.step, start)
+        return repeated(step), row
+
+    return stepped(turned, settings.step, start, pushed_once(turned))
 
 
 def scene_of(turned: FreeBody, settings: Settings) -> tuple[Any, Any]:
@@ -75,4 +93,4 @@ def scene_of(turned: FreeBody, settings: Settings) -> tuple[Any, Any]:
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

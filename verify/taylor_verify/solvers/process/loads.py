@@ -1,8 +1,10 @@
-"""The loads that a scene writes down, in the question: their texts, and their elementary steps.
+"""The loads and states that a scene writes down, in the question: texts, and their elementary steps.
 
 ``steps`` are lists: ["input", name], ["number", text, hex], ["power", place, text, hex], and [operation,
 place, ...] for the rest, where a place counts the steps from 0. The input t is the time since the start.
-``from`` and ``to`` are such times, and null where a piece has no end.
+``from`` and ``to`` are such times, and null where a piece has no end. Of a piece ``rates`` are the places
+of the rates of all states with a rate, ``values`` those of the values of all held ones, both in the order
+of ``states``, and ``rotor`` those of the momentum of wheels; each is there where the scene writes it.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from typing import Any
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.scenes.loads.loads import VECTORS, Entry, Loads, Piece
+from taylor_verify.scenes.loads.states import Held, State
 from taylor_verify.scenes.loads.steps import Step
 from taylor_verify.solvers.process.numbers import exact_text
 
@@ -30,6 +33,37 @@ def written_loads(problem: Problem) -> dict[str, Any]:
         "inputs": sorted(loads.inputs),
         "pieces": [_piece(piece, loads, bits) for piece in _pieces(loads)],
     }
+
+
+def states(problem: Problem) -> dict[str, Any]:
+    """Return the components of the scene's own states, and the instants at which some are taken.
+
+    An instant is a list: the elapsed time, and the names of the components that are taken there.
+    """
+    loads = problem.given.body.loads
+    if loads is None or not loads.states:
+        return {}
+    bits = Rung(problem.rung.name, problem.rung.bits)
+    listed = [entry for state in loads.states for entry in _components(state, bits)]
+    instants = [
+        [_number(instant.time, bits), [loads.held_values[place] for place in instant.places]]
+        for instant in problem.takings
+    ]
+    return {"states": listed, **({"instants": instants} if instants else {})}
+
+
+def _components(state: State, rung: Rung) -> Iterator[dict[str, Any]]:
+    for k, (name, entry) in enumerate(zip(state.components, state.entries, strict=True)):
+        start = None if state.start is None else _number(state.start[k], rung)
+        if isinstance(state, Held):
+            times = {"every": exact_text(state.every), "offset": exact_text(state.offset)}
+            yield {"name": name, "start": start, **times, "value": _text(entry)}
+        else:
+            yield {"name": name, "start": start, "rate": _text(entry)}
+
+
+def _number(value: Fraction, rung: Rung) -> dict[str, str]:
+    return {"text": exact_text(value), "hex": hexadecimal(rung.round(value))}
 
 
 def _pieces(loads: Loads) -> Iterator[Piece]:
@@ -49,6 +83,11 @@ def _piece(piece: Piece, loads: Loads, rung: Rung) -> dict[str, Any]:
         "to": None if piece.end is None else exact_text(piece.end),
         "steps": [_step(step, rung) for step in piece.steps],
         **outputs,
+        **{
+            name: list(places)
+            for name in ("rates", "values", "rotor")
+            if (places := getattr(piece, name))
+        },
     }
 
 

@@ -26,12 +26,10 @@ from typing import Any, Final
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.numbers.precision import Rung, double_text, hexadecimal
-from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.parts import Value
-from taylor_verify.solvers.process.loads import written_loads
+from taylor_verify.solvers.process.loads import states, written_loads
 from taylor_verify.solvers.process.numbers import exact_text
-from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.values import exact, named_once
 
 # The version of a question, and those of what acts besides constant loads: a program can refuse them.
@@ -90,6 +88,7 @@ def question(problem: Problem) -> dict[str, Any]:
         "columns": column_names(problem),
         **_data(problem),
         **({} if scene.body.loads is None else {"loads": written_loads(problem)}),
+        **states(problem),
     }
 
 
@@ -102,7 +101,7 @@ def _version(body: Body) -> int:
 
 def column_names(problem: Problem) -> list[str]:
     """Return the columns of an answer: t, and those of everything the scene tracks."""
-    return ["t", *(name for group, _ in columns(problem) for name in COLUMNS[group])]
+    return ["t", *(name for group in problem.scene.groups for name in group.columns)]
 
 
 def _data(problem: Problem) -> dict[str, Any]:

@@ -11,8 +11,9 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.form import Form
-from taylor_verify.models.kinks import Kink, lengths, smooth, values
+from taylor_verify.models.kinks import Kink, smooth, values
 from taylor_verify.models.problem import Problem
+from taylor_verify.models.roots import lengths, radicands
 from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
 from taylor_verify.solvers.taylor.numbers import arithmetic
 
@@ -22,6 +23,8 @@ _ON_A_LINE = 1e-10
 _LITTLE = 12
 # The power of two, in roundings of a unit of time, that is nothing beside it.
 _NEAR = 10
+# The power of 1/2 that something has crossed which may be zero nearby.
+_SMALL = 40
 # A difference that is no matter of rounding on any rung, beside the largest step.
 _CLEAR = 1e-3
 
@@ -48,10 +51,14 @@ class _Choice:
 
 
 def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], rung: Rung) -> Any:
-    """Return the events of a smooth form's kinks; the parameters of their choices are its last."""
+    """Return the events of a smooth form's kinks; the parameters of their choices are its last.
+
+    The last ones end the way where something comes near zero of which a root is taken.
+    """
     import heyoka as hy
 
-    if not kinks:
+    near_zero = radicands(form)
+    if not kinks and not near_zero:
         return []
     steps = values(form, hy.make_vars(*form.states), coefficients, hy.time)
     numbers = arithmetic(rung)
@@ -65,6 +72,8 @@ def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], ru
             hy.t_event(steps[kink.place], callback=choice, fp_type=numbers.fp_type, cooldown=rest)
         )
         first += len(kink.names)
+    little = hy.expression(numbers.number(power_of_two(-_SMALL)))
+    events += [hy.t_event(steps[place] - little, fp_type=numbers.fp_type) for place in near_zero]
     return events
 
 
@@ -131,25 +140,30 @@ def _moved(problem: Problem, state: Sequence[Any], time: Any, step: Any) -> list
     return ahead(mean, mp.one)
 
 
-def kinks_of_length(form: Form) -> bool:
-    """Return True where a root of one square alone stands for an abs."""
-    return any(len(set(parts)) == 1 for parts in lengths(form))
+class Lengths:
+    """The vectors whose lengths the loads of a problem take, at its start and at the rows of its way."""
 
+    def __init__(self, problem: Problem, rows: np.ndarray[Any, Any]) -> None:
+        self._parts = lengths(problem.form)
+        start = [float(value) for value in problem.initial_momenta]
+        states = np.vstack([start, *rows.astype(float)])
+        times = np.array([float(t) for t in (problem.begin, *problem.times)][: len(states)])
+        parameters = [float(value) for value in problem.parameters]
+        with np.errstate(all="ignore"):
+            steps = values(problem.form, list(states.T), parameters, times)
+        places = {place for parts in self._parts for place in parts}
+        self._steps = {place: np.nan_to_num(steps[place] + 0 * times) for place in places}
 
-def on_a_line(problem: Problem, rows: np.ndarray[Any, Any]) -> bool:
-    """Return True where a vector whose length is taken stays on one line: it may go through zero there."""
-    parts = lengths(problem.form)
-    if not parts:
+    @property
+    def zeros(self) -> frozenset[int]:
+        """The places of the parts that are zero all the time."""
+        return frozenset(place for place, step in self._steps.items() if not step.any())
+
+    def are_on_a_line(self) -> bool:
+        """Return True where a vector stays on one line: it may go through zero there."""
+        for places in self._parts:
+            vectors = np.array([self._steps[place] for place in places])
+            sizes = np.linalg.svd(vectors, compute_uv=False)
+            if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:
+                return True
         return False
-    start = [float(value) for value in problem.initial_momenta]
-    states = np.vstack([start, rows.astype(float)])
-    times = np.array([float(t) for t in (problem.begin, *problem.times)])
-    parameters = [float(value) for value in problem.parameters]
-    with np.errstate(all="ignore"):
-        steps = values(problem.form, list(states.T), parameters, times)
-    for places in parts:
-        vectors = np.array([steps[place] + 0 * times for place in places])
-        sizes = np.linalg.svd(vectors, compute_uv=False)
-        if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:
-            return True
-    return False

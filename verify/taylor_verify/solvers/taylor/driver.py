@@ -21,20 +21,15 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.form import Form
-from taylor_verify.models.kinks import Kink, lengths
+from taylor_verify.models.kinks import Kink
 from taylor_verify.models.problem import Problem
+from taylor_verify.models.roots import lengths, radicands, unsquared
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.crossings import (
-    crossings,
-    kinks_of_length,
-    missed,
-    on_a_line,
-    smoothed,
-)
+from taylor_verify.solvers.taylor.crossings import Lengths, crossings, missed, smoothed
 from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
@@ -75,23 +70,33 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem):
             return refused(reason)
-        return piece_by_piece(problem, self._solve)
+        return piece_by_piece(problem, self._solve_piece)
+
+    def _solve_piece(self, problem: Problem) -> Trajectory:
+        """Return the trajectory, with kinks in place of lengths that have one part alone."""
+        if not lengths(problem.form):
+            return self._solve(problem)
+        return self._solve(replace(problem, form=unsquared(problem.form)))
 
     def _solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
-        if kinks_of_length(problem.form):
-            return refused(f"{self.name} takes no root of one square: write abs")
         way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
-        way = way_of(problem, tolerance, self.is_optimised)
+        way, turned, kinks = way_of(problem, tolerance, self.is_optimised)
         ready = perf_counter()
         is_slow = arithmetic(problem.rung).is_software
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
         seconds = perf_counter() - ready
-        if lengths(problem.form) and _may_vanish(problem, outcome, rows):
+        if lengths(problem.form) and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
+            vectors = Lengths(problem, rows)
+            if outcome is Outcome.NON_FINITE or vectors.are_on_a_line():
+                form = unsquared(problem.form, vectors.zeros)
+                if form != problem.form:
+                    return self._solve(replace(problem, form=form))
+                return refused(f"{self.name} {_NO_LENGTH}")
+        if outcome is Outcome.INTERRUPTED and radicands(turned.form):
             return refused(f"{self.name} {_NO_LENGTH}")
-        turned, kinks = smoothed(problem)
         if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
             return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
         if kinks and outcome is Outcome.STEP_LIMIT:
@@ -148,8 +153,8 @@ def compiled(
         # heyoka takes 0 for the machine epsilon of the type.
         "tol": zero if tolerance is None else numbers.number(rung.round(tolerance)),
     }
-    if kinks:
-        options["t_events"] = crossings(form, kinks, coefficients, rung)
+    if events := crossings(form, kinks, coefficients, rung):
+        options["t_events"] = events
     return stored(hy.taylor_adaptive, system, **options)
 
 
@@ -192,27 +197,22 @@ def _foreseen(problem: Problem) -> float:
     return Way(integrator, turned, scout).fastest()
 
 
-def _may_vanish(problem: Problem, outcome: Outcome, rows: Any) -> bool:
-    """Return True where a length that the loads take may have been zero, which no series goes through."""
-    if outcome is Outcome.FINISHED:
-        return on_a_line(problem, rows)
-    return outcome is Outcome.NON_FINITE
+def _way(
+    problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool
+) -> tuple[Way, Problem, tuple[Kink, ...]]:
+    """Return the way of a problem, the problem without kinks that it goes, and these kinks.
 
-
-def _way(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> Way:
-    """Return the way of a problem; the tolerance is a quotient, which is found sooner than a Fraction."""
+    The tolerance is a quotient, which is looked up sooner than a Fraction.
+    """
     turned, kinks = smoothed(problem)
-    return Way(
-        compiled(
-            turned.form,
-            problem.rung,
-            None if tolerance is None else Fraction(*tolerance),
-            is_optimised or pays(turned.form, problem.rung, problem),
-            kinks=kinks,
-        ),
-        turned,
-        problem,
+    integrator = compiled(
+        turned.form,
+        problem.rung,
+        None if tolerance is None else Fraction(*tolerance),
+        is_optimised or pays(turned.form, problem.rung, problem),
+        kinks=kinks,
     )
+    return Way(integrator, turned, problem), turned, kinks
 
 
 _kept_way = lru_cache(maxsize=_MOST_WAYS)(_way)

@@ -12,10 +12,10 @@ from typing import Any, Final, NamedTuple, final
 
 import numpy as np
 
-from taylor_verify.models.differenced import Differenced
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.solvers.taylor.differenced import Differenced
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.taylor.rate_bound import Look
 from taylor_verify.solvers.trajectory import Outcome

@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.records import store
-from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.report.folder import GATES, TABLES
+from taylor_verify.report.folder import TABLES
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
 
 _SOLVER: Final = "taylor"
@@ -39,18 +38,7 @@ def _find(folder: Path) -> Verdicts | None:
     return store.load(folder) if (folder / store.FOLDER / store.VERDICTS).exists() else None
 
 
-# Files that the repository leaves out: records with every sample, and tables with the reason of every
-# verdict.
-
-
-def _gates_lacking(report: Published) -> list[tuple[str, str]]:
-    """Return path and text of each table of gates that is missing or outdated."""
-    lacking = []
-    for name, make in GATES.items():
-        file, text = report.folder / name, make(report.verdicts)
-        if not file.exists() or file.read_text(encoding="utf-8") != text:
-            lacking.append((name, text))
-    return lacking
+# Files that the repository leaves out: records with every sample.
 
 
 def _runs_lacking(report: Published) -> tuple[Run, ...]:
@@ -90,12 +78,6 @@ STUDY: Final = Study(
     sheet=TABLES["tables/accuracy.csv"],
     beside={path: make for path, make in TABLES.items() if "accuracy" not in path},
     bulk=(
-        Bulk(
-            what="tables of gates",
-            patterns=tuple(GATES),
-            lacking=_gates_lacking,
-            make=lambda folder, lacking, progress: replace_files(folder, dict(lacking)),
-        ),
         Bulk(
             what="records of runs",
             patterns=("data/records/",),

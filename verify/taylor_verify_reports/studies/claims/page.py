@@ -36,7 +36,7 @@ _HOW: Final = (
 _REMAKE: Final = (
     "`taylor-verify claims` runs all checks and fails if an entry no longer gets its verdict; "
     '`taylor-verify claims "hydromechanics 49 (17)"` shows one in full, and `--json` the same as data. '
-    f"`taylor-verify publish claims` rewrites this page, its [CSV](tables/claims.csv) and "
+    f"`taylor-verify publish claims` rewrites this page, its sheet `tables/claims.csv` and "
     f"[claims.json]({CLAIMS.name}), which also names the versions, the processor and the command."
 )
 

@@ -84,7 +84,7 @@ def page(study: ControlsStudy) -> str:
         _twins(sights),
         "## To remake this",
         f"`taylor-verify publish controls` runs every defect and its twin, and writes "
-        f"[controls.json](../{CONTROLS.name}); this page, its [CSV](controls.csv) and the short "
+        f"[controls.json](../{CONTROLS.name}); this page, its sheet `controls.csv` and the short "
         f"table in the docs of the project are made from that alone. "
         f"{traced({'versions': study.versions, **plain(study.machine)})}",
     )

@@ -40,7 +40,7 @@ def widths(scene: Scene, times: Sequence[Fraction], bits: int) -> list[WidthRow]
     """Return a row for each time after the start, for the state without attitude and centre.
 
     ``width`` and ``error`` are relative to the length of a vector; they are the largest over the vectors of
-    the state. Raises exact.enclosure.course.Coarse if ``bits`` are too few to reach the last time.
+    the state. Raises exact.enclosure.stopping.Coarse if ``bits`` are too few to reach the last time.
     """
     bare = replace(scene, track=frozenset())
     spans = posed(bare).spans

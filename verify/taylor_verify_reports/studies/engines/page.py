@@ -51,7 +51,7 @@ _LEGEND: Final = (
 _FAIRNESS: Final = (
     "The first row of every trajectory is the start of the scene, from an oblique attitude. It proves "
     "that axes, order of the quaternion and units are right. The column *start* of the "
-    "[sheet](engines.csv) has its error.",
+    "sheet, `engines.csv`, has its error.",
     "Every engine gets the same numbers, each rounded once to the precision of its arithmetic, and is "
     "compared with the exact motion of the rounded numbers.",
     "An engine that takes principal moments alone is given the principal axes of `engines/full-tensor`, "
@@ -269,7 +269,7 @@ def _remake(board: Board) -> list[str]:
         f"[engines.json](../{ENGINES.name}) and this page. Errors are the same on every machine.",
         f"Times are in [engines-timings.json](../{TIMINGS.name}), {board.timings.workers} runs at a time "
         f"on {prose(machine.processor)}; no number but a time depends on the machine.",
-        f"The [sheet](engines.csv) has every run. {made_with(board.study.versions)}",
+        f"The sheet, `engines.csv`, has every run. {made_with(board.study.versions)}",
     ]
 
 

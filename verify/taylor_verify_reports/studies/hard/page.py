@@ -100,7 +100,7 @@ def page(study: HardStudy, folder: Path) -> str:
         *_reached(study, folder),
         "## To remake this",
         "`taylor-verify publish hard` runs all scenes on float64, follows the families on every rung, and "
-        f"writes [hard.json](../{HARD.name}), this page and its pictures. [hard.csv](hard.csv) has every "
+        f"writes [hard.json](../{HARD.name}), this page and its pictures. The sheet `hard.csv` has every "
         "quantity of every scene, hard.json also every number of periods. `taylor-verify "
         "run extremes` prints the verdicts and fails at a mismatch; with `--rung` it runs the scenes on "
         "others. The expectations are in `cases/extremes/EXPECTED.toml`.",

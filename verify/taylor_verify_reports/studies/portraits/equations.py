@@ -45,7 +45,12 @@ _CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
 def equations(scene: Scene) -> list[str]:
     """Return the equations of the scene in LaTeX, with its loads and its tracked quantities."""
     body_equations, omega = _EQUATIONS[type(scene.body)]
-    tracked = {"attitude": rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times", "centre": _CENTRE}
+    loads = scene.body.loads
+    current = r" + \mathbf v" if loads and any(loads.current) else ""
+    tracked = {
+        "attitude": rf"\dot{{\mathsf R}} = \mathsf R [{omega}]_\times",
+        "centre": f"{_CENTRE}{current}",
+    }
     return [
         *body_equations(scene.body),
         *(line for name, line in tracked.items() if name in scene.track),
@@ -53,7 +58,7 @@ def equations(scene: Scene) -> list[str]:
 
 
 def _euler_equations(body: RigidBody) -> list[str]:
-    loaded = "" if body.is_free else r" + \mathbf M"
+    loaded = "" if body.is_free else r" + \mathbf M" + _written(body)
     if body.manufactured is not None:
         return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
     damped = r" - c \mathbf H" if body.damping else ""
@@ -66,15 +71,20 @@ def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
         return [linear, angular, _VELOCITIES, _ENERGY, *_MADE_IMPULSE]
     force = r" - c \mathbf x" if body.damping else ""
     couple = r" - c \mathbf y" if body.damping else ""
-    force += r" + \mathbf X" if any(body.force) else ""
-    couple += r" + \mathbf L" if any(body.couple) else ""
+    force += rf" + \mathbf X{_written(body)}" if body.loads or any(body.force) else ""
+    couple += rf" + \mathbf L{_written(body)}" if body.loads or any(body.couple) else ""
     return [f"{_LINEAR}{force}", f"{_ANGULAR}{couple}", _VELOCITIES, _ENERGY]
 
 
 def _gyrostat_equations(body: Gyrostat) -> list[str]:
-    loaded = "" if body.is_free else r" + \mathbf M"
+    loaded = "" if body.is_free else r" + \mathbf M" + _written(body)
     damped = r" - c \mathsf I \boldsymbol\omega" if body.damping else ""
     return [f"{_EULER}{damped}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
+
+
+def _written(body: Body) -> str:
+    """Return the arguments of a load that the scene writes down: the time, and the state z."""
+    return r"(t, \mathbf z)" if body.loads else ""
 
 
 # For each kind of body its equations, and the name of its angular velocity in them.

@@ -14,6 +14,7 @@ import numpy as np
 from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.library import find
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene
 
@@ -41,15 +42,17 @@ def reference(scene: Scene) -> dict[str, Any]:
         "digits": DIGITS,
         "body": _exact_parts(scene.body.parts()),
         **_manufactured(scene.body.manufactured),
+        **_written(scene),
         "initial": _initial(scene),
-        "columns": _columns(printed["rows"]),
+        "columns": _columns(scene, printed["rows"]),
     }
 
 
-def _columns(rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
+def _columns(scene: Scene, rows: Sequence[dict[str, Any]]) -> dict[str, list[str]]:
     """Return the columns of the rows by name: the time, each component, the radius."""
     columns = {"t": [row["t"] for row in rows]}
-    for quantity, names in COLUMNS.items():
+    own = {group.name: group.columns for group in scene.groups}
+    for quantity, names in {**COLUMNS, **own}.items():
         if quantity in rows[0]:
             entries = np.array([row[quantity] for row in rows]).reshape(len(rows), -1).T
             columns |= dict(zip(names, entries.tolist(), strict=True))
@@ -68,6 +71,11 @@ def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
         return {}
     waves = [{name: _exact(value) for name, value in vars(wave).items()} for wave in motion.waves]
     return {"manufactured": {"constant": _exact(motion.constant), "waves": waves}}
+
+
+def _written(scene: Scene) -> dict[str, str]:
+    """Return the text of a scene that writes loads down; it has more than ``body`` can say."""
+    return {"toml": find(scene.name).read_text(encoding="utf-8")} if scene.body.loads else {}
 
 
 def _initial(scene: Scene) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """Exact trajectories as CSV and JSON files, with a page on how to read them.
 
 NAME.csv      a heading line and a row for every sample time, in decimal text
+loads.csv     the same of all scenes under loads, with the scene as the first column
 NAME.json     the same columns as arrays of strings, and the scene; no page links to it, because it
               is not in the repository
 README.md     columns, conventions, tolerances
@@ -12,17 +13,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.words.markdown import code, table
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.stored import SceneDocuments
 
 FOLDER: Final = "reference"
-
+# The scenes of a folder that have one sheet together, and its name.
+_SHARED: Final = {"loads": "loads.csv"}
 TRAJECTORIES: Final = SceneDocuments(FOLDER, "taylor-verify publish --reference; do not edit")
 EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
@@ -41,7 +45,7 @@ def write(folder: Path, documents: Sequence[Document]) -> list[Path]:
     """
     examples = {name: (_TEMPLATES / name).read_text(encoding="utf-8") for name in EXAMPLES}
     beside = {
-        **{f"{_stem(document)}.csv": _sheet(document["columns"]) for document in documents},
+        **_sheets(documents),
         **examples,
         "README.md": _readme(documents, examples),
     }
@@ -62,8 +66,39 @@ def _flat(document: Document) -> dict[str, Any]:
     return {**others, **document["columns"]}
 
 
-def _stem(document: Document) -> str:
-    return file_names.of_scene(str(document["scene"]))
+def sheet_of(scene: str) -> str:
+    """Return the name of the sheet that has the rows of a scene."""
+    return _SHARED.get(scene.split("/")[0], f"{file_names.of_scene(scene)}.csv")
+
+
+def _sheets(documents: Sequence[Document]) -> dict[str, str]:
+    """Return the text of each sheet, by its name."""
+    by_name: dict[str, list[Document]] = {}
+    for document in documents:
+        by_name.setdefault(sheet_of(document["scene"]), []).append(document)
+    return {
+        name: _sheet(_joined(rows) if name in _SHARED.values() else rows[0]["columns"])
+        for name, rows in by_name.items()
+    }
+
+
+def _joined(documents: Sequence[Document]) -> dict[str, list[str]]:
+    """Return the columns of several scenes one below the other, empty where a scene has none.
+
+    The columns of the model euler come first, and the error bound last.
+    """
+    written = {name for each in documents for name in each["columns"]}
+    usual = ["t", *chain(*COLUMNS.values())]
+    own = sorted(written.difference(usual, ["radius"]))
+    names = [name for name in (*usual, *own, "radius") if name in written]
+    joined: dict[str, list[str]] = {name: [] for name in ("scene", *names)}
+    for document in documents:
+        columns = document["columns"]
+        blank = [""] * len(columns["t"])
+        joined["scene"] += [document["scene"]] * len(blank)
+        for name in names:
+            joined[name] += columns.get(name, blank)
+    return joined
 
 
 def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
@@ -83,7 +118,7 @@ def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
 
 
 def _row(document: Document) -> list[str]:
-    columns, stem = document["columns"], _stem(document)
+    columns = document["columns"]
     vectors = dict.fromkeys(name[0] for name in columns if name not in {"t", "radius"})
     return [
         code(document["scene"]),
@@ -91,7 +126,7 @@ def _row(document: Document) -> list[str]:
         _ROUTES.get(document["route"], document["route"]),
         " ".join(code(vector) for vector in vectors),
         str(len(columns["t"])),
-        f"[csv]({stem}.csv)",
+        f"[csv]({sheet_of(document['scene'])})",
     ]
 
 
@@ -100,4 +135,5 @@ def _own_sheets(target: Path) -> list[Path]:
     page = target / "README.md"
     if not page.exists() or first_line(page) != MADE_BY:
         return []
-    return [target / name for name in _SHEET.findall(page.read_text(encoding="utf-8"))]
+    names = dict.fromkeys(_SHEET.findall(page.read_text(encoding="utf-8")))
+    return [target / name for name in names]

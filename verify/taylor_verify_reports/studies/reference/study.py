@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records.file_names import of_scene
 from taylor_verify_reports.studies.reference import page
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
 
@@ -23,7 +22,7 @@ def _lacking(report: Published) -> tuple[str, ...]:
     return tuple(
         scene
         for scene in report.outdated_scenes(page.FOLDER)
-        if (target / f"{of_scene(scene)}.csv").exists()
+        if (target / page.sheet_of(scene)).exists()
     )
 
 

@@ -19,6 +19,7 @@ from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page import packages
 from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.reference.page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade
 
@@ -138,7 +139,7 @@ def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
 
 def _reference(scene: str, report: Report) -> str:
     """Return links to the exact trajectory as CSV and as JSON, if they exist."""
-    names = [f"{of_scene(scene)}{ending}" for ending in (".csv", ".json")]
+    names = [sheet_of(scene), f"{of_scene(scene)}.json"]
     links = [f"[{n}](../reference/{n})" for n in names if report.has(f"reference/{n}")]
     if not links:
         return ""

@@ -29,6 +29,8 @@ PACKED: Final = ".tar.xz"
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
 _FOLDERS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
+# The name of a sheet, which the site has and a clone makes.
+_SHEET: Final = re.compile(r"`([\w/-]+\.csv)`")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
 _TOCTREE: Final = re.compile(r"^```\{toctree\}\n.*?^```$", re.MULTILINE | re.DOTALL)
 _ENTRY: Final = re.compile(r"^([a-z][\w/-]*)$", re.MULTILINE)
@@ -114,7 +116,13 @@ class Stage:
         if is_of_report and (below := self._below(place.removesuffix(".md"))):
             names = "\n".join(map(posixpath.basename, below))
             text = f"{text}\n```{{toctree}}\n:hidden:\n\n{names}\n```\n"
-        self.files[place] = relinked(text, folder, folder, self._resolve)
+        linked = _SHEET.sub(partial(self._with_link, place), text)
+        self.files[place] = relinked(linked, folder, folder, self._resolve)
+
+    def _with_link(self, place: str, sheet: re.Match[str]) -> str:
+        """Return the name of a sheet as a link to it, if it is there."""
+        is_there = self._resolve(_joined(place, sheet[1])) is not None
+        return f"[{sheet[1]}]({sheet[1]})" if is_there else sheet[0]
 
     def _included(self, place: str, block: re.Match[str]) -> str:
         """Return the file that a page includes, with links that work on that page."""

@@ -93,7 +93,7 @@ def remake(trades: Trades) -> str:
         "Without `--outside` the compiled integrators of other libraries are left out. It writes "
         f"[tradeoff.json](../{NUMBERS.name}) (errors, the same on any machine except for rounding) and "
         f"[tradeoff-timings.json](../{TIMINGS.name}) (times of this machine, which no test compares); "
-        "this page and its [CSV](tradeoff.csv) are made from those alone. `make reports` and `make "
+        "this page and its sheet `tradeoff.csv` are made from those alone. `make reports` and `make "
         "check-reports` leave the times as they are. Made by "
         f"{code(trades.times.machine.command)} with {packages or 'unknown versions'}."
     )

@@ -1,0 +1,207 @@
+"""Answers with states of a scene's own: right ones pass, and each fault fails the gate that names it."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.integrators import step
+from builders.written_loads import End, Evaluated, end_of
+from mpmath import mp, mpf
+
+from taylor_verify import check, explain
+from taylor_verify.exact.conditioning.condition import transition
+from taylor_verify.exact.conditioning.loaded import times_of_run
+from taylor_verify.exact.route import solution
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+
+SATELLITE = """
+title = "A satellite with a sampled controller"
+model = "euler"
+track = ["attitude", {track}]
+[body]
+inertia = [1.25, 0.875, 1.5]
+{body}
+[states]
+{states}
+[initial]
+omega = [0.25, -0.5, 0.375]
+attitude = [0.5, 0.625, -0.375, 0.5]
+[time]
+end = 1
+samples = 2
+"""
+SAMPLED = 'moment = ["m1 - i1/16", "m2", "-w3/8"]'
+INTEGRAL = 'i = { start = [0, 0], rate = ["q1 - i1/64", "q2 - i2/64"] }'
+LAW = '["-0.75*q1 - w1/2", "clip(-0.75*q2 - w2/2, -0.125, 0.125)"]'
+TOLERANCE = 1e-6
+# Each on an instant of a value that is taken every quarter, and on one of those every half.
+ROWS = tuple(Fraction(k, 2) for k in range(3))
+
+
+def satellite(states: str, body: str = SAMPLED, track: Sequence[str] = ("m", "i")) -> Scene:
+    """The satellite with rows at ROWS."""
+    names = ", ".join(f'"{name}"' for name in track)
+    scene = read(SATELLITE.format(states=states, body=body, track=names), "satellite")
+    return replace(scene, clock=Clock(Fraction(0), ROWS))
+
+
+def states(every: str, value: str = LAW, more: str = "") -> str:
+    return f'm = {{ every = "{every}", start = [0, 0], value = {value} }}\n{INTEGRAL}\n{more}'
+
+
+RIGHT = satellite(states("1/4"))
+LATE = states("1/4", '["l1", "l2"]', f'l = {{ every = "1/4", start = [0, 0], value = {LAW} }}')
+# By the fault: the scene that the faulty program follows, what fails, and what passes all the same.
+TWINS: Mapping[str, tuple[Scene, set[str], set[str]]] = {
+    "sampled at another rate": (
+        satellite(states("1/8")), {"omega", "attitude", "m", "i", "T"}, {"m law"},
+    ),
+    "one sample late": (satellite(LATE), {"omega", "m", "i", "m law"}, set()),
+    "another law": (
+        satellite(states("1/4", LAW.replace("w1/2", "w1/3"))), {"omega", "m", "m law"}, set(),
+    ),
+    "an integral that does not leak": (
+        satellite(states("1/4").replace(" - i1/64", "")), {"omega", "i"}, {"m law"},
+    ),
+}  # fmt: skip
+
+
+def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str]) -> Path:
+    """A file of these states, with the columns of some of the scene's own states."""
+    assert scene.body.loads is not None
+    columns = {s.name: s.components for s in scene.body.loads.states}
+    with path.open("w", newline="") as file:
+        out = csv.writer(file)
+        own = [column for name in names for column in columns[name]]
+        out.writerow(["t", "w1", "w2", "w3", "q0", "q1", "q2", "q3", *own])
+        for time, end in zip(ROWS, ends, strict=True):
+            values = [*end.state[:7], *(v for name in names for v in end.own[name])]
+            out.writerow([repr(float(value)) for value in (time, *values)])
+    return path
+
+
+@cache
+def answers(scene: Scene) -> list[End]:
+    """The states at ROWS, by an integrator that reads the texts by itself."""
+    with mp.workdps(40):
+        return [end_of(scene, time, 18, 2, columns=10) for time in ROWS]
+
+
+def judged(tmp_path: Path, scene: Scene, names: Sequence[str] = ("m", "i"), **options: Any) -> Any:
+    """The judgement of a file that follows a scene, by the right one."""
+    return check(RIGHT, written(tmp_path / "run.csv", scene, answers(scene), names), **options)
+
+
+def test_a_right_file_passes_by_the_arithmetic_alone(tmp_path: Path) -> None:
+    """States, own states, energy and the law of the held one, all to the rounding of the file."""
+    answer = judged(tmp_path, RIGHT, partial=True)
+    assert answer.passed, str(answer)
+    names = {v.quantity for v in answer.verdicts}
+    assert {"initial state", "omega", "attitude", "m", "i", "m law", "T"} <= names
+    assert all((v.bound or 1.0) < 1e-13 for v in answer.verdicts if v.is_compared)
+
+
+@pytest.mark.parametrize("twin", TWINS)
+def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
+    """A wrong rate, a late sample and a wrong law differ in which of the rows they fail."""
+    scene, failing, passing = TWINS[twin]
+    answer = judged(tmp_path, scene, partial=True, tolerance=TOLERANCE)
+    failed = {v.quantity for v in answer.verdicts if v.verdict is Status.FAIL}
+    passed = {v.quantity for v in answer.verdicts if v.verdict is Status.PASS}
+    assert failing <= failed
+    assert passing <= passed
+
+
+def by_steps(scene: Scene, steps: int) -> list[End]:
+    """The states at ROWS by the classical Runge-Kutta method; values are taken where a step ends."""
+    with mp.workdps(17):
+        equations, ends, h = Evaluated(scene), list[End](), mpf(1) / steps
+        y, due = equations.start(), 0
+        for k in range(steps + 1):
+            while Fraction(due, 4) <= Fraction(k, steps):
+                equations.take(k * h, Fraction(due, 4), y)
+                due += 1
+            if Fraction(k, steps) in ROWS:
+                ends.append(End(list(y), mpf(0), False, equations.own(y)))
+            y = step(equations.rates, k * h, y, h)
+        return ends
+
+
+@pytest.mark.parametrize(("counts", "order"), [((10, 18, 26), 1), ((8, 12, 16), 4)])
+def test_steps_over_the_instants_are_of_order_one(
+    counts: Sequence[int], order: int, tmp_path: Path
+) -> None:
+    """Steps that end at every instant have their own order; others have 1, and the judge says why."""
+    files = [
+        written(tmp_path / f"run_{n}.csv", RIGHT, by_steps(RIGHT, n), ("m", "i")) for n in counts
+    ]
+    answer = check(RIGHT, files, partial=True, steps=[1 / n for n in counts])
+    (attitude,) = (each for each in answer.order if each.quantity == "attitude")
+    assert attitude.order == pytest.approx(order, abs=0.5)
+    over = [note for note in answer.notes if "steps end at the instants of held states" in note]
+    assert bool(over) is (order == 1)
+
+
+def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:
+    """A tracked own state without its columns makes the answer incomplete."""
+    answer = judged(tmp_path, RIGHT, ["i"])
+    assert not answer.passed
+    assert any("state m is not judged: the file has no m1 m2" in note for note in answer.remarks)
+    assert {"m", "m law"}.isdisjoint(v.quantity for v in answer.verdicts)
+
+
+def test_an_untracked_state_is_computed_and_not_gated(tmp_path: Path) -> None:
+    """The same motion without tracked own states passes without their columns."""
+    scene = replace(RIGHT, states=frozenset())
+    file = written(tmp_path / "run.csv", RIGHT, answers(RIGHT), [])
+    answer = check(scene, file, partial=True)
+    assert answer.passed, str(answer)
+    assert {v.quantity for v in answer.verdicts}.isdisjoint(("m", "i", "m law"))
+
+
+def test_the_derivative_goes_through_instants() -> None:
+    """An error of an own state at the start becomes what a motion from another start has."""
+    small, end = Fraction(1, 10**9), ROWS[-1]
+    path = transition(RIGHT, [Fraction(0), end])
+    with mp.workdps(40):
+        here = solution(RIGHT).motion([end], 30)
+        for k in range(2):
+            start = ", ".join(str(float(small)) if j == k else "0" for j in range(2))
+            other = satellite(
+                states("1/4").replace("i = { start = [0, 0]", f"i = {{ start = [{start}]")
+            )
+            there = solution(other).motion([end], 30)
+            unit = float(path.units["i"])
+            column = path.carried.steps[0][:, path.places[path.span("i")][k]] / unit
+            for name in ("m", "i"):
+                apart = (there[name][0] - here[name][0]) / mp.convert(small)
+                rows = column[path.places[path.span(name)]] * float(path.units[name])
+                assert np.allclose(apart.astype(float), rows, rtol=1e-6, atol=1e-9)
+
+
+def test_a_run_meets_every_instant() -> None:
+    """The times of a run are samples, instants and times between, from the start on."""
+    times = times_of_run(RIGHT)
+    assert times[0] == 0
+    assert {*ROWS, Fraction(1, 4), Fraction(3, 4)} <= set(times)
+    assert times == sorted(times)
+
+
+def test_own_states_are_explained() -> None:
+    """The terms that read own states have their work, and nothing is found to be conserved."""
+    document = explain(RIGHT)
+    assert document["track"] == ["attitude", "i", "m", "omega"]
+    texts = [term["text"] for term in document["loads"]["terms"]]
+    assert texts == ["m1", "-i1/16", "m2", "-w3/8"]
+    assert document["loads"]["terms"][-1]["work"] < 0

@@ -1,0 +1,62 @@
+"""Loads that a scene writes down, and its own states, at the times of a course."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from taylor_verify.draw.view import Numbers
+from taylor_verify.exact.rows import quaternions
+from taylor_verify.models.acting import Acting
+from taylor_verify.scenes.loads.loads import VECTORS, Loads
+from taylor_verify.scenes.loads.states import Held
+from taylor_verify.scenes.scene import Scene
+
+Document = dict[str, Any]
+
+
+def own_names(scene: Scene) -> frozenset[str]:
+    """Return the names of all states of the scene's own."""
+    loads = scene.body.loads
+    return frozenset() if loads is None else frozenset(state.name for state in loads.states)
+
+
+def acting_on(scene: Scene, course: Mapping[str, Any]) -> list[Document]:
+    """Return a document for each load and each own state: its name, its rows, and whether it is held."""
+    loads = scene.body.loads
+    if loads is None:
+        return []
+    forces = _forces(scene, loads, course)
+    names = VECTORS[scene.model]
+    acting = [
+        {"name": name, "rows": forces[:, 3 * k : 3 * k + 3].tolist(), "is_held": False}
+        for k, name in enumerate(names)
+    ]
+    return acting + [
+        {"name": state.name, "rows": course[state.name], "is_held": isinstance(state, Held)}
+        for state in loads.states
+    ]
+
+
+def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
+    """Return the loads in body axes, (times, 3) or (times, 6)."""
+    moving = [np.array(course[name]) for name in scene.initial.MOVING]
+    turns = quaternions(np.array(course["attitude"]).reshape(-1, 3, 3))
+    if turns[0] @ np.array(scene.initial.attitude, dtype=float) < 0:
+        # The sign goes on from that of the start.
+        turns = -turns
+    centre = [np.array(course["centre"])] if "centre" in course else []
+    state = np.hstack([*moving, turns, *centre, *_own(loads, course, is_held=False)])
+    values = Acting(scene, loads).loads(course["t"], state, _held(loads, course))
+    return np.hstack(values) if isinstance(values, tuple) else values
+
+
+def _held(loads: Loads, course: Mapping[str, Any]) -> Numbers | None:
+    return np.hstack(_own(loads, course, is_held=True)) if loads.held_values else None
+
+
+def _own(loads: Loads, course: Mapping[str, Any], is_held: bool) -> list[Numbers]:
+    states = (state for state in loads.states if isinstance(state, Held) is is_held)
+    return [np.array(course[state.name]) for state in states]

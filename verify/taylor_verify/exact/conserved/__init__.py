@@ -1,0 +1,1 @@
+"""Conserved quantities of motions under written loads, from exact polynomials that are zero."""

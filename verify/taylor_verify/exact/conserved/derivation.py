@@ -1,0 +1,214 @@
+"""The rates of a body under written loads, as polynomials in its state and its frame.
+
+The symbols are the components of omega or of the impulses, the unit quaternion q0..q3, the centre c1..c3
+and the time t. Every function of a load that is no polynomial is one more symbol, of which nothing is
+known: what is zero for all of its values is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, reduce
+from itertools import repeat
+from operator import add, mul, sub
+from typing import Final
+
+from taylor_verify.exact.clocks import Exact
+from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, total
+from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, Piece
+from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.scene import Scene
+
+Row = list[Polynomial]
+
+# Powers up to this one are written out.
+_MOST_POWER: Final = 4
+_ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
+    "+": add,
+    "-": sub,
+    "*": mul,
+}
+_NOTHING: Final = Polynomial()
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """The state, the frame and their rates, under the loads of one piece of time."""
+
+    scene: Scene
+    piece: Piece
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The equations of the state without the written loads."""
+        return kind_of(self.scene.body).equations(self.scene.body)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The symbols of the state."""
+        moving = kind_of(self.scene.body).moving
+        return tuple(column for name in moving for column in COLUMNS[name])
+
+    @cached_property
+    def state(self) -> Row:
+        """The state z."""
+        return symbols(self.names)
+
+    @cached_property
+    def attitude(self) -> list[Row]:
+        """R of the unit quaternion."""
+        q = symbols(QUATERNION)
+        pairs = [[a * b for b in q] for a in q]
+
+        def double(*terms: tuple[int, int, int]) -> Polynomial:
+            return total(pairs[i][j].times(Fraction(2 * sign)) for sign, i, j in terms)
+
+        one = Polynomial.number(Fraction(1))
+        return [
+            [
+                one + double((-1, 2, 2), (-1, 3, 3)),
+                double((1, 1, 2), (-1, 0, 3)),
+                double((1, 1, 3), (1, 0, 2)),
+            ],
+            [
+                double((1, 1, 2), (1, 0, 3)),
+                one + double((-1, 1, 1), (-1, 3, 3)),
+                double((1, 2, 3), (-1, 0, 1)),
+            ],
+            [
+                double((1, 1, 3), (-1, 0, 2)),
+                double((1, 2, 3), (1, 0, 1)),
+                one + double((-1, 1, 1), (-1, 2, 2)),
+            ],
+        ]
+
+    @cached_property
+    def rates(self) -> Mapping[str, Polynomial]:
+        """The rates of all symbols that change as the equations say."""
+        rates = dict(zip(self.names, self._of_state(), strict=True))
+        rates |= dict(zip(QUATERNION, self._of_attitude(), strict=True))
+        if len(self.equations.velocity):
+            rates |= dict(zip(CENTRE, self._of_centre(), strict=True))
+        return rates
+
+    def turned(self, vector: Row) -> Row:
+        """R v: a vector in space axes."""
+        return [product(row, vector) for row in self.attitude]
+
+    def rate(self, quantity: Polynomial) -> Polynomial:
+        """The rate of a polynomial in state and frame. Raises TooLong."""
+        return quantity.rate(self.rates)
+
+    # The rates of the symbols.
+
+    def _of_state(self) -> Row:
+        equations, z = self.equations, self.state
+        pushed = mapped(kind_of(self.scene.body).pushed(self.scene.body), self.loads)
+        rates = []
+        for constant, linear, hessian, push in zip(
+            equations.constant, equations.linear, equations.hessian, pushed, strict=True
+        ):
+            half = [sum_of(row, z).times(Fraction(1, 2)) for row in hessian]
+            free = Polynomial.number(constant) + sum_of(linear, z)
+            rates.append(free + push + product(z, half))
+        return rates
+
+    def _of_attitude(self) -> Row:
+        """q' = q Omega/2."""
+        a, b, c, d = symbols(QUATERNION)
+        x, y, z = self.spin
+        doubled = (
+            _NOTHING - b * x - c * y - d * z,
+            a * x + c * z - d * y,
+            a * y + d * x - b * z,
+            a * z + b * y - c * x,
+        )
+        return [rate.times(Fraction(1, 2)) for rate in doubled]
+
+    def _of_centre(self) -> Row:
+        """c' = R U and the current."""
+        loads = self.scene.body.loads
+        currents = repeat(Fraction(0), 3) if loads is None else loads.current
+        return [
+            Polynomial.number(current) + moved
+            for current, moved in zip(currents, self.turned(self.velocity), strict=True)
+        ]
+
+    @cached_property
+    def spin(self) -> Row:
+        """Omega."""
+        return mapped(self.equations.spin, self.state)
+
+    @cached_property
+    def velocity(self) -> Row:
+        """U; no components for a body whose origin does not move."""
+        return mapped(self.equations.velocity, self.state)
+
+    # The loads.
+
+    @cached_property
+    def loads(self) -> Row:
+        """The moment, or force and couple. Raises TooLong."""
+        values: list[Polynomial] = []
+        for place, step in enumerate(self.piece.steps):
+            values.append(self._value(place, step, [values[k] for k in step.operands]))
+        return [values[place] for place in self.piece.outputs]
+
+    def _value(self, place: int, step: Step, operands: Row) -> Polynomial:
+        if step.operation == "input":
+            return self._inputs.get(step.name, Polynomial.symbol(step.name))
+        if step.operation == "number":
+            assert step.number is not None
+            return Polynomial.number(step.number)
+        try:
+            written = self._written_out(step, operands)
+        except TooLong:
+            written = None
+        # Equal steps are one step, so that the place names the function and its operands.
+        return Polynomial.symbol(f"step {place}") if written is None else written
+
+    def _written_out(self, step: Step, operands: Row) -> Polynomial | None:
+        """The polynomial of a step; None of a step that is none. Raises TooLong."""
+        if step.operation in _ARITHMETIC:
+            return _ARITHMETIC[step.operation](*operands)
+        if step.operation == "/" and set(operands[1].terms) == {()}:
+            return operands[0].times(1 / operands[1].terms[()])
+        if step.operation == "power" and step.number in range(2, _MOST_POWER + 1):
+            return reduce(mul, operands * int(step.number or 0))
+        return None
+
+    @cached_property
+    def _inputs(self) -> Mapping[str, Polynomial]:
+        vectors = {"w": self.spin, "u": self.velocity}
+        inputs = {
+            f"{letter}{i}": v for letter, row in vectors.items() for i, v in enumerate(row, 1)
+        }
+        for i, row in enumerate(self.attitude, 1):
+            inputs |= {f"r{i}{j}": entry for j, entry in enumerate(row, 1)}
+        return inputs
+
+
+def symbols(names: Sequence[str]) -> Row:
+    """The symbols of these names."""
+    return [Polynomial.symbol(name) for name in names]
+
+
+def sum_of(numbers: Vector, row: Row) -> Polynomial:
+    """The sum of multiples of polynomials."""
+    return total(part.times(number) for number, part in zip(numbers, row, strict=True))
+
+
+def mapped(matrix: Matrix | Exact, row: Row) -> Row:
+    """The product of a matrix and polynomials."""
+    return [sum_of(numbers, row) for numbers in matrix]
+
+
+def product(a: Row, b: Row) -> Polynomial:
+    """The scalar product."""
+    return total(map(mul, a, b))

@@ -1,0 +1,114 @@
+"""The tapes of a body under written loads in one piece of time: rates, and what is taken at times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Final
+
+from taylor_verify.exact.clocks import Exact
+from taylor_verify.exact.enclosure.framing import Frame, named
+from taylor_verify.exact.enclosure.layout import Layout
+from taylor_verify.exact.enclosure.lowering import Lowering
+from taylor_verify.exact.enclosure.operations import Time
+from taylor_verify.exact.enclosure.system import natural
+from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
+from taylor_verify.exact.equations import exact
+from taylor_verify.exact.registry import kind_of
+from taylor_verify.scenes.loads.loads import Piece
+from taylor_verify.scenes.scene import Scene
+
+
+class PieceTapes:
+    """Expressions of one piece of time, with their tapes."""
+
+    def __init__(self, scene: Scene, layout: Layout, piece: Piece) -> None:
+        self._scene, self._layout, self._piece = scene, layout, piece
+        self._kind, self._graph = kind_of(scene.body), Graph()
+        states = self._graph.states(layout.whole)
+        self._z = layout.body(states)
+        self._inputs = {"t": self._graph.node(Time()), **layout.components(states)}
+        # A rotor reads the time and own states alone: the spin is made of it.
+        self._wheels = self._lowered(piece.rotor)
+        self._spin, self._velocity = self._velocities()
+        turn, centre = layout.turn(states), layout.centre(states)
+        self._frame = Frame(self._graph, scene, self._spin, self._velocity, turn, centre)
+        self._inputs |= {**named("w", self._spin), **self._frame.inputs()}
+        if self._velocity:
+            self._inputs |= named("u", self._velocity)
+            self._inputs |= named("x", self._z[:3]) | named("y", self._z[3:])
+
+    def _lowered(self, places: Sequence[int]) -> list[Sum]:
+        return Lowering(self._graph, self._inputs).expressions(self._piece.steps, places)
+
+    def _tape(self, expressions: Sequence[Sum]) -> Tape:
+        return Tape.of(self._graph, self._layout.whole, expressions)
+
+    def _velocities(self) -> tuple[list[Sum], list[Sum]]:
+        body = self._scene.body
+        if self._wheels:
+            carried = [z - h for z, h in zip(self._z, self._wheels, strict=True)]
+            spin = formed(self._kind.state_matrix(body), carried)
+            # Each is one node, which all uses of it share.
+            return [self._shared(component) for component in spin], []
+        equations = self._kind.equations(body)
+        return formed(equations.spin, self._z), formed(equations.velocity, self._z)
+
+    def _shared(self, value: Sum) -> Sum:
+        return Sum(terms={self._graph.whole(value): _ONE}) if value.terms else value
+
+    @cached_property
+    def rates(self) -> Tape:
+        """The rates of all components; held values have none."""
+        loads = self._lowered(self._piece.outputs)
+        moving = self._with_wheels(loads) if self._wheels else self._natural(loads)
+        rates = [*moving, *self._frame.rates(), *self._lowered(self._piece.rates)]
+        return self._tape([*rates, *[Sum()] * (self._layout.whole - len(rates))])
+
+    def _natural(self, loads: Sequence[Sum]) -> list[Sum]:
+        pushed = exact(self._kind.pushed(self._scene.body))
+        free = natural(self._graph, self._kind.equations(self._scene.body), self._z)
+        return [rate + push for rate, push in zip(free, formed(pushed, loads), strict=True)]
+
+    def _with_wheels(self, loads: Sequence[Sum]) -> list[Sum]:
+        """H' = H x omega + M, and what the body's own equations add that is linear in H - h."""
+        product, H, w = self._graph.product, self._z, self._spin
+        equations = self._kind.momentum_equations(self._scene.body)
+        carried = [z - h for z, h in zip(H, self._wheels, strict=True)]
+        rest = formed(equations.linear, carried)
+        return [
+            product(H[j], w[k]) - product(H[k], w[j]) + loads[i] + rest[i] + Sum(constant)
+            for (i, j, k), constant in zip(_CYCLES, equations.constant, strict=True)
+        ]
+
+    @cached_property
+    def image(self) -> Tape:
+        """The spin, and the nine entries of R where the scene tracks the attitude."""
+        rotation = self._frame.rotation if self._scene.track else []
+        return self._tape([*self._spin, *(entry for row in rotation for entry in row)])
+
+    @cached_property
+    def wheels(self) -> Tape:
+        """The momentum of the rotor."""
+        return self._tape(self._wheels)
+
+    def values(self, places: tuple[int, ...]) -> Tape:
+        """The values of held components that are taken together."""
+        if places not in self._values:
+            steps = [self._piece.values[place] for place in places]
+            self._values[places] = self._tape(self._lowered(steps))
+        return self._values[places]
+
+    @cached_property
+    def _values(self) -> dict[tuple[int, ...], Tape]:
+        return {}
+
+
+_ONE: Final = Fraction(1)
+_CYCLES: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+
+
+def formed(form: Exact, z: Sequence[Sum]) -> list[Sum]:
+    """The rows of a linear form of the state."""
+    return [total(c.times(number) for c, number in zip(z, row, strict=True)) for row in form]

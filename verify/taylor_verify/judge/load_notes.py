@@ -1,0 +1,46 @@
+"""Notes on what cannot be judged, or is judged otherwise, under written loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from taylor_verify.exact.invariants import invariants
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.scene import Scene
+
+NO_BALANCES: Final = (
+    "the momenta are not judged, and of the energy only its value: the loads depend on more of the "
+    "attitude or the centre than a row of the file determines"
+)
+NOTHING_CONSERVED: Final = (
+    "no quantity was found that these loads conserve, so no conserved quantity is gated"
+)
+_HOLD: Final = "hold"
+# One quantity of each model that every balance comes with.
+_BALANCED: Final = ("H2", "F2")
+
+
+def breaks_of(scene: Scene) -> str:
+    """Return where the equations of a scene jump in time, in words; empty where they do not.
+
+    Of switches nothing is said where some of them are knots of a table without jumps.
+    """
+    loads, last = scene.body.loads, scene.clock.elapsed[-1]
+    if loads is None:
+        return ""
+    inside = any(0 < abs(switch) < abs(last) for switch in loads.switches)
+    jumps = all(table.kind == _HOLD for _, table in loads.tables)
+    parts = ["the switches of the loads"] * (inside and jumps)
+    parts += ["the instants of held states"] * bool(loads.instants(last))
+    return " and ".join(parts)
+
+
+def load_notes(scene: Scene, verdicts: Sequence[Verdict]) -> Iterator[str]:
+    """Yield the notes of a judged answer; none without written loads."""
+    if scene.body.loads is None:
+        return
+    if not any(invariant.is_conserved for invariant in invariants(scene)):
+        yield NOTHING_CONSERVED
+    if not any(verdict.quantity in _BALANCED for verdict in verdicts):
+        yield NO_BALANCES

@@ -1,0 +1,307 @@
+"""The elementary steps of all texts of a scene in one piece of time, between two switches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+from itertools import pairwise
+from math import ceil, floor
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
+from taylor_verify.scenes.loads.grammar import Fault, Grammar, Unread
+from taylor_verify.scenes.loads.states import Continuous, Held
+from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
+from taylor_verify.scenes.loads.tables import Kind, Table
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entries, Entry, names
+
+if TYPE_CHECKING:
+    from taylor_verify.scenes.loads.loads import Loads
+
+MOST_SWITCHES: Final = 10_000
+_TOO_MANY: Final = f"at most {MOST_SWITCHES} switches"
+
+
+class Piece(NamedTuple):
+    """The steps between two switches, None where there is none, and the places of results among them.
+
+    ``outputs`` are the loads, ``rates`` those of all continuous components, ``values`` those of all held
+    components, and ``rotor`` the momentum of the wheels where a text writes it, else empty. Steps of values
+    alone may be "sign", "step", "floor", and "choose", whose operands are a, b and c: b if a >= 0 else c,
+    of which the one that is not chosen may have no value.
+    """
+
+    begin: Fraction | None
+    end: Fraction | None
+    steps: tuple[Step, ...]
+    outputs: tuple[int, ...]
+    rates: tuple[int, ...] = ()
+    values: tuple[int, ...] = ()
+    rotor: tuple[int, ...] = ()
+
+
+class PieceReader:
+    """The steps of all texts for the times between ``begin`` and ``end``.
+
+    A scan notes the times of all switches; which branch it takes does not matter, as all are read.
+    """
+
+    def __init__(
+        self,
+        loads: Loads,
+        begin: Fraction | None = None,
+        end: Fraction | None = None,
+        is_scan: bool = False,
+    ) -> None:
+        self._loads = loads
+        self._is_scan = is_scan
+        self._inside = _between(begin, end)
+        self.steps = Steps()
+        self.switches: set[Fraction] = set()
+        self.jumps = False
+        # The times between which each staircase has all of its switches.
+        self.known: list[tuple[Fraction, Fraction]] = []
+        self._grammar = Grammar(self.steps, self._named, self._is_past, self._on_stairs)
+        self._definitions, self._tables = dict(loads.definitions), dict(loads.tables)
+        self._space = {f"{n}{i + 1}": (n, i) for n, _ in loads.space for i in range(3)}
+        self._vectors = dict(loads.space)
+        self._own = {name for state in loads.states for name in state.components}
+        # A name in a value may jump with the state, and is read apart.
+        self._places: dict[tuple[str, bool], int] = {}
+        self._faulty: set[tuple[str, bool]] = set()
+        self._open: list[str] = []
+
+    def outputs(self) -> list[int]:
+        """The steps of the loads: three of a moment, or six of force and couple."""
+        entries = dict(self._loads.vectors)
+        vectors = [
+            self.entries(entries.get(name, ZERO_VECTOR), f"body.{name}")
+            for name in VECTORS[self._loads.model]
+        ]
+        for hung in self._loads.hung:
+            force = [self._in_body_axes(hung.force, j, "body") for j in range(3)]
+            parts = [force, self._moment(hung.at, force)][-len(vectors) :]
+            for vector, part in zip(vectors, parts, strict=True):
+                vector[:] = [
+                    self.steps.combined("+", a, b) for a, b in zip(vector, part, strict=True)
+                ]
+        return [place for vector in vectors for place in vector]
+
+    def rotor(self) -> list[int]:
+        """The steps of the momentum of the wheels; none where no text writes it."""
+        return self.entries(self._loads.rotor, "body.rotor")
+
+    def rates(self) -> list[int]:
+        """The steps of the rates of all continuous components."""
+        return [
+            place
+            for state in self._loads.states
+            if isinstance(state, Continuous)
+            for place in self.entries(state.rate, f"states.{state.name}.rate", state.is_vector)
+        ]
+
+    def values(self) -> list[int]:
+        """The steps of the values of all held components."""
+        return self.values_of([s for s in self._loads.states if isinstance(s, Held)])
+
+    def values_of(self, states: Sequence[Held]) -> list[int]:
+        """The steps of the values of some states; these alone may jump with the state."""
+        self._grammar.may_jump = True
+        places = [
+            place
+            for state in states
+            for place in self.entries(state.value, f"states.{state.name}.value", state.is_vector)
+        ]
+        self._grammar.may_jump = False
+        return places
+
+    def entries(self, entries: Entries, place: str, is_vector: bool = True) -> list[int]:
+        """The steps of numbers and texts, which stand at this place of the scene."""
+        return [self._entry(*each) for each in _placed(entries, place, is_vector)]
+
+    def reads(self) -> frozenset[str]:
+        """The names of all inputs of the steps so far."""
+        return frozenset(s.name for s in self.steps.steps if s.operation == "input")
+
+    def _entry(self, entry: Entry, place: str) -> int:
+        if isinstance(entry, str):
+            return self._grammar.read(entry, place)
+        return self.steps.number(entry)
+
+    def _in_body_axes(self, vector: Sequence[Entry], j: int, place: str) -> int:
+        """Component j of R^T v, for a vector by its components in space."""
+        return self.steps.total(
+            [
+                self.steps.combined(
+                    "*",
+                    self.steps.input(f"r{i + 1}{j + 1}"),
+                    self._entry(vector[i], f"{place}[{i}]"),
+                )
+                for i in range(3)
+            ]
+        )
+
+    def _moment(self, at: Vector, force: Sequence[int]) -> list[int]:
+        """The cross product of a point and a force."""
+        steps = self.steps
+
+        def product(i: int, j: int) -> int:
+            return steps.combined("*", steps.number(at[i]), force[j])
+
+        return [
+            steps.combined("-", product(j, k), product(k, j)) for j, k in ((1, 2), (2, 0), (0, 1))
+        ]
+
+    # Names.
+
+    def _named(self, name: str) -> int:
+        key = name, self._grammar.may_jump
+        if key not in self._places:
+            if name in self._open:
+                way = " -> ".join((*self._open, name))
+                raise NoStep("a definition without itself", way)
+            if key in self._faulty:
+                raise Unread
+            self._open.append(name)
+            try:
+                self._places[key] = self._meaning(name)
+            except Unread:
+                self._faulty.add(key)
+                raise
+            finally:
+                self._open.pop()
+        return self._places[key]
+
+    def _meaning(self, name: str) -> int:
+        if name in self._definitions:
+            return self._entry(self._definitions[name], f"define.{name}")
+        if name in self._space:
+            vector, j = self._space[name]
+            return self._in_body_axes(self._vectors[vector], j, f"space.{vector}")
+        if name in self._tables:
+            return self._tabulated(self._tables[name])
+        if name == "pi":
+            return self.steps.constant("pi")
+        if name in INERTIA and self._loads.inertia is not None:
+            return self.steps.number(self._loads.inertia[int(name[1]) - 1][int(name[2]) - 1])
+        if name == "t":
+            time, begin = self.steps.input("t"), self.steps.number(self._loads.origin)
+            return self.steps.combined("+", time, begin)
+        if name in names(self._loads.model) or name in self._own:
+            return self.steps.input(name)
+        raise NoStep("a known name", f"`{name}`")
+
+    # Switches.
+
+    def _tabulated(self, table: Table) -> int:
+        """The polynomial of a table, by Horner's rule."""
+        table = self._since_start(table)
+        self.jumps |= table.kind is Kind.HOLD
+        if self._is_scan:
+            self.switches.update(table.times)
+        knot, coefficients = table.polynomial(self._inside)
+        steps = self.steps
+        time = steps.combined("-", steps.input("t"), steps.number(knot))
+        place = steps.number(Fraction(0))
+        for coefficient in reversed(coefficients):
+            place = steps.combined("+", steps.combined("*", place, time), steps.number(coefficient))
+        return place
+
+    def _since_start(self, table: Table) -> Table:
+        loads = self._loads
+        times = [self._on_rung(time - loads.origin) for time in table.times]
+        if loads.rung is not None and any(a >= b for a, b in pairwise(times)):
+            raise NoStep("knots of a table that differ", f"two that {loads.rung.name} makes one")
+        return replace(table, times=tuple(times))
+
+    def _on_rung(self, number: Fraction) -> Fraction:
+        """A number, rounded once to the rung if there is one."""
+        return number if self._loads.rung is None else self._loads.rung.round(number)
+
+    def _is_past(self, slope: Fraction, value: Fraction) -> bool:
+        """Return True if slope t + value, which is not constant, is not negative in this piece of time."""
+        slope, value = self._on_rung(slope), self._on_rung(value)
+        if not slope:
+            return value >= 0
+        is_after = self._is_after(-value / slope)
+        return is_after if slope > 0 else not is_after
+
+    def _is_after(self, switch: Fraction) -> bool:
+        self.jumps = True
+        if self._is_scan:
+            self.switches.add(switch)
+            self._check_switches(len(self.switches))
+        return self._inside >= switch
+
+    def _on_stairs(self, slope: Fraction, value: Fraction) -> int:
+        """The step of floor(slope t + value) on which this piece of time stands.
+
+        A scan notes each time within the reach of the loads at which it is another one, and the next ones
+        on both sides, beyond which nothing is known.
+        """
+        self.jumps = True
+        slope, value = self._on_rung(slope), self._on_rung(value)
+        if self._is_scan and slope:
+            ends = [slope * time + value for time in (Fraction(0), self._loads.reach)]
+            first, last = ceil(min(ends)) - 1, floor(max(ends)) + 1
+            self._check_switches(len(self.switches) + last - first + 1)
+            stairs = sorted((k - value) / slope for k in range(first, last + 1))
+            self.switches.update(stairs)
+            self.known.append((stairs[0], stairs[-1]))
+        return floor(slope * self._inside + value)
+
+    def _check_switches(self, count: int) -> None:
+        if count > MOST_SWITCHES:
+            raise NoStep(_TOO_MANY, "more")
+
+    # Faults.
+
+    def faults(self) -> Iterator[Fault]:
+        """Yield the faults of all texts, also of definitions that nothing names."""
+        loads = self._loads
+        for name, entries in loads.vectors:
+            self._look_at(entries, f"body.{name}")
+        self._look_at(loads.rotor, "body.rotor")
+        for state in loads.states:
+            self._grammar.may_jump = isinstance(state, Held)
+            key = "value" if self._grammar.may_jump else "rate"
+            self._look_at(state.entries, f"states.{state.name}.{key}", state.is_vector)
+        for name in self._definitions:
+            self._grammar.may_jump = self._stands_in_values_alone(name)
+            self._look_at_one(partial(self._named, name), f"define.{name}")
+        for name, entries in loads.space:
+            components = [f"{name}{i}" for i in (1, 2, 3)]
+            self._grammar.may_jump = any(map(self._stands_in_values_alone, components))
+            self._look_at(entries, f"space.{name}")
+        # The components of a vector share their texts.
+        yield from dict.fromkeys(self._grammar.faults)
+
+    def _stands_in_values_alone(self, name: str) -> bool:
+        asked = self._places.keys() | self._faulty
+        return (name, True) in asked and (name, False) not in asked
+
+    def _look_at(self, entries: Entries, place: str, is_vector: bool = True) -> None:
+        for entry, where in _placed(entries, place, is_vector):
+            self._look_at_one(partial(self._entry, entry, where), where)
+
+    def _look_at_one(self, read: Callable[[], int], place: str) -> None:
+        try:
+            read()
+        except NoStep as fault:
+            self._grammar.faults.append(Fault(place, 1, fault.expected, fault.got))
+        except Unread:
+            pass
+
+
+def _placed(entries: Entries, place: str, is_vector: bool) -> list[tuple[Entry, str]]:
+    """Pair each entry with its place."""
+    return [(entry, f"{place}[{i}]" if is_vector else place) for i, entry in enumerate(entries)]
+
+
+def _between(begin: Fraction | None, end: Fraction | None) -> Fraction:
+    """A time between two others, one of which may be missing."""
+    if begin is None or end is None:
+        return (end or Fraction(0)) - 1 if begin is None else begin + 1
+    return (begin + end) / 2

@@ -1,0 +1,40 @@
+"""Names that texts may use, and the vectors that texts are written for, by model."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import chain
+from typing import Final
+
+from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS
+
+Entry = Fraction | str
+"""A number, or the text of an expression."""
+Entries = tuple[Entry, ...]
+
+ROTATION: Final = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+QUATERNION: Final = ("q0", "q1", "q2", "q3")
+CENTRE: Final = ("c1", "c2", "c3")
+INERTIA: Final = tuple(f"I{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+_RATES: Final = ("w1", "w2", "w3")
+_OF_BODY: Final[Mapping[str, tuple[str, ...]]] = {
+    "euler": _RATES,
+    "kirchhoff": (*_RATES, *(f"{letter}{i}" for letter in "uxy" for i in (1, 2, 3)), *CENTRE),
+}
+# The loads of a model, in the order of its outputs.
+VECTORS: Final[Mapping[str, tuple[str, ...]]] = {
+    "euler": ("moment",),
+    "kirchhoff": ("force", "couple"),
+}
+
+
+def names(model: str) -> frozenset[str]:
+    """The names that a scene of this model may use without defining them."""
+    inertia = INERTIA if model == "euler" else ()
+    return frozenset(("t", "pi", *_OF_BODY[model], *QUATERNION, *ROTATION, *inertia))
+
+
+# No scene may define these, so that a text has one meaning in both models. Words of Python are no names.
+TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), ALL_FUNCTIONS, keyword.kwlist))
