@@ -77,7 +77,7 @@ def causes_of_file(
         return Explained()
     first = file.at(range(min(len(file.times), _MOST_ROWS)))
     with np.errstate(all="ignore"), suppress(*_SILENT):
-        answer = _of_file(first, rung, conventions, judged.verdicts)
+        answer = material_of_file(first, rung, conventions, judged.verdicts)
         if answer is not None:
             return explained(answer)
     return Explained()
@@ -140,7 +140,7 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
         equations,
         acting=Acting(given, loads),
         reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
-        switches=np.array([float(switch) for switch in loads.switches]),
+        switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
         current=np.array(loads.current, dtype=float) if any(loads.current) else None,
     )
 
@@ -164,11 +164,11 @@ def material(
     track = {"attitude"} | ({"centre"} if needs_centre else set())
     tracked = replace(given, track=frozenset(track))
     exact = solution(tracked)
-    truth = _truth(
-        given, exact.evaluate([given.clock.elapsed[k] for k in rows], _DIGITS), has_momenta
-    )
+    instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
+    motion = exact.evaluate(instants, _DIGITS)
+    truth = _truth(given, motion, has_momenta).at(np.s_[1:])
+    start = _truth(given, motion, has_momenta=False).at(np.s_[:1])
     closed = exact.route != "taylor"
-    start = _truth(given, exact.evaluate([Fraction(0)], _DIGITS), has_momenta=False)
     compared = file.at(rows)
     answer = Answer(
         right,
@@ -211,7 +211,7 @@ def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
     return Motion(v, q, exact["centre"].astype(float) if "centre" in exact else None)
 
 
-def _of_file(
+def material_of_file(
     file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
 ) -> Answer | None:
     """Return a file as material; None if its body is unknown or its moving part is not whole."""

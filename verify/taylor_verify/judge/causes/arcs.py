@@ -24,6 +24,8 @@ _STEPS: Final = 32
 _COARSE: Final = 1e-6
 _FINEST: Final = 2e-14
 _ORDER: Final = 2.0**8
+# Texts take so many times as long as the equations alone.
+_TEXTS: Final = 4.0
 # Sets of parameters in one flow: more do not fit the caches.
 _SETS: Final = 48
 
@@ -37,11 +39,12 @@ def moved(
     arcs = begin.shape[2]
     parts = [(since, spans)]
     switches = equations.switches
-    if switches is not None and len(switches):
+    if switches is not None:
         parts = _parted(since, spans, switches)
     for at, span in parts:
-        answer.budget.spend(steps * begin.shape[1] * (70 + 0.11 * sets * arcs))
-        rates = equations.rates if len(parts) == 1 else _within(equations, at, span)
+        price = 1.0 if equations.acting is None else _TEXTS
+        answer.budget.spend(price * steps * begin.shape[1] * (70 + 0.11 * sets * arcs))
+        rates = equations.rates if switches is None else _within(equations, at, span)
         begin = flow(rates, begin, at, span, steps)
     return begin
 

@@ -212,7 +212,7 @@ class Equations:
         moving = nu if n == 3 or self.scene_mass is None else self.scene_mass @ nu
         state = np.concatenate([moving, z[:, n:]], axis=1).transpose(0, 2, 1)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
-        values = self.acting(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
+        values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
         stacked = values if n == 3 else np.concatenate(values, axis=-1)
         return np.asarray(stacked).transpose(0, 2, 1)
 
