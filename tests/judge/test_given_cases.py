@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 from builders.wrong_dynamics import failure
 
+import taylor_verify
 from taylor_verify.judge.causes.answers import explained, material_of_file
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GROUPS, with_needs
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 
@@ -63,7 +65,11 @@ def sentences(name: str, scene_name: str, failed: tuple[str, ...]) -> list[str]:
         ("no_ca", "remus", ["the Coriolis terms lack the added mass"]),
         ("ca_twice", "remus", ["the Coriolis terms have the added mass twice"]),
         ("cg_not_in_C", "remus", ["another centre of mass (m r and three moments of inertia) in"]),
-        ("cg_nowhere", "remus", ["another centre of mass (m r and three moments of inertia): M_15"]),
+        (
+            "cg_nowhere",
+            "remus",
+            ["another centre of mass (m r and three moments of inertia): M_15"],
+        ),
         ("no_crb", "remus", ["the Coriolis terms lack the rigid body"]),
         ("br_thrust_on", "bluerov", ["force 1, body axes = 5;"]),
         ("br_net_buoyancy", "bluerov", ["force 3, space axes = -1.96;"]),
@@ -80,7 +86,12 @@ def test_a_known_fault_is_named(name: str, scene: str, words: list[str]) -> None
 @pytest.mark.parametrize(
     ("name", "scene", "failed", "words"),
     [
-        ("fr_v_of_cg", "remus_path", "impulse", "is that of another point of the body, at (0, 0, 0.02)"),
+        (
+            "fr_v_of_cg",
+            "remus_path",
+            "impulse",
+            "is that of another point of the body, at (0, 0, 0.02)",
+        ),
         ("fr_depth_sign", "remus_path", "centre", "the centre has the other sign on axis 3"),
         (
             "at_old_h0.025",
@@ -95,3 +106,28 @@ def test_the_quantity_that_failed_has_its_cause(
 ) -> None:
     """A convention of one quantity, or a method of the attitude, is named where only that failed."""
     assert words in sentences(name, scene, (failed,))[0]
+
+
+def test_the_changed_scene_passes(tmp_path: Path) -> None:
+    """A file passes against the scene with the keys that its cause has printed, to what is left."""
+    (sentence,) = sentences("gyroscopic-half", "link", STATES)
+    changed = sentence.partition("as a scene: ")[2]
+    text = (CASES / "link.toml").read_text().replace("[body]\n", f"[body]\n{changed}\n")
+    scene = tmp_path / "changed.toml"
+    scene.write_text(text)
+    judged = taylor_verify.check(str(scene), str(CASES / "gyroscopic-half.csv"), tolerance=1e-7)
+    omega = next(verdict for verdict in judged.verdicts if verdict.quantity == "omega")
+    assert omega.verdict is Status.PASS
+
+
+def test_matrices_that_are_no_rotations_are_said() -> None:
+    """A file whose matrices grow has a note, and the moment that explains its rows names no cause."""
+    judged = taylor_verify.check(
+        str(CASES / "block.toml"), str(CASES / "matrix-not-orthogonal.csv"), tolerance=1e-6
+    )
+    facts = [note for note in judged.notes if "no rotation" in note or "moment acts" in note]
+    assert facts[0].startswith("r11 ... r33 are no rotation: R^T R is off by 0.12 at t = 20")
+    assert facts[1].startswith(
+        "no cause is proven; the rows follow if from t = 0 to 20 a moment acts"
+    )
+    assert judged.causes == ()

@@ -19,6 +19,7 @@ from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.printed import half_units
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
@@ -47,6 +48,8 @@ NOT_LOOKED_FOR: Final = (
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
 _WITH_TERMS: Final = frozenset({"rotor"})
 _DIGITS: Final = 20
+# R^T R of printed digits is off by less.
+_NO_ROTATION: Final = 1e-5
 _MOST_ROWS: Final = 4096
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
@@ -63,10 +66,11 @@ def are_known(body: Body) -> bool:
 
 @dataclass(frozen=True)
 class Explained:
-    """The likely causes of an answer; ``is_motion`` is True if they are no conventions and no clock."""
+    """The likely causes of an answer, and facts; ``is_motion`` if none is a convention or a clock."""
 
     causes: tuple[LikelyCause, ...] = ()
     is_motion: bool = False
+    notes: tuple[str, ...] = ()
 
 
 def causes_of_file(
@@ -76,11 +80,31 @@ def causes_of_file(
     if judged is None:
         return Explained()
     first = file.at(range(min(len(file.times), _MOST_ROWS)))
+    facts = _no_rotation(first)
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = material_of_file(first, rung, conventions, judged.verdicts)
         if answer is not None:
-            return explained(answer)
-    return Explained()
+            known = explained(answer)
+            return replace(known, notes=(*facts, *known.notes))
+    return Explained(notes=facts)
+
+
+def _no_rotation(file: TrajectoryFile) -> tuple[str, ...]:
+    """Return the fact that the matrices of a file are no rotations, where they are not."""
+    if "attitude" not in file.groups:
+        return ()
+    R = file.groups["attitude"].doubles().reshape(-1, 3, 3)
+    with np.errstate(all="ignore"):
+        off = np.max(np.abs(R.transpose(0, 2, 1) @ R - np.eye(3)), axis=(1, 2))
+    wrong = np.flatnonzero(off > _NO_ROTATION)
+    if not len(wrong):
+        return ()
+    worst = int(np.nanargmax(off))
+    return (
+        f"r11 ... r33 are no rotation: R^T R is off by {off[worst]:.2g} at t = "
+        f"{float(file.times[worst]):.6g}, and by more than {_NO_ROTATION:g} since t = "
+        f"{float(file.times[wrong[0]]):.6g}",
+    )
 
 
 def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> Judgement:
@@ -93,7 +117,8 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = _of_trajectory(problem, trajectory, judged.verdicts)
         if answer is not None:
-            causes = explained(answer).causes
+            known = explained(answer)
+            causes, judged = known.causes, replace(judged, notes=(*judged.notes, *known.notes))
     named = (replace(cause, scene=scene.name, rung=problem.rung.name) for cause in causes)
     return replace(judged, causes=tuple(named))
 
@@ -105,7 +130,11 @@ def explained(answer: Answer) -> Explained:
     except _SILENT:
         return Explained()
     is_motion = bool(causes) and not any(cause.kind in _READINGS for cause in causes)
-    return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion)
+    notes: tuple[str, ...] = ()
+    if not causes:
+        with suppress(*_SILENT):
+            notes = tuple(filter(None, (missing_load(answer),)))
+    return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:

@@ -239,6 +239,8 @@ def _parts(rows: Floats) -> list[Floats]:
 
 def _column(vector: Floats) -> Floats:
     """Return (components,) or (parameters, components) with the axes of an array of states."""
+    if np.ndim(vector) == 3:
+        return vector
     return vector[..., :, None] if np.ndim(vector) == 2 else vector[None, :, None]
 
 

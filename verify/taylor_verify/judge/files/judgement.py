@@ -150,6 +150,7 @@ def judge_file(
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         if known.findings:
             explained = causes_of_file(compared, rung, known, judged)
+        notes += explained.notes
         notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
