@@ -11,7 +11,6 @@ import pytest
 
 import taylor_verify
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, are_known, with_causes
-
 from taylor_verify.numbers.tensors import Vector, diagonal
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat

@@ -56,5 +56,5 @@ class Cause:
 
     @property
     def title(self) -> str:
-        """What the cause is, with its numbers."""
+        """Name of the cause with its numbers, and where it acts."""
         return ": ".join(filter(None, (self.where, self.text or self.name)))

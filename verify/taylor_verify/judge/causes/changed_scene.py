@@ -108,11 +108,11 @@ def _quadratic(other: Equations) -> list[list[tuple[float, str]]]:
 
 
 def _text(terms: Sequence[tuple[float, str]], largest: float) -> str:
-    seen = [(value, word) for value, word in terms if abs(value) > _NOTHING * largest]
-    if not any(word for _, word in seen):
-        return number(seen[0][0]) if seen else "0.0"
+    large = [(value, word) for value, word in terms if abs(value) > _NOTHING * largest]
+    if not any(word for _, word in large):
+        return number(large[0][0]) if large else "0.0"
     return (
         '"'
-        + " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in seen)
+        + " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in large)
         + '"'
     )

@@ -152,7 +152,11 @@ class _Dynamics:
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         sets = [changes for family in families for changes in family.ahead]
-        defects, first, found = self.arcs.defects([{}, *sets], self.arcs.few_steps), 1, []
+        defects, first, linear = (
+            self.arcs.defects([{}, *sets], self.arcs.few_steps),
+            1,
+            list[_Linear](),
+        )
         for family in families:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
@@ -160,8 +164,8 @@ class _Dynamics:
             if np.all(np.isfinite(slopes)) and np.any(slopes):
                 basis = _basis(slopes * family.scale, 1e-6)
                 rest = self._across(basis, self.arcs.of_right.ravel())
-                found.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
-        return sorted(found, key=lambda each: (each.family.count, each.left))
+                linear.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
+        return sorted(linear, key=lambda each: (each.family.count, each.left))
 
     @staticmethod
     def _across(basis: Floats, vector: Floats) -> Floats:

@@ -9,15 +9,15 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.answer import Answer, Places
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.fault import Sizes
 from taylor_verify.judge.causes.flow import Floats
 
 _ROUNDS: Final = 3
 _SHIFT: Final = 1e-3
-# A load is seen if it is so many times what the rounding of the rows makes.
-_SEEN: Final = 30.0
+# A load stands out if it is so many times what the rounding of the rows makes.
+_STANDS_OUT: Final = 30.0
 # The rows must follow to this part of their defects.
 _LEAVES: Final = 1e-3
 _TIMES: Final = 5
@@ -33,8 +33,8 @@ def missing_load(answer: Answer) -> str:
     if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
         return ""
     unit = np.abs(np.linalg.inv(slopes)) @ answer.rounding
-    seen = np.flatnonzero(np.any(np.abs(load) > _SEEN * unit, axis=1))
-    return _words(answer, load, seen) if len(seen) else ""
+    clear = np.flatnonzero(np.any(np.abs(load) > _STANDS_OUT * unit, axis=1))
+    return _words(answer, load, clear) if len(clear) else ""
 
 
 def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
@@ -53,12 +53,12 @@ def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
     return load, slopes, float(np.linalg.norm(defects))
 
 
-def _words(answer: Answer, load: Floats, seen: Floats) -> str:
+def _words(answer: Answer, load: Floats, clear: Places) -> str:
     times = answer.times + answer.right.start
     noun = "moment" if answer.n == 3 else "force and couple"
-    some = seen[np.unique(np.linspace(0, len(seen) - 1, _TIMES).astype(int))]
+    some = clear[np.unique(np.linspace(0, len(clear) - 1, _TIMES).astype(int))]
     listed = "; ".join(f"t = {times[k]:.6g}: {_vector(load[k])}" for k in some)
-    begin, end = times[seen[0]], times[seen[-1] + 1]
+    begin, end = times[clear[0]], times[clear[-1] + 1]
     return (
         f"no cause is proven; the rows follow if from t = {begin:.6g} to {end:.6g} a {noun} acts (body "
         f"axes) that the scene does not have: {listed}"

@@ -67,34 +67,34 @@ def _of_motion(
     answer: Answer, moving: list[str], has_wrong_attitude: bool, more: tuple[Fault, ...]
 ) -> list[Cause]:
     """Return the causes in the motion, and in the attitude given the motion."""
-    found: list[Cause] = []
+    causes: list[Cause] = []
     cause = None
     if moving:
-        found = _pieces(answer, more) or []
-        cause = found[-1] if found else dynamics(answer, more)
-        found = found or ([cause] if cause else [])
+        causes = _pieces(answer, more) or []
+        cause = causes[-1] if causes else dynamics(answer, more)
+        causes = causes or ([cause] if cause else [])
     if not has_wrong_attitude:
-        return found
+        return causes
     if cause is not None and cause.leaves.get("attitude", 1.0) <= _PROVEN:
-        return found
+        return causes
     is_slight = cause is not None and max(answer.worst[name] for name in moving) < (
         _CONTRADICTED * answer.worst["attitude"]
     )
     if is_slight:
-        cause, found, moving = None, [], []
+        cause, causes, moving = None, [], []
     if cause is None and moving:
-        return found
-    return _with_attitude(answer, cause, found)
+        return causes
+    return _with_attitude(answer, cause, causes)
 
 
-def _with_attitude(answer: Answer, cause: Cause | None, found: list[Cause]) -> list[Cause]:
+def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
     right = answer.right if cause is None else answer.right.changed(cause.changes)
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
     if of_attitude is not None:
-        return [*found, of_attitude]
+        return [*causes, of_attitude]
     # An attitude that no cause explains refutes a cause that does not explain it.
     is_refuted = cause is not None and cause.method is None and cause.kind not in _OF_PIECES
-    return [each for each in found if each is not cause] if is_refuted else found
+    return [each for each in causes if each is not cause] if is_refuted else causes
 
 
 _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})

@@ -51,7 +51,7 @@ def _of(change: Callable[[Law, Sample, Draw, float], None]) -> Make:
 
 def _load_scale(sample: Sample) -> Floats:
     pace = float(np.linalg.norm(sample.v0[-3:]))
-    return np.abs(sample.mass @ sample.v0) * pace + 0.05
+    return np.asarray(np.abs(sample.mass @ sample.v0) * pace + 0.05
 
 
 def _set(name: str, value: Callable[[Sample, Draw, float], Any]) -> Make:
@@ -357,7 +357,7 @@ KINDS: Final = (
     Kind("products left out", ("products", "off-diagonal", "tensor", "mass"), _of(_products)),
     Kind("own start", ("another start",), _own_start),
     Kind("jump", ("jump", "first two rows"), _jump),
-    Kind("asleep", ("at rest",), _asleep),
+    Kind("asleep", ("at rest", "all velocities are 0"), _asleep),
     Kind("sign of an axis", ("other sign on axis", "contradicts"), _sign),
     Kind("bias", ("constant offset",), _bias),
     Kind("degrees", ("degrees",), _degrees, (*RIGID, "fluid")),

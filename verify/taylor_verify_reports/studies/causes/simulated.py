@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -52,7 +53,9 @@ def law(sample: Sample) -> Law:
         mass[:3].copy(),
         sample.rotor.copy(),
         sample.load.copy() if n == 3 else zeros.copy(),
-        *(zeros.copy() for _ in range(3)),
+        zeros.copy(),
+        zeros.copy(),
+        zeros.copy(),
     )
 
 
@@ -74,6 +77,10 @@ def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
     if t < law.from_time:
         extra = 0 * extra
     return np.asarray(law.clock * (np.linalg.solve(law.mass, force + extra) - law.damping * v))
+
+
+def _rates_at(law: Law, t: float, q: Floats, v: Floats) -> Floats:
+    return rates(law, t, v, q)
 
 
 def rotation(q: Floats) -> Floats:
@@ -111,11 +118,11 @@ def integrated(
         return np.concatenate([rates(law, t, v, q), law.clock * turn(q, v[-3:])])
 
     z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0)])
-    parts, edges = [], [times[0], times[-1]]
-    if times[0] < law.from_time < times[-1]:
+    parts, edges = [], [sample.times[0], times[-1]]
+    if edges[0] < law.from_time < times[-1]:
         edges.insert(1, law.from_time)
     for k, (begin, end) in enumerate(pairwise(edges)):
-        inside = times[(times >= begin if not k else times > begin) & (times <= end)]
+        inside = times[(times > begin) & (times <= end)] if k else times[times <= end]
         ask = np.union1d(inside, [end])
         solved = solve_ivp(slope, (begin, end), z0, method, t_eval=ask, rtol=rtol, atol=1e-3 * rtol)
         parts.append(solved.y.T[np.isin(ask, inside)])
@@ -138,7 +145,7 @@ def stepped(
         h = (end - begin) / steps
         for k in range(steps):
             now = begin + k * h
-            after = step(lambda z, now=now, q=q: rates(used, now, z, q), v, h)
+            after = step(partial(_rates_at, used, now, q), v, h)
             q = update(q, v[-3:], after[-3:], h)
             q, v = q / np.linalg.norm(q), after
         rows.append(np.concatenate([v, q]))
