@@ -51,7 +51,7 @@ def _of(change: Callable[[Law, Sample, Draw, float], None]) -> Make:
 
 def _load_scale(sample: Sample) -> Floats:
     pace = float(np.linalg.norm(sample.v0[-3:]))
-    return np.asarray(np.abs(sample.mass @ sample.v0) * pace + 0.05
+    return np.asarray(np.abs(sample.mass @ sample.v0) * pace + 0.05)
 
 
 def _set(name: str, value: Callable[[Sample, Draw, float], Any]) -> Make:

@@ -53,7 +53,7 @@ def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
     """Return an answer that stays of moderate size."""
     for attempt in range(_TRIES):
         draw = np.random.default_rng([seed, KINDS.index(kind), number, attempt])
-        body = sample(kind.sorts[number % len(kind.sorts)], draw)
+        body = sample(str(draw.choice(kind.sorts)), draw)
         with np.errstate(all="ignore"):
             rows = kind.make(body, draw, SIZES[number % len(SIZES)])
         if np.all(np.isfinite(rows.v)) and np.max(np.abs(rows.v)) < _LARGEST:
