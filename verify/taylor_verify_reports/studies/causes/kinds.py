@@ -60,7 +60,7 @@ def _set(name: str, value: Callable[[Sample, Draw, float], Any]) -> Make:
 
 def _one(s: Sample, d: Draw, size: float) -> Floats:
     place = int(d.integers(s.n))
-    return size * _load_scale(s)[place] * np.eye(s.n)[place]
+    return np.asarray(size * _load_scale(s)[place] * np.eye(s.n)[place])
 
 
 def _three(s: Sample, d: Draw, size: float) -> Floats:
