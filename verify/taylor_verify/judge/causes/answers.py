@@ -50,7 +50,8 @@ _WITH_TERMS: Final = frozenset({"rotor"})
 _DIGITS: Final = 20
 # R^T R of printed digits is off by less.
 _NO_ROTATION: Final = 1e-5
-_MOST_ROWS: Final = 4096
+# Of longer files every second row is examined, or every third, and so on.
+_MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
 # Work for each component of v.
@@ -79,7 +80,8 @@ def causes_of_file(
     """Return the likely causes of the failures in a file, read by its conventions."""
     if judged is None:
         return Explained()
-    first = file.at(range(min(len(file.times), _MOST_ROWS)))
+    count = len(file.times)
+    first = file.at(range(0, count, -(-count // _MOST_ROWS)))
     facts = _no_rotation(first)
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = material_of_file(first, rung, conventions, judged.verdicts)
