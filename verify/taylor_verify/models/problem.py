@@ -212,6 +212,7 @@ def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
     return in_piece(
         replace(
             problem,
+            given=replace(problem.given, initial=data.initial),
             held=own.held_starts(loads),
             form=Form(data.choice.equations, data.states, names),
             parameters=tuple(numbers[name] for name in names),
@@ -224,16 +225,28 @@ def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:
 
 
 def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
-    """Return the same with the scene's own continuous states, and their wheels in the momentum H."""
+    """Return the same with the scene's own continuous states, and their wheels in the momentum H.
+
+    H is rounded with the wheels in it, and the motion begins with the omega that it leaves to the body.
+    """
     names = tuple(own.in_form(name, loads) for name in loads.continuous)
     starts = [start / unit for start, unit in zip(own.starts(loads), units.own, strict=True)]
     numbers = {**data.choice.numbers, **dict(zip(names, starts, strict=True))}
+    initial = data.initial
     if loads.rotor:
         turning = wheels(loads, Fraction(0), own.starts(loads), rung.bits)
+        moving = []
         for i, h in enumerate(turning, start=1):
-            numbers[f"H{i}"] = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
+            H = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
+            numbers[f"H{i}"] = H
+            moving.append(H * units.momentum - h)
+        inverse_inertia = tensors.inverse(data.body.energy_matrix)
+        initial = initial.with_moving(tensors.apply(inverse_inertia, tuple(moving)))
     return replace(
-        data, states=(*data.states, *names), choice=replace(data.choice, numbers=numbers)
+        data,
+        states=(*data.states, *names),
+        choice=replace(data.choice, numbers=numbers),
+        initial=initial,
     )
 
 
