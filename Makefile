@@ -10,7 +10,7 @@ SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
 .PHONY: help verify verify-all test test-all docs site test-site dist bench reports paper
-.PHONY: release-data tradeoff engines check-reports lint clean
+.PHONY: release-data tradeoff engines causes check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -69,6 +69,11 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify publish controls hard > /dev/null
 	@$(BIN)/taylor-verify run --out reports
 	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
+
+causes: $(INSTALLED)  ## Measure how often likely causes are right (COUNT=20 of each kind) to reports/local/causes.md
+	@mkdir -p reports/local
+	@$(BIN)/python -m taylor_verify_reports.studies.causes reports/local/causes.md --count $(or $(COUNT),20)
+	@echo 'reports/local/causes.md'
 
 paper: $(INSTALLED)  ## Make the paper and its tables, PDF, LaTeX and CSV, in reports/paper
 	@$(BIN)/taylor-verify publish --paper > /dev/null

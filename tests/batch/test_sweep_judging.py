@@ -49,7 +49,7 @@ def test_a_worst_case_that_failed_has_the_causes_that_run_finds(
     file.write_text(TEMPLATE.replace("samples = 3", "samples = 21"))
     words = ["sweep", str(file), "--count", "1", "--jobs", "1", "--worst", "1"]
     assert main([*words, "--solver", solver, "--out", str(out)]) == 1
-    assert "likely cause: no gyroscopic term: " in capsys.readouterr().out
+    assert "likely cause: no gyroscopic term; " in capsys.readouterr().out
     (case,) = json.loads((out / "summary.json").read_text())["worst"]
     causes = [cause.sentence for cause in run(out / case["file"], solver).causes]
     assert case["causes"] == causes != []

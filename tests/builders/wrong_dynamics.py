@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,10 @@ from scipy.integrate import solve_ivp
 
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.material import Material
+from taylor_verify.judge.causes.answer import Motion, steady_signs
+from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -162,22 +165,20 @@ def runge_kutta(
     return columns_of(times, np.array(rows))
 
 
-def material(scene: Scene, columns: Columns) -> Material:
-    """Columns as the material of causes, as if every state had failed: nothing is compared."""
-    n, names = Numbers(scene), VECTORS["omega"]
-    if len(n.state) == 6:
-        names = VECTORS["linear_impulse"] + VECTORS["angular_impulse"]
-    rows = {key: np.array([columns[name] for name in key]).T for key in (names, QUATERNION)}
-    states = ("omega", "impulse", "attitude")
-    return Material(
-        Equations.of(scene.body),
-        n.state,
-        n.q,
-        np.array(columns["t"]) - n.start,
-        rows[names],
-        rows[QUATERNION],
-        failed={name: failure(scene, name) for name in states},
-    )
+def causes(scene: Scene, columns: Columns) -> dict[str, str]:
+    """The names and sentences of the causes of an answer whose states failed, whatever their errors."""
+    vectors = VECTORS["omega"]
+    if scene.model == "kirchhoff":
+        vectors = VECTORS["linear_impulse"] + VECTORS["angular_impulse"]
+    v, q = (np.array([columns[name] for name in names]).T for names in (vectors, QUATERNION))
+    given = adopt(scene, rung("f64"), [Fraction(t) for t in columns["t"]]).given
+    noise = (2.0**-53 * np.max(np.abs(v), axis=0), 2.0**-53, 0.0)
+    failures = [failure(scene, name) for name in ("omega", "impulse", "attitude")]
+    with np.errstate(all="ignore"):
+        answer = material(given, Motion(v, steady_signs(q)), len(v[0]) == 6, noise, failures)
+        if answer is None:
+            return {}
+        return {cause.name: cause.sentence for cause in explained(answer).causes}
 
 
 def failure(scene: Scene, quantity: str) -> Verdict:

@@ -211,13 +211,13 @@ def test_loads_and_own_states_are_drawn_under_the_motion() -> None:
     """Each load and each state is a panel: the moment is what the text makes of the drawn states."""
     drawn = motion(read(SAMPLED, "sampled"), 40)
     panels = {panel.name: panel for panel in series(drawn).panels}
-    moment, held = panels["moment, body axes"].rows, panels["state m"]
+    moment, sampled = panels["moment, body axes"].rows, panels["state m"]
     omega, times = np.array(drawn["course"]["omega"]), np.array(drawn["course"]["t"])
-    assert np.allclose(moment[:, 0], held.rows[:, 0] - omega[:, 0] / 4, atol=1e-8)
+    assert np.allclose(moment[:, 0], sampled.rows[:, 0] - omega[:, 0] / 4, atol=1e-8)
     assert np.allclose(moment[:, 1], -panels["state i"].rows[:, 0] / 8, atol=1e-8)
     assert np.allclose(moment[:, 2], times, atol=1e-8)
-    assert held.is_held
-    assert len(np.unique(held.rows)) == len(np.arange(0, 2.5, 0.5))
+    assert sampled.is_held
+    assert len(np.unique(sampled.rows)) == len(np.arange(0, 2.5, 0.5))
     assert [each["heading"] for each in moving(drawn)["panels"]] == list(panels)
 
 

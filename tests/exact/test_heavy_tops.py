@@ -102,9 +102,9 @@ by_top = pytest.mark.parametrize("name", TOPS)
 
 
 def rows(scene: Scene, route: str, digits: int = DIGITS) -> list[dict[str, object]]:
-    found = solution(scene, route)
+    exact = solution(scene, route)
     printed: list[dict[str, object]] = document(
-        scene, found, [(t, Fraction(t)) for t in TIMES], digits
+        scene, exact, [(t, Fraction(t)) for t in TIMES], digits
     )["rows"]
     return printed
 
@@ -116,9 +116,9 @@ def flat(value: object) -> list[Fraction]:
     return [x for part in value for x in flat(part)]
 
 
-def agree(one: list[dict[str, object]], other: list[dict[str, object]]) -> bool:
+def agree(first: list[dict[str, object]], second: list[dict[str, object]]) -> bool:
     """Both are within their radii of each other, in every vector and matrix of every row."""
-    for a, b in zip(one, other, strict=True):
+    for a, b in zip(first, second, strict=True):
         radius = Fraction(str(a["radius"])) + Fraction(str(b["radius"]))
         for quantity in ("omega", "attitude"):
             v, w = flat(a[quantity]), flat(b[quantity])
@@ -212,8 +212,8 @@ NO_TOPS = {
 @pytest.mark.parametrize("name", NO_TOPS)
 def test_what_is_no_top_is_enclosed(name: str) -> None:
     """Each of these lacks one condition of a closed form, and its truth is the enclosure."""
-    found = solution(NO_TOPS[name])
-    assert (found.regime, found.route) == ("no closed form", "taylor")
+    exact = solution(NO_TOPS[name])
+    assert (exact.regime, exact.route) == ("no closed form", "taylor")
 
 
 def test_a_rounded_top_is_enclosed() -> None:

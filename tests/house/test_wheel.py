@@ -16,6 +16,8 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from taylor_verify.scenes.library import STANDARD_SET
+
 CHECKOUT = Path(__file__).resolve().parents[2]
 
 
@@ -62,7 +64,7 @@ def test_the_installed_command_lists_the_shipped_scenes(installed: Path, tmp_pat
     standard = {
         f"{path.parts[1]}/{path.stem}"
         for path in shipped("cases")
-        if path.parts[1] in {"euler", "kirchhoff", "manufactured"} and path.suffix == ".toml"
+        if path.parts[1] in STANDARD_SET and path.suffix == ".toml"
     }
     assert standard
     answer = run(installed, tmp_path, str(installed / "bin" / "taylor-verify"), "list", "--json")

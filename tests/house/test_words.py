@@ -88,7 +88,7 @@ def test_the_tree_keeps_the_rule(rule: object, folders: list[str]) -> None:
         (bad_beginnings, 0, '"""Inertia of a body."""'),
         (bad_beginnings, 0, '"""Offset."""'),
         (nameless, 1, "found = 1"),
-        (nameless, 1, "def f(held): ..."),
+        (nameless, 1, "def f(seen): ..."),
         (nameless, 1, "def told(): ..."),
         (nameless, 1, "[kept for kept in ()]"),
         (nameless, 1, "self._seen = 1"),

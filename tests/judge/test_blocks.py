@@ -34,8 +34,8 @@ from taylor_verify.solvers.values import as_mpf, exact
 
 ROWS = 61
 BLOCK = 7
-# The exact motion is another one at few instants and at many: by theta functions, or by polynomials. Each
-# is proven to forty bits more than its 19 digits, about 1e-31, and no error here is below 1e-18.
+# The exact motion of few instants has other roundings than that of many. Each is proven to forty bits more
+# than its 19 digits, about 1e-31, and no error here is below 1e-18.
 SAME = 1e-13
 
 

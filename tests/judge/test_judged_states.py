@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.turns import by_turns
 from builders.written_loads import End, Evaluated, end_of
 from mpmath import mp, mpf
 
@@ -20,6 +21,7 @@ from taylor_verify import check, explain
 from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.loaded import times_of_run
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import read
@@ -77,6 +79,12 @@ TWINS: Mapping[str, tuple[Scene, set[str], set[str]]] = {
 }  # fmt: skip
 
 
+SPUN_UP = 'h = { start = [0, 0, 0], rate = ["q1/2 + w1/4", "q2/2 + w2/4", "q3/2 + w3/4"] }'
+WHEELS = satellite(SPUN_UP, 'rotor = ["h1", "h2", "h3"]', ("h",))
+# The gyroscopic term of the wheels, without the reaction of their motors.
+UNMOVED = satellite(SPUN_UP, 'moment = ["h2*w3 - h3*w2", "h3*w1 - h1*w3", "h1*w2 - h2*w1"]', ("h",))
+
+
 def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str]) -> Path:
     """A file of these states, with the columns of some of the scene's own states."""
     assert scene.body.loads is not None
@@ -112,7 +120,7 @@ def test_a_right_file_passes_by_the_arithmetic_alone(tmp_path: Path) -> None:
     assert all((v.bound or 1.0) < 1e-13 for v in answer.verdicts if v.is_compared)
 
 
-@pytest.mark.parametrize("twin", TWINS)
+@pytest.mark.parametrize("twin", by_turns([*TWINS]))
 def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
     """A wrong rate, a late sample and a wrong law differ in which of the rows they fail."""
     scene, failing, passing = TWINS[twin]
@@ -121,6 +129,19 @@ def test_a_fault_of_a_controller_fails_the_gate_that_names_it(twin: str, tmp_pat
     passed = {v.quantity for v in answer.verdicts if v.verdict is Status.PASS}
     assert failing <= failed
     assert passing <= passed
+
+
+def test_the_momentum_of_body_and_wheels_is_conserved(tmp_path: Path) -> None:
+    """H = I omega + h stays as it is in space; a program that forgets the reaction of a motor fails it."""
+    right, wrong = (
+        check(WHEELS, written(tmp_path / "run.csv", scene, answers(scene), ("h",)), partial=True)
+        for scene in (WHEELS, UNMOVED)
+    )
+    assert right.passed, str(right)
+    of_right, of_wrong = ({v.quantity: v for v in each.verdicts} for each in (right, wrong))
+    for name in ("H2", "H_space"):
+        assert "polynomial zero" in str(of_right[name].reason)
+        assert of_wrong[name].verdict is Status.FAIL
 
 
 def by_steps(scene: Scene, steps: int) -> list[End]:
@@ -153,6 +174,16 @@ def test_steps_over_the_instants_are_of_order_one(
     assert bool(over) is (order == 1)
 
 
+def test_a_law_has_a_tolerance_of_its_own() -> None:
+    """The quantities of a scene, for which a caller may ask a tolerance, name states and laws."""
+    asked = tolerances({"m law": 1e-3, "i": 1e-4, "omega": 1e-5}, [RIGHT])
+    assert asked.of("m law") == 1e-3
+    with pytest.raises(
+        ValueError, match=r"expected some of omega, attitude, i, m, m law, .*got i law"
+    ):
+        tolerances({"i law": 1e-3}, [RIGHT])
+
+
 def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:
     """A tracked own state without its columns makes the answer incomplete."""
     answer = judged(tmp_path, RIGHT, ["i"])
@@ -161,6 +192,7 @@ def test_a_state_that_the_file_lacks_is_said(tmp_path: Path) -> None:
     assert {"m", "m law"}.isdisjoint(v.quantity for v in answer.verdicts)
 
 
+@pytest.mark.slow
 def test_an_untracked_state_is_computed_and_not_gated(tmp_path: Path) -> None:
     """The same motion without tracked own states passes without their columns."""
     scene = replace(RIGHT, states=frozenset())

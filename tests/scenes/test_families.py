@@ -186,6 +186,22 @@ def test_a_template_writes_scenes() -> None:
     read(text, "written")
 
 
+def test_the_constants_of_loads_are_drawn() -> None:
+    """A definition, and the interval and the start of a held state, are numbers like any other."""
+    drawn = template(
+        'inertia = [1, 2, 2]\nmoment = ["-k*w1 + m", 0, 0]',
+        "[sweep]\ndigits = 3",
+        "[define]\nk = { uniform = [1, 2] }\n[states]\n"
+        'm = { every = { uniform = [0.2, 0.4] }, start = { uniform = [0, 1] }, value = "-w1" }\n'
+        + REST,
+    )
+    loads = read(drawn.text([0.5, 0.5, 0.25], 1), "written").body.loads
+    assert loads is not None
+    assert dict(loads.definitions) == {"k": Fraction(3, 2)}
+    (sampled,) = loads.states
+    assert (sampled.every, sampled.start) == (Fraction(3, 10), (Fraction(1, 4),))
+
+
 FAULTY = """
 titel = "x"
 model = "euler"

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 import taylor_verify
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, with_causes
-from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, are_known, with_causes
 from taylor_verify.numbers.tensors import Vector, diagonal
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
@@ -45,7 +44,7 @@ BODIES = {
 def test_a_body_answers_for_itself(body: Body, is_plain: bool, is_known: bool) -> None:
     """It is plain if its energy alone moves it; causes are searched for if every part has its terms."""
     assert body.is_plain is is_plain
-    assert Equations.are_known(body) is is_known
+    assert are_known(body) is is_known
 
 
 def test_an_engine_for_plain_bodies_does_not_take_a_new_kind() -> None:

@@ -222,27 +222,18 @@ def judged(scene: Scene | str, command: str, parts: int = 10) -> Judgement:
     return run(asked, f"process:{command} {step!r}", tolerance=TOLERANCE)
 
 
-def kinds() -> list[str]:
-    """A scene of each kind of rigid body: what acts on it, the signs of its time and of its start."""
-    scene_of: dict[object, str] = {}
-    for name in SCENES:
-        scene = load(name)
-        clock = scene.clock
-        kind = tuple(scene.body.acting), clock.elapsed[-1] < 0, clock.start == 0
-        scene_of.setdefault(kind, name)
-    return list(scene_of.values())
+# A constant moment, a start other than 0, a motion backwards in time; all else is in LOADED.
+KINDS = ("constant-moment", "later-start", "moment-backward")
 
 
 def test_a_template_answers_each_kind_of_scene(command: str) -> None:
-    """It reads moment, wheels, damping and a start other than 0; what it cannot have is unsuited."""
-    for name in kinds():
-        verdicts = judged(name, command).verdicts
-        if load(name).body.manufactured is None:
-            assert {verdict.verdict for verdict in verdicts} == {Status.PASS}, name
-        else:
-            assert {verdict.verdict for verdict in verdicts} == {Status.UNAVAILABLE}, name
-    (verdict,) = {v.verdict for v in judged("engines/ellipsoid", command).verdicts}
-    assert verdict is Status.UNAVAILABLE
+    """It reads all that may act on a body; what it cannot have is unsuited."""
+    for name in KINDS:
+        verdicts = judged(f"euler/{name}", command).verdicts
+        assert {verdict.verdict for verdict in verdicts} == {Status.PASS}, name
+    for name in ("engines/ellipsoid", "manufactured/euler-tones"):
+        (verdict,) = {v.verdict for v in judged(name, command).verdicts}
+        assert verdict is Status.UNAVAILABLE
 
 
 @pytest.mark.slow

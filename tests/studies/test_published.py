@@ -5,6 +5,7 @@ The files that the repository does not hold are no part of it here, whether they
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import shutil
@@ -228,11 +229,26 @@ def test_every_extreme_is_published_as_it_is_now() -> None:
 
 
 def test_some_exact_trajectories_are_those_of_the_code() -> None:
-    """The CSV of a sixth of the scenes, and the examples, equal those computed now, byte for byte."""
+    """The rows of a sixth of the scenes, and the examples, equal those computed now, byte for byte."""
     fresh_files = (reports.some_references() / reference_files.FOLDER).iterdir()
     made_now = [file for file in fresh_files if file.suffix not in (".json", ".md")]
     assert len(made_now) > len(names()) / 6
-    assert [f.name for f in made_now if f.read_bytes() != published_reference(f.name)] == []
+    assert [file.name for file in made_now if not is_published(file)] == []
+
+
+def is_published(made: Path) -> bool:
+    """A file equals the published one; where scenes share a sheet, rows of some of them are in it."""
+    published = published_reference(made.name)
+    if made.name == "loads.csv":
+        every = filled_columns(published)
+        return all(row in every for row in filled_columns(made.read_bytes()))
+    return made.read_bytes() == published
+
+
+def filled_columns(sheet: bytes) -> list[dict[str, str]]:
+    """Each row of a sheet by its columns; which others are empty depends on the scenes in the sheet."""
+    rows = csv.DictReader(sheet.decode("utf-8").splitlines())
+    return [{name: value for name, value in row.items() if value} for row in rows]
 
 
 def published_reference(name: str) -> bytes:

@@ -100,7 +100,7 @@ def test_my_simulator(verify_solver):
             "f64 * since t = *; largest error * (max|omega|) * is allowed; up to * times what perfect *",
             "E       pass  euler/generic f64 T: *",
             "E       pass  euler/generic f64 H2: *",
-            "E       likely cause: euler/generic f64: no gyroscopic term: *",
+            "E       likely cause: euler/generic f64: no gyroscopic term; *",
         ]
     )
     # Nothing of the plugin's own between the user's line and the message.

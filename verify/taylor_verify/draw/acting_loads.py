@@ -49,11 +49,11 @@ def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
         turns = -turns
     centre = [np.array(course["centre"])] if "centre" in course else []
     state = np.hstack([*moving, turns, *centre, *_own(loads, course, is_held=False)])
-    values = Acting(scene, loads).loads(course["t"], state, _held(loads, course))
+    values = Acting(scene, loads).loads(course["t"], state, _taken(loads, course))
     return np.hstack(values) if isinstance(values, tuple) else values
 
 
-def _held(loads: Loads, course: Mapping[str, Any]) -> Numbers | None:
+def _taken(loads: Loads, course: Mapping[str, Any]) -> Numbers | None:
     return np.hstack(_own(loads, course, is_held=True)) if loads.held_values else None
 
 

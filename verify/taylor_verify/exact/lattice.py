@@ -12,14 +12,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cached_property
 from typing import Final, final
 
 from flint import acb, arb, ctx
 
 from taylor_verify.exact.balls import Undecidable, ball, sign
-from taylor_verify.exact.line import BySeries, Line, OneByOne
-from taylor_verify.exact.theta_series import MANY, ThetaSeries
 
 _I: Final = acb(0, 1)
 # An argument is told from its neighbours, 2 pi away, by a sum that is known to about this much.
@@ -43,13 +40,15 @@ class Lattice(ABC):
     def p(self, u: acb) -> tuple[acb, acb]:
         """(p(u), p'(u)); not finite at a period."""
 
+    @final
+    def real(self, u: arb) -> tuple[arb, arb]:
+        """(p(u), p'(u)) of a real u, where both are real."""
+        p, slope = self.p(acb(u))
+        return p.real, slope.real
+
     @abstractmethod
     def argument(self, X: acb, Y: acb) -> acb:
         """A u with p(u) = X and p'(u) = Y, for a point of the curve that is no double point."""
-
-    def along(self, arguments: Sequence[arb]) -> Line:
-        """The line of these real arguments: one by one, unless stated."""
-        return OneByOne(self, arguments)
 
     @abstractmethod
     def turn(self, u: arb, w: acb, quotient: acb) -> arb:
@@ -123,21 +122,6 @@ class Periods(Lattice):
         # p - e_1 = (pi/L)^2 (th3 th4 theta_2/theta_1)^2, DLMF 23.6.5
         self._from_root = (scale * th3 * th4) ** 2
         self._slope = -2 * scale**3 * (th2 * th3 * th4) ** 2
-        self._slope_at_zero = scale * th2 * th3 * th4
-
-    def along(self, arguments: Sequence[arb]) -> Line:
-        series = self._series if len(arguments) >= MANY else None
-        return OneByOne(self, arguments) if series is None else BySeries(self, series, arguments)
-
-    @cached_property
-    def _series(self) -> ThetaSeries | None:
-        return ThetaSeries.where_short(self._tau)
-
-    @cached_property
-    def real_constants(self) -> tuple[arb, arb, arb]:
-        """e_1, c, and the cube of theta_1'(0)/L over 2 q^(1/4), which is real for both kinds of tau."""
-        slope = (self._slope_at_zero / (2 * (self._tau / 4).exp_pi_i())).real
-        return self._roots[0].real, self._from_root.real, slope * slope * slope
 
     def jet(self, u: acb, order: int) -> list[acb]:
         v = u / self._length

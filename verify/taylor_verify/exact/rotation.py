@@ -15,7 +15,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.motion import Quaternion
 
-Number = TypeVar("Number", Fraction, arb)
+Number = TypeVar("Number", int, Fraction, arb)
 
 
 def scalar_product(p: Sequence[Number], q: Sequence[Number]) -> Number:

@@ -10,8 +10,8 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
 
 NO_BALANCES: Final = (
-    "the momenta are not judged, and of the energy only its value: the loads depend on more of the "
-    "attitude or the centre than a row of the file determines"
+    "the momenta are not judged by balances, and of the energy only its value: the loads depend on more "
+    "than a row determines (the centre, the sign of a quaternion, states of the scene's own)"
 )
 NOTHING_CONSERVED: Final = (
     "no quantity was found that these loads conserve, so no conserved quantity is gated"

@@ -92,11 +92,13 @@ def _tolerance(value: Any, place: str) -> float:
 def _quantities(scenes: Iterable[Scene]) -> list[str]:
     """Return the quantities that are compared in at least one of these scenes, states first."""
     from taylor_verify.exact.invariants import invariants
+    from taylor_verify.judge.errors.laws import laws_of
 
     asked = list(scenes)
     states = {quantity.name for scene in asked for quantity in scene.tracked}
     if "impulse" in states:
         # A file about a solid in a fluid may have its velocities.
         states |= {"velocity", "omega"}
+    laws = {name for scene in asked for name in laws_of(scene)}
     conserved = dict.fromkeys(invariant.name for scene in asked for invariant in invariants(scene))
-    return [*states_among(sorted(states)), *conserved]
+    return [*states_among([*sorted(states), *sorted(laws)]), *conserved]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from taylor_verify.models.form import Form, Named
+from taylor_verify.models.own import HELD
 from taylor_verify.models.written import Written
 from taylor_verify.scenes.loads.steps import Step
 
@@ -50,6 +51,17 @@ def values(form: Form, state: Sequence[Any], parameters: Sequence[Any], time: An
     assert isinstance(equations, Written)
     named = Named(zip(form.states + form.parameters, [*state, *parameters], strict=True), t=time)
     return equations.values(named)
+
+
+def changing(form: Form) -> frozenset[int]:
+    """Return the places of the steps that change on the way between two instants."""
+    equations = form.equations
+    places = set[int]()
+    for place, step in enumerate(equations.steps if isinstance(equations, Written) else ()):
+        is_read = step.operation == "input" and not step.name.startswith(HELD)
+        if is_read or not places.isdisjoint(step.operands):
+            places.add(place)
+    return frozenset(places)
 
 
 def _is_kinked(step: Step) -> bool:

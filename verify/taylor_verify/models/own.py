@@ -6,7 +6,7 @@ units: it becomes another at each of its instants.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from fractions import Fraction
 from typing import Final
 
@@ -61,3 +61,11 @@ def units_of(loads: Loads, rates: Sequence[float], time: Fraction) -> Vector:
             sizes += [abs(Fraction(next(left))) * time for _ in state.start]
             units += [binary(max(sizes)) or Fraction(1)] * len(state.start)
     return tuple(units)
+
+
+def framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
+    """Return what is tracked, and attitude and centre where a load reads them."""
+    if loads is None:
+        return track
+    read = {"attitude": loads.reads_attitude, "centre": loads.reads_centre}
+    return {*track, *(name for name, is_read in read.items() if is_read)}

@@ -34,6 +34,7 @@ from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
+from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Clock, State
 from taylor_verify.scenes.scene import Scene
@@ -168,7 +169,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     if scene.body.manufactured is not None:
         data = _with_clock(data, scene.body, scene.body.manufactured, units, Rounding(rung))
     loads = _rounded_loads(scene, rung)
-    data = _with_frame(data, _framed(scene.track, loads), units, rung)
+    data = _with_frame(data, own.framed(scene.track, loads), units, rung)
     choice = data.choice
     form = choice.form(data.states)
     posed = Problem(
@@ -185,7 +186,10 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     )
     if loads is None:
         return posed
-    return _with_loads(posed, data, loads)
+    try:
+        return _with_loads(posed, data, loads)
+    except NoStep as fault:
+        raise NotRepresentable(str(fault)) from None
 
 
 def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
@@ -197,14 +201,6 @@ def _rounded_loads(scene: Scene, rung: Rung) -> Loads | None:
         return replace(loads, current=Rounding(rung).each(loads.current))
     except (OverflowError, ValueError) as error:
         raise NotRepresentable(str(error)) from error
-
-
-def _framed(track: Collection[str], loads: Loads | None) -> Collection[str]:
-    """Return what is tracked, and attitude and centre where a load reads them."""
-    if loads is None:
-        return track
-    read = {"attitude": loads.reads_attitude, "centre": loads.reads_centre}
-    return {*track, *(name for name, is_read in read.items() if is_read)}
 
 
 def _with_loads(problem: Problem, data: _Data, loads: Loads) -> Problem:

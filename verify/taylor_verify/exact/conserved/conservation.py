@@ -15,9 +15,16 @@ from operator import add
 from typing import Any, Final
 
 from taylor_verify.exact.conserved.combinations import Combinations, orthogonal
-from taylor_verify.exact.conserved.derivation import Derivation, Row, mapped, product, symbols
+from taylor_verify.exact.conserved.derivation import (
+    Derivation,
+    Row,
+    cross,
+    mapped,
+    product,
+    symbols,
+)
 from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong
-from taylor_verify.exact.conserved.potential import Potential, potentials
+from taylor_verify.exact.conserved.potential import Factors, Potential, potentials
 from taylor_verify.exact.euler.rigid import Rotating
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import Vector
@@ -46,12 +53,9 @@ class Conservation:
 
 @lru_cache(maxsize=16)
 def conservation(scene: Scene) -> Conservation:
-    """Return what the written loads of a scene conserve, as far as it is found.
-
-    Nothing without loads, and under a rotor of texts, whose momentum changes that of the body.
-    """
+    """Return what the written loads of a scene conserve, as far as it is found; nothing without loads."""
     loads = scene.body.loads
-    if loads is None or loads.rotor:
+    if loads is None:
         return Conservation()
     pieces = list(_pieces(scene, loads))
     if len(pieces) > _MOST_PIECES:
@@ -64,13 +68,13 @@ def conservation(scene: Scene) -> Conservation:
 
 
 def _proven(derivations: Sequence[Derivation]) -> Conservation:
-    energy = kinetic(derivations[0])
-    products = potentials(derivations[0], derivations[0].rate(energy))
-    families = {
-        "T": [energy],
-        **_MOMENTA[derivations[0].scene.model](derivations[0]),
-        ENERGY: [energy, *products.values()],
-    }
+    families = _MOMENTA[derivations[0].scene.model](derivations[0])
+    products: dict[Factors, Polynomial] = {}
+    if not derivations[0].has_rotor:
+        # The motors of wheels do work of their own.
+        energy = kinetic(derivations[0])
+        products = potentials(derivations[0], derivations[0].rate(energy))
+        families |= {"T": [energy], ENERGY: [energy, *products.values()]}
     searched = _searched(derivations, families)
     steady = {name for name, basis in searched.items() if len(basis) == len(families[name])}
     directions = {
@@ -78,7 +82,8 @@ def _proven(derivations: Sequence[Derivation]) -> Conservation:
         for name, basis in searched.items()
         if basis and name not in (*steady, ENERGY)
     }
-    potential = None if "T" in steady else Potential.among(searched[ENERGY], [*products])
+    is_potential = ENERGY in searched and "T" not in steady
+    potential = Potential.among(searched[ENERGY], [*products]) if is_potential else None
     return Conservation(frozenset(steady), potential, directions)
 
 
@@ -124,15 +129,16 @@ def _of_spin(derivation: Derivation) -> dict[str, Row]:
     body, kind = derivation.scene.body, kind_of(derivation.scene.body)
     assert isinstance(kind, Rotating)
     wheels = [Polynomial.number(h) for h in kind.rotor(body)]
+    if derivation.has_rotor:
+        wheels = derivation.wheels
     H = [*map(add, mapped(kind.energy(body), derivation.state), wheels)]
     return {"H2": [product(H, H)], "H_space": derivation.turned(H), "H_axis": H}
 
 
 def _of_impulses(derivation: Derivation) -> dict[str, Row]:
     x, y = derivation.state[:3], derivation.state[3:]
-    in_space, (a, b, c) = derivation.turned(x), symbols(CENTRE)
-    p, q, r = in_space
-    arm = [b * r - c * q, c * p - a * r, a * q - b * p]
+    in_space = derivation.turned(x)
+    arm = cross(symbols(CENTRE), in_space)
     return {
         "F2": [product(x, x)],
         "FG": [product(x, y)],

@@ -13,8 +13,9 @@ from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import repeat
 from operator import add, mul, sub
-from typing import Final
+from typing import Any, Final
 
+from taylor_verify.exact import rotation
 from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, total
 from taylor_verify.exact.equations import Equations
@@ -35,6 +36,7 @@ _ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]]
     "*": mul,
 }
 _NOTHING: Final = Polynomial()
+_MOMENTUM: Final = ("H1", "H2", "H3")
 
 
 @dataclass(frozen=True)
@@ -49,44 +51,46 @@ class Derivation:
         """The equations of the state without the written loads."""
         return kind_of(self.scene.body).equations(self.scene.body)
 
+    @property
+    def has_rotor(self) -> bool:
+        """True if texts write the momentum h of wheels: then the symbols are those of H = I omega + h."""
+        loads = self.scene.body.loads
+        return loads is not None and bool(loads.rotor)
+
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The symbols of the state."""
+        if self.has_rotor:
+            return _MOMENTUM
         moving = kind_of(self.scene.body).moving
         return tuple(column for name in moving for column in COLUMNS[name])
 
     @cached_property
     def state(self) -> Row:
-        """The state z."""
-        return symbols(self.names)
+        """The state z; of a body with wheels omega, by H."""
+        if not self.has_rotor:
+            return symbols(self.names)
+        return mapped(kind_of(self.scene.body).pushed(self.scene.body), self._of_body)
+
+    @property
+    def _of_body(self) -> Row:
+        """I omega = H - h."""
+        return [*map(sub, symbols(_MOMENTUM), self.wheels)]
+
+    @cached_property
+    def wheels(self) -> Row:
+        """The momentum h of wheels, by time and own states. Raises TooLong."""
+        values = self._values({})
+        return [values[place] for place in self.piece.rotor]
+
+    @cached_property
+    def _quaternion(self) -> list[Any]:
+        return symbols(QUATERNION)
 
     @cached_property
     def attitude(self) -> list[Row]:
         """R of the unit quaternion."""
-        q = symbols(QUATERNION)
-        pairs = [[a * b for b in q] for a in q]
-
-        def double(*terms: tuple[int, int, int]) -> Polynomial:
-            return total(pairs[i][j].times(Fraction(2 * sign)) for sign, i, j in terms)
-
-        one = Polynomial.number(Fraction(1))
-        return [
-            [
-                one + double((-1, 2, 2), (-1, 3, 3)),
-                double((1, 1, 2), (-1, 0, 3)),
-                double((1, 1, 3), (1, 0, 2)),
-            ],
-            [
-                double((1, 1, 2), (1, 0, 3)),
-                one + double((-1, 1, 1), (-1, 3, 3)),
-                double((1, 2, 3), (-1, 0, 1)),
-            ],
-            [
-                double((1, 1, 3), (-1, 0, 2)),
-                double((1, 2, 3), (1, 0, 1)),
-                one + double((-1, 1, 1), (-1, 2, 2)),
-            ],
-        ]
+        return rotation.rotation_rows(self._quaternion)
 
     @cached_property
     def rates(self) -> Mapping[str, Polynomial]:
@@ -109,6 +113,10 @@ class Derivation:
 
     def _of_state(self) -> Row:
         equations, z = self.equations, self.state
+        if self.has_rotor:
+            turned = cross(symbols(_MOMENTUM), z)
+            drag = [part.times(self.scene.body.damping) for part in self._of_body]
+            return [*map(sub, map(add, turned, self.loads), drag)]
         pushed = mapped(kind_of(self.scene.body).pushed(self.scene.body), self.loads)
         rates = []
         for constant, linear, hessian, push in zip(
@@ -121,14 +129,7 @@ class Derivation:
 
     def _of_attitude(self) -> Row:
         """q' = q Omega/2."""
-        a, b, c, d = symbols(QUATERNION)
-        x, y, z = self.spin
-        doubled = (
-            _NOTHING - b * x - c * y - d * z,
-            a * x + c * z - d * y,
-            a * y + d * x - b * z,
-            a * z + b * y - c * x,
-        )
+        doubled = rotation.product(self._quaternion, [_NOTHING, *self.spin])
         return [rate.times(Fraction(1, 2)) for rate in doubled]
 
     def _of_centre(self) -> Row:
@@ -155,14 +156,22 @@ class Derivation:
     @cached_property
     def loads(self) -> Row:
         """The moment, or force and couple. Raises TooLong."""
+        values = self._values(self._inputs)
+        return [values[place] for place in self.piece.outputs]
+
+    def _values(self, inputs: Mapping[str, Polynomial]) -> Row:
+        """The steps; an input that is not given is a symbol."""
         values: list[Polynomial] = []
         for place, step in enumerate(self.piece.steps):
-            values.append(self._value(place, step, [values[k] for k in step.operands]))
-        return [values[place] for place in self.piece.outputs]
+            operands = [values[k] for k in step.operands]
+            is_input = step.operation == "input" and step.name in inputs
+            value = inputs[step.name] if is_input else self._value(place, step, operands)
+            values.append(value)
+        return values
 
     def _value(self, place: int, step: Step, operands: Row) -> Polynomial:
         if step.operation == "input":
-            return self._inputs.get(step.name, Polynomial.symbol(step.name))
+            return Polynomial.symbol(step.name)
         if step.operation == "number":
             assert step.number is not None
             return Polynomial.number(step.number)
@@ -212,3 +221,8 @@ def mapped(matrix: Matrix | Exact, row: Row) -> Row:
 def product(a: Row, b: Row) -> Polynomial:
     """The scalar product."""
     return total(map(mul, a, b))
+
+
+def cross(a: Row, b: Row) -> Row:
+    """The cross product."""
+    return [a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))]

@@ -13,6 +13,7 @@ import numpy as np
 
 from taylor_verify.exact.conserved.conservation import ENERGY, Conservation, conservation
 from taylor_verify.exact.conserved.potential import Potential
+from taylor_verify.exact.conserved.wheels import with_wheels
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import nonzero, norms, size
@@ -36,8 +37,7 @@ def under_loads(scene: Scene, free: Sequence[Invariant]) -> tuple[Invariant, ...
     """
     loads, proven = scene.body.loads, conservation(scene)
     if loads is not None and loads.rotor:
-        # The momentum of the wheels is no part of those of the free body.
-        free = [each for each in free if each.name == _ENERGY]
+        free = [free[0], *with_wheels(scene, loads)]
     axes = tuple(axis for name in _AXES for axis in proven.directions.get(name, ()))
     steady = {each.name for each in free if _is_along(each.name, axes)} | proven.steady
     marked = [

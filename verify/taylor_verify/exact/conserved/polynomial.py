@@ -66,6 +66,9 @@ class Polynomial:
             for term in _product(first, second, a * b)
         )
 
+    def __rmul__(self, number: int) -> Polynomial:
+        return self.times(Fraction(number))
+
     def rate(self, rates: Mapping[str, Polynomial]) -> Polynomial:
         """The derivative by time, where ``rates`` has those of all symbols that are not constant."""
         return total(

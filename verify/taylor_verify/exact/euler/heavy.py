@@ -161,9 +161,9 @@ def _weight(loads: Loads) -> tuple[Vector, Vector]:
 def _of_revolution(inertia: Matrix, omega: Vector, w: Vector, x: Vector) -> tuple[Clebsch, Axes]:
     """Return the six coefficients of a top or a pendulum, and axes about w; else raises NoClosedForm."""
     K = tensors.inverse(inertia)
-    found = clebsch_about(ImmersedBody(linear=_UNIT, coupling=ZERO_MATRIX, angular=K))
-    if found is not None:
-        six, axes = found
+    symmetric = clebsch_about(ImmersedBody(linear=_UNIT, coupling=ZERO_MATRIX, angular=K))
+    if symmetric is not None:
+        six, axes = symmetric
         if six.r == six.r_prime:
             return six, Axes.about(w)
         if not any(tensors.cross(axes.n, w)):

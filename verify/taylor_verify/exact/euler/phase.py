@@ -20,8 +20,6 @@ from taylor_verify.exact.euler.moduli import Moduli, Triple
 class Periodic:
     """Orbits about an axis: elliptic functions from theta functions, the start by addition.
 
-    ``speed`` is lam/2K, and ``multiples`` make dn, sn, cn of theta_3, theta_1, theta_2 over theta_4.
-
     The addition theorem is that of theta functions, without a quotient:
     sn(u + v) (cn^2 u + sn^2 u dn^2 v) = sn u cn v dn v + sn v cn u dn u and so on (DLMF 22.8), times
     theta_4(v)^2; the bracket is a sum of squares.
@@ -32,11 +30,10 @@ class Periodic:
         k, k_prime = moduli.m.sqrt(), moduli.m_prime.sqrt()
         mean, mean_prime = arb(1).agm(k_prime), arb(1).agm(k)
         self._K = arb.pi() / (2 * mean)
-        self.tau = acb(0, mean / mean_prime)
-        self.speed = moduli.rate / (2 * self._K)
+        self._tau = acb(0, mean / mean_prime)
+        self._speed = moduli.rate / (2 * self._K)
         # sn, cn, dn are these multiples of theta_1, theta_2, theta_3 over theta_4.
         S, C, N = 1 / k.sqrt(), (k_prime / k).sqrt(), k_prime.sqrt()
-        self.multiples: Triple = (N, S, C)
         dn, sn, cn = moduli.functions
         self._squares = cn * cn, (sn * N) * (sn * N)  # of theta_4^2 and theta_3^2
         self._dn = dn * N, -moduli.m * sn * cn * S * C  # of theta_3 theta_4 and theta_1 theta_2
@@ -59,36 +56,31 @@ class Periodic:
 
         Where sig < 0, psi is the negative of the argument of the quotient.
         """
-        rate, z0 = self.drift
+        rate, z0 = self._drift
         whole = self._thetas(z0 + self._turns(t))[0] * self._unwound
         return _on_circle(whole, self._moduli.sense, rate * t)
 
     @cached_property
     def _unwound(self) -> acb:
-        return self._thetas(self.drift[1])[0].conjugate()
+        return self._thetas(self._drift[1])[0].conjugate()
 
     def _turns(self, t: arb) -> arb:
         """lam t/2K less an even whole number, so about -1..1; whichever number, it is a period."""
-        v = self.speed * t
+        v = self._speed * t
         return v - 2 * (v.mid() / 2).floor()
 
     def _thetas(self, z: acb) -> tuple[acb, acb, acb, acb]:
-        return acb.modular_theta(z, self.tau)
+        return acb.modular_theta(z, self._tau)
 
     @cached_property
-    def place(self) -> arb:
-        """u_0/2K."""
-        return self._start() / (2 * self._K)
-
-    @cached_property
-    def drift(self) -> tuple[arb, acb]:
+    def _drift(self) -> tuple[arb, acb]:
         """Om, and z_0 = (u_0 + i beta)/2K with sc(beta | m') = nu^(-1/2)."""
         moduli, nu = self._moduli, self._moduli.nu
         beta = _carlson(nu, nu + moduli.m, nu + 1)
         y = acb(0, beta / (2 * self._K))
-        slope = acb.modular_theta(y, self.tau, 1)[0] / self._thetas(y)[0]
-        bend = (acb(0, 1) * slope).real * self.speed * moduli.sense
-        return moduli.momentum / moduli.moments[0] + bend, acb(self.place) + y
+        slope = acb.modular_theta(y, self._tau, 1)[0] / self._thetas(y)[0]
+        bend = (acb(0, 1) * slope).real * self._speed * moduli.sense
+        return moduli.momentum / moduli.moments[0] + bend, acb(self._start() / (2 * self._K)) + y
 
     def _start(self) -> arb:
         """u_0 up to whole periods 4K, by the inverse of sn, or of sn at half the argument."""

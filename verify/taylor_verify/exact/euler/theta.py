@@ -9,7 +9,6 @@ rotation that takes h to axis 3 and c into the plane of axes 1 and 3. With three
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 from typing import final
 
@@ -20,11 +19,9 @@ from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.fixed_axis import FixedAxis, in_balls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
-from taylor_verify.exact.euler.polynomials import Polynomials
 from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
-from taylor_verify.exact.euler.rotations import Moving, OneByOne, RotationBalls, Rows
+from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.solution import Time
-from taylor_verify.exact.theta_series import MANY, ThetaSeries
 from taylor_verify.numbers import tensors
 from taylor_verify.scenes import motion
 
@@ -77,7 +74,6 @@ class Tumbling(OneByOne):
         is_separatrix = spin.regime is Regime.SEPARATRIX
         self._functions = Separatrix(moduli) if is_separatrix else Periodic(moduli)
         self._to_body = arb_mat([list(row) for row in zip(*moduli.axes, strict=True)])
-        self._is_diagonal = tensors.is_diagonal(spin.inertia)
 
     def at(self, t: Time, turned: bool) -> tuple[list[arb], Rows]:
         time = ball(t)
@@ -91,40 +87,6 @@ class Tumbling(OneByOne):
         tilted = [(cos * p - sin * q, sin * p + cos * q, h) for p, q, h in pairs]
         columns = arb_mat([list(column) for column in tilted])
         return omega, (self._tilted_back * (self._to_body * columns).transpose()).tolist()
-
-    def rows(self, times: Sequence[Time], start: arb_mat | None) -> Moving:
-        """Return omega and R at every time: by polynomials if there are many times and a short series."""
-        polynomials = self._polynomials if len(times) >= MANY else None
-        if polynomials is None:
-            return super().rows(times, start)
-        if start is None:
-            return self._in_body(polynomials.omega(times)), []
-        omega, frames = polynomials.motion(times, start * self._to_body)
-        turned = self._in_body([row for frame in frames for row in frame])
-        return self._in_body(omega), [turned[k : k + 3] for k in range(0, len(turned), 3)]
-
-    @cached_property
-    def _polynomials(self) -> Polynomials | None:
-        """The polynomials of an orbit about an axis that is not all but a separatrix."""
-        if not isinstance(self._functions, Periodic):
-            return None
-        series = ThetaSeries.where_short(self._functions.tau)
-        return None if series is None else Polynomials(self._moduli, self._functions, series)
-
-    def _in_body(self, rows: Sequence[Sequence[arb]]) -> list[list[arb]]:
-        """Vectors by their components along (a, b, c)."""
-        if self._is_diagonal:
-            return [
-                [side * row[k] if side < 0 else row[k] for k, side in self._order] for row in rows
-            ]
-        matrix = self._to_body.tolist()
-        return [[p * a + q * b + r * c for p, q, r in matrix] for a, b, c in rows]
-
-    @cached_property
-    def _order(self) -> list[tuple[int, int]]:
-        """Return index and sign of each body axis that is one of (a, b, c) up to sign."""
-        sides = [[int(float(entry)) for entry in row] for row in self._to_body.tolist()]
-        return [next((k, side) for k, side in enumerate(row) if side) for row in sides]
 
     @cached_property
     def _tilted_back(self) -> arb_mat:

@@ -30,7 +30,6 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.lattice import Lattice, lattice
-from taylor_verify.exact.line import Line
 from taylor_verify.exact.rotation import (
     conjugate,
     cross,
@@ -101,10 +100,9 @@ class Tumbling:
         return arb_mat(self._azimuth.axes(balls(self._free.momentum))).transpose()
 
     def rows(self, times: Sequence[Time], start: arb_mat | None) -> Moving:
-        """omega, and R from the R at the start, at each time: by the points of one line."""
+        """omega, and R from the R at the start, at each time."""
         elapsed = balls_of(times)
-        line = self._lattice.along(elapsed)
-        places = [self._form.at(P, slope) for P, slope in line.p()]
+        places = [self._form.at(*self._lattice.real(u)) for u in elapsed]
         at_start = [t.is_zero() for t in elapsed]
         omega = [
             self._omega if first else self._spin(G)
@@ -113,7 +111,7 @@ class Tumbling:
         if start is None:
             return omega, []
         to_space = (start * self._tilted_back).tolist()
-        turns = zip(at_start, self._azimuth.turns(elapsed, line), places, strict=True)
+        turns = zip(at_start, map(self._azimuth.turn, elapsed), places, strict=True)
         return omega, [
             start.tolist() if first else _in_space(to_space, turn, *self._azimuth.axes(G))
             for first, turn, G in turns
@@ -157,23 +155,17 @@ class Azimuth:
             return 0.0
         return min(abs(float(factor.argument.imag.mid())) for factor in self._factors)
 
-    def turns(self, times: Sequence[arb], line: Line) -> list[acb]:
-        """e^{i phi} at each of the times, which are those of the line."""
-        quotients = [acb(1)] * len(times)
+    def turn(self, t: arb) -> acb:
+        """e^{i phi}."""
+        quotient = acb(1)
         for argument, scale, sigma in self._factors:
-            (values,) = line.jets(argument, scale, order=0)
+            (value,) = self._lattice.jet(t - argument, order=0)
             # A factor for sigma = -1 is inverted; once its modulus is left out that is the conjugate.
-            quotients = [
-                quotient * (value if sigma > 0 else value.conjugate())
-                for quotient, value in zip(quotients, values, strict=True)
-            ]
-        turns = []
-        for t, quotient in zip(times, quotients, strict=True):
-            sin, cos = (self._rate * t).sin_cos()
-            p, q = quotient.real, quotient.imag
-            size = (p * p + q * q).rsqrt()
-            turns.append(acb((cos * p - sin * q) * size, (sin * p + cos * q) * size))
-        return turns
+            quotient *= value / scale if sigma > 0 else (value / scale).conjugate()
+        sin, cos = (self._rate * t).sin_cos()
+        p, q = quotient.real, quotient.imag
+        size = (p * p + q * q).rsqrt()
+        return acb((cos * p - sin * q) * size, (sin * p + cos * q) * size)
 
     def axes(self, G: Sequence[arb]) -> list[list[arb]]:
         """m1, m2 and m3, the columns of M."""

@@ -23,7 +23,6 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.lattice import Lattice, lattice
-from taylor_verify.exact.line import Line
 
 
 class Pole(NamedTuple):
@@ -74,11 +73,11 @@ class Course(ABC):
         self.z, self.speed = ball(nutation.z), ball(nutation.speed)
 
     @final
-    def places(self, times: Sequence[arb], line: Line) -> list[tuple[arb, arb]]:
-        """(z, z') at the times u since the start, which are those of the line."""
+    def places(self, times: Sequence[arb]) -> list[tuple[arb, arb]]:
+        """(z, z') at the times u since the start."""
         if self.front is not None:
             return [self.front.at(u) for u in times]
-        return [self._at(*both) for both in line.p()]
+        return [self._at(*self.lattice.real(u)) for u in times]
 
     def _at(self, p: arb, slope: arb) -> tuple[arb, arb]:
         """(z, z') by Weierstrass's formula (Whittaker and Watson 20.6), for u not zero."""

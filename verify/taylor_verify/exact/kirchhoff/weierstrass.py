@@ -28,7 +28,6 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix, ba
 from taylor_verify.exact.kirchhoff.course import Pole, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.lattice import Lattice, Periods
-from taylor_verify.exact.line import Line
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time
 from taylor_verify.scenes.motion import Impulse
@@ -73,11 +72,10 @@ class Factor:
             order = int(argument.is_zero())
             self._scale = lattice.jet(-argument, order)[order]
 
-    def jets(self, line: Line, count: int, order: int) -> list[list[acb]]:
-        """N at each of so many arguments of the line and, for order 1, its derivatives there."""
-        if self._argument is None:
-            return [[acb(1)] * count, [acb(0)] * count][: order + 1]
-        return line.jets(self._argument, self._scale, order)
+    def jets(self, times: Sequence[arb], order: int) -> list[list[acb]]:
+        """N at each of the arguments and, for order 1, its derivatives there."""
+        jets = [self.jet(u, order) for u in times]
+        return [[jet[k] for jet in jets] for k in range(order + 1)]
 
     def jet(self, u: arb, order: int) -> list[acb]:
         """N and, for order 1, its derivative."""
@@ -131,11 +129,10 @@ class Orbit:
 
     def rows(self, times: Sequence[arb]) -> dict[str, list[Any]]:
         """Return every tracked quantity, and possibly others, at each time since the start."""
-        line, count = self._course.lattice.along(times), len(times)
-        places = self._course.places(times, line)
-        (alpha,) = self._alpha.jets(line, count, order=0)
-        (beta,) = self._beta.jets(line, count, order=0)
-        poles = [Pole.of(*pole.jets(line, count, self._pole_order)) for pole in self._own_poles]
+        count, places = len(times), self._course.places(times)
+        (alpha,) = self._alpha.jets(times, order=0)
+        (beta,) = self._beta.jets(times, order=0)
+        poles = [Pole.of(*pole.jets(times, self._pole_order)) for pole in self._own_poles]
         along = [arb(0)] * count
         if self._needs_integral:
             along = self._course.integrals(times, [speed for _, speed in places], poles)

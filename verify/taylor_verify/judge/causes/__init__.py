@@ -1,1 +1,1 @@
-"""Named hypotheses about wrong dynamics, tested from each row of an answer to the next."""
+"""Likely causes of a failure: faults of a simulator whose own motion is the answer."""

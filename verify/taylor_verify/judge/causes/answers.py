@@ -1,58 +1,110 @@
-"""Conversion of files and trajectories to material for hypotheses: body axes, float64, a row per time."""
+"""Answers from files and trajectories as material for the search, and its causes as sentences."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.causes.answer import Answer, Motion, steady_signs
+from taylor_verify.judge.causes.budget import Budget, Spent
+from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Material
-from taylor_verify.judge.causes.search import likely_causes
+from taylor_verify.judge.causes.missing_load import missing_load
+from taylor_verify.judge.causes.printed import half_units
+from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.velocities import has_velocities, momenta
+from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.quantities import MOMENTA, STATES, VELOCITIES
+from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
+from taylor_verify.words.causes import sentence
 
 if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
 NOT_LOOKED_FOR: Final = (
-    "likely causes are not looked for: this body has terms or loads that the search does not know"
+    "likely causes are not looked for: this body has terms or states of its own that the search "
+    "does not know"
 )
+_READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
+_WITH_TERMS: Final = frozenset({"rotor"})
 _DIGITS: Final = 20
+# R^T R of printed digits is off by less.
+_NO_ROTATION: Final = 1e-5
 _MOST_ROWS: Final = 4096
-# If the range of float64 or a matrix decomposition fails, no cause is named.
-_NO_CAUSE: Final = (OverflowError, np.linalg.LinAlgError)
+# The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
+_SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
+# Work for each component of v.
+_BUDGET: Final = 120_000.0
+_BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
+
+
+def are_known(body: Body) -> bool:
+    """Return True if every part of the body has its terms in the search."""
+    own = body.loads is not None and bool(body.loads.states or any(body.loads.rotor))
+    return body.others <= _WITH_TERMS and body.manufactured is None and not own
+
+
+@dataclass(frozen=True)
+class Explained:
+    """The likely causes of an answer, and facts; ``is_motion`` if none is a convention or a clock."""
+
+    causes: tuple[LikelyCause, ...] = ()
+    is_motion: bool = False
+    notes: tuple[str, ...] = ()
 
 
 def causes_of_file(
-    file: TrajectoryFile, rung: Rung, conventions: Conventions, judged: Judgement
-) -> tuple[LikelyCause, ...]:
-    """Return the likely causes of the failures in a file, read by its conventions.
-
-    Only the first rows of a long file are examined, because every cause acts from row to row.
-    """
+    file: TrajectoryFile, rung: Rung, conventions: Conventions, judged: Judgement | None
+) -> Explained:
+    """Return the likely causes of the failures in a file, read by its conventions."""
+    if judged is None:
+        return Explained()
     first = file.at(range(min(len(file.times), _MOST_ROWS)))
-    with np.errstate(all="ignore"), suppress(*_NO_CAUSE):
-        return likely_causes(
-            _of_file(first, rung, conventions, judged.verdicts), conventions.world.scene
-        )
-    return ()
+    facts = _no_rotation(first)
+    with np.errstate(all="ignore"), suppress(*_SILENT):
+        answer = material_of_file(first, rung, conventions, judged.verdicts)
+        if answer is not None:
+            known = explained(answer)
+            return replace(known, notes=(*facts, *known.notes))
+    return Explained(notes=facts)
+
+
+def _no_rotation(file: TrajectoryFile) -> tuple[str, ...]:
+    """Return the fact that the matrices of a file are no rotations, where they are not."""
+    if "attitude" not in file.groups:
+        return ()
+    R = file.groups["attitude"].doubles().reshape(-1, 3, 3)
+    with np.errstate(all="ignore"):
+        off = np.max(np.abs(R.transpose(0, 2, 1) @ R - np.eye(3)), axis=(1, 2))
+    wrong = np.flatnonzero(off > _NO_ROTATION)
+    if not len(wrong):
+        return ()
+    worst = int(np.nanargmax(off))
+    return (
+        f"r11 ... r33 are no rotation: R^T R is off by {off[worst]:.2g} at t = "
+        f"{float(file.times[worst]):.6g}, and by more than {_NO_ROTATION:g} since t = "
+        f"{float(file.times[wrong[0]]):.6g}",
+    )
 
 
 def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> Judgement:
@@ -60,66 +112,197 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
     if not any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         return judged
     scene, causes = problem.scene, tuple[LikelyCause, ...]()
-    if not Equations.are_known(problem.given.body):
+    if not are_known(problem.given.body):
         return replace(judged, notes=(*judged.notes, NOT_LOOKED_FOR))
-    with np.errstate(all="ignore"), suppress(*_NO_CAUSE):
-        causes = likely_causes(_of_trajectory(problem, trajectory, judged.verdicts), scene)
+    with np.errstate(all="ignore"), suppress(*_SILENT):
+        answer = _of_trajectory(problem, trajectory, judged.verdicts)
+        if answer is not None:
+            known = explained(answer)
+            causes, judged = known.causes, replace(judged, notes=(*judged.notes, *known.notes))
     named = (replace(cause, scene=scene.name, rung=problem.rung.name) for cause in causes)
     return replace(judged, causes=tuple(named))
 
 
-def _of_file(
-    file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
-) -> Material | None:
-    """Return a file as material; None if its body is of another kind or has variable loads."""
-    given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
-    if not Equations.are_known(given.body):
+def explained(answer: Answer) -> Explained:
+    """Return the causes of an answer with their sentences; none at the end of the budget."""
+    try:
+        causes = causes_of(answer, ())
+    except _SILENT:
+        return Explained()
+    is_motion = bool(causes) and not any(cause.kind in _READINGS for cause in causes)
+    notes: tuple[str, ...] = ()
+    if not causes:
+        with suppress(*_SILENT):
+            notes = tuple(filter(None, (missing_load(answer),)))
+    return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
+
+
+def _likely(cause: Cause, answer: Answer) -> LikelyCause:
+    group = next(iter(cause.leaves), "omega")
+    changed = changed_scene(answer.right, cause.changes)
+    words = sentence(cause.title, cause.leaves, answer.worst, cause.alike, changed)
+    leaves = max(cause.leaves.values(), default=1.0)
+    name = cause.name.partition(":")[0]
+    return LikelyCause(name, answer.quantity(group), leaves, words)
+
+
+# Material.
+
+
+def equations_of(given: Scene, has_momenta: bool) -> Equations:
+    """Return the right equations of a scene."""
+    body, parts = given.body, given.body.parts()
+    energy = np.array(body.energy_matrix, dtype=float)
+    mass = energy if given.model == "euler" else np.linalg.inv(energy)
+    n, loads = len(mass), given.body.loads
+    constant = [entry for name in body.load_names() for entry in parts[name]]
+    equations = replace(
+        Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
+        load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
+        has_momenta=has_momenta,
+        start=float(given.clock.start),
+        damping=float(body.damping),
+    )
+    if loads is None:
+        return equations
+    return replace(
+        equations,
+        acting=Acting(given, loads),
+        reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
+        switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
+        current=np.array(loads.current, dtype=float) if any(loads.current) else None,
+    )
+
+
+def material(
+    given: Scene,
+    file: Motion,
+    has_momenta: bool,
+    noise: tuple[Floats, float, float],
+    verdicts: Iterable[Verdict],
+    decimals: int | None = None,
+) -> Answer | None:
+    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable."""
+    failed = tuple(v.quantity for v in verdicts if v.verdict is Status.FAIL)
+    right = equations_of(given, has_momenta)
+    elapsed = np.array([float(t) for t in given.clock.elapsed])
+    rows = _rows(elapsed, file)
+    if len(rows) < 2 or not failed:
         return None
+    needs_centre = file.c is not None or right.reads > 4
+    track = {"attitude"} | ({"centre"} if needs_centre else set())
+    tracked = replace(given, track=frozenset(track))
+    exact = solution(tracked)
+    instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
+    motion = exact.evaluate(instants, _DIGITS)
+    truth = _truth(given, motion, has_momenta).at(np.s_[1:])
+    start = _truth(given, motion, has_momenta=False).at(np.s_[:1])
+    closed = exact.route != "taylor"
+    compared = file.at(rows)
+    answer = Answer(
+        right,
+        start,
+        elapsed[rows],
+        compared,
+        truth,
+        (_noise(noise[0], compared.v, truth.v), *noise[1:]),
+        failed,
+        Budget(_BUDGET * right.size if closed else _BUDGET_WITHOUT_CLOSED_FORM),
+        decimals,
+    )
+    return answer
+
+
+def _noise(noise: Floats, v: Floats, truth: Floats) -> Floats:
+    """Return the noise of v; numbers that stand still while the truth moves by a unit were not rounded."""
+    is_exact = (np.ptp(v, axis=0) == 0) & (np.ptp(truth, axis=0) > 2 * noise)
+    return np.where(is_exact, 0.0, noise)
+
+
+def _rows(elapsed: Floats, file: Motion) -> list[int]:
+    """Return the rows of the longer side of the start, in the order away from it, up to the first flaw."""
+    later, earlier = np.flatnonzero(elapsed >= 0), np.flatnonzero(elapsed <= 0)
+    side = later if len(later) >= len(earlier) else earlier
+    side = side[np.argsort(np.abs(elapsed[side]), kind="stable")]
+    flawed = np.zeros(len(elapsed), dtype=bool)
+    for part in (file.v, file.q, file.c):
+        if part is not None:
+            flawed |= ~np.all(np.isfinite(part) & (np.abs(part) < 1e100), axis=1)
+    bad = np.flatnonzero(flawed[side])
+    return [int(k) for k in (side[: bad[0]] if len(bad) else side)]
+
+
+def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
+    v = np.hstack([exact[name].astype(float) for name in MOMENTA[given.model]])
+    if given.model == "kirchhoff" and not has_momenta:
+        v = v @ np.array(given.body.energy_matrix, dtype=float).T
+    q = steady_signs(quaternion_columns(exact["attitude"].astype(float)))
+    return Motion(v, q, exact["centre"].astype(float) if "centre" in exact else None)
+
+
+def material_of_file(
+    file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
+) -> Answer | None:
+    """Return a file as material; None if its body is unknown or its moving part is not whole."""
+    given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
+    if not are_known(given.body):
+        return None
+    names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
+    if not names:
+        return None
+    has_momenta = given.model == "kirchhoff" and names[0] == MOMENTA[given.model]
     attitudes = _attitudes(file, given, conventions)
-    groups = [name for name in MOMENTA[given.model] if name in file.groups]
-    values = {name: _read(file, name, conventions, attitudes) for name in groups}
-    columns = np.hstack([file.groups[name].doubles() for name in groups]) if groups else None
-    if not groups and has_velocities(given.body) and set(VELOCITIES) <= set(file.groups):
-        own = {name: _read(file, name, conventions, attitudes) for name in VELOCITIES}
-        values = {name: rows.astype(float) for name, rows in momenta(given.body, own).items()}
-    q = None if attitudes is None else _unit(quaternion_columns(attitudes))
-    material = _material(given, values, q, rung, verdicts)
-    return replace(material, digits=file.digits, columns=columns)
+    v, noise, units = [], [], half_units(file)
+    for name in names[0]:
+        rows = _read(file, name, conventions, attitudes)
+        v.append(rows)
+        noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
+    has_frame = not {"quaternion", "attitude"}.isdisjoint(file.groups)
+    q = None if attitudes is None or not has_frame else steady_signs(quaternion_columns(attitudes))
+    frame = next((name for name in ("quaternion", "attitude") if name in file.groups), "")
+    c = file.groups["centre"].doubles() if "centre" in file.groups else None
+    if c is not None:
+        c = _read(file, "centre", conventions, attitudes)
+    of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
+    decimals = _decimals(file.times)
+    motion = Motion(np.hstack(v), q, c)
+    return material(
+        given, motion, has_momenta, (np.concatenate(noise), of_frame, of_centre), verdicts, decimals
+    )
+
+
+def _ratio(rows: Floats, columns: Floats) -> float:
+    """Return the factor of a reading, by the sizes of the rows."""
+    before, after = float(np.nanmax(np.abs(columns))), float(np.nanmax(np.abs(rows)))
+    return after / before if before > 0 else 1.0
+
+
+def _decimals(times: Iterable[Fraction]) -> int | None:
+    """Return the number of decimals that the times need; None if they need more than six."""
+    for digits in range(7):
+        if all((time * 10**digits).denominator == 1 for time in times):
+            return digits
+    return None
 
 
 def _of_trajectory(
     problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
-) -> Material | None:
-    """Return a trajectory as material; None if its body is of another kind or has variable loads."""
+) -> Answer | None:
+    """Return a trajectory as material."""
     given, rows = problem.given, trajectory.quantities
-    if not rows or not Equations.are_known(given.body):
+    names = MOMENTA[given.model]
+    if not rows or not set(names) <= set(rows):
         return None
-    values = {name: _doubles(rows[name]) for name in MOMENTA[given.model]}
-    q = _unit(_doubles(rows["quaternion"])) if "quaternion" in rows else None
-    return _material(given, values, q, problem.rung, verdicts)
-
-
-def _material(
-    given: Scene,
-    values: Mapping[str, Floats],
-    quaternions: Floats | None,
-    rung: Rung,
-    verdicts: Iterable[Verdict],
-) -> Material:
-    nothing = np.full((len(given.clock.elapsed), 3), np.nan)
-    attitude = np.array(given.initial.attitude, dtype=float)
-    return Material(
-        Equations.of(given.body),
-        np.array(given.initial.moving, dtype=float),
-        attitude / np.linalg.norm(attitude),
-        np.array(given.clock.elapsed, dtype=float),
-        np.hstack([values.get(name, nothing) for name in MOMENTA[given.model]]),
-        quaternions,
-        bits=rung.bits,
-        failed={
-            v.quantity: v for v in verdicts if v.verdict is Status.FAIL and v.quantity in STATES
-        },
+    v = np.hstack([_doubles(rows[name]) for name in names])
+    q = steady_signs(_doubles(rows["quaternion"])) if "quaternion" in rows else None
+    c = _doubles(rows["centre"]) if "centre" in rows else None
+    unit = 8 * float(problem.rung.unit_roundoff)
+    noise = (
+        unit * np.max(np.abs(v), axis=0),
+        unit,
+        unit if c is None else unit * float(np.max(np.abs(c))),
     )
+    return material(given, Motion(v, q, c), given.model == "kirchhoff", noise, verdicts)
 
 
 def _read(
@@ -149,11 +332,9 @@ def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> 
     return exact
 
 
-def _unit(quaternions: Floats) -> Floats:
-    unit: Floats = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
-    return unit
-
-
 def _doubles(rows: Any) -> Floats:
     """Return numbers as float64."""
     return np.array([[float(value) for value in row] for row in rows], dtype=float)
+
+
+__all__ = ["NOT_LOOKED_FOR", "Fault", "are_known", "causes_of_file", "equations_of", "with_causes"]

@@ -1,107 +1,268 @@
-"""Equations of motion, correct or with one error, as homogeneous quadratic rates of float64 rows.
+"""The equations of motion with every fault as a parameter, for many parameters and arcs at once.
 
-Euler:      z = (omega, 1), I omega' = (I omega + h) x omega + M, h the momentum of wheels
-Kirchhoff:  z = (x, y, 1), x' = x x W + X, y' = y x W + x x U + L, U = A x + B y, W = B^T x + C y
-with the attitude: also q' = q W / 2, where q is a quaternion, scalar first.
+    P = M nu;  P' = clock (x_t x W + X, y x W + x_m x U + L) - damping P,   nu' = M^-1 P'
+    x_t = turn nu,  y = gyro nu + rotor,  x_m = munk nu
+
+nu is omega of a rigid body, or (U, W) in a fluid. In the right equations ``turn``, ``gyro`` and ``munk``
+are rows of the mass matrix M. A state has the components v (nu, or the momenta P if ``has_momenta``),
+then the quaternion and the centre as far as they are asked for; the axes of an array of states are
+(parameters, components, arcs). A parameter may have an axis of parameter sets in front.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.flow import Floats, bilinear
-from taylor_verify.scenes.bodies import Body
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.models.acting import Acting
+from taylor_verify.models.algebra import ABSENT, add, cross
+from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
+from taylor_verify.models.kirchhoff import impulse_rates
 
-# Parts of a body, beside its energy, its loads and its damping, that have terms here.
-_WITH_TERMS: Final = frozenset({"rotor"})
+Changes = Mapping[str, Any]
+
+# The number of axes that a parameter has without an axis of parameter sets.
+_AXES: Final = {
+    **dict.fromkeys(("mass", "turn", "gyro", "munk"), 2),
+    **dict.fromkeys(
+        ("rotor", "load", "weights", "space", "arm", "linear", "quadratic", "turns"), 1
+    ),
+    **dict.fromkeys(("damping", "clock", "ahead", "late", "in_space"), 0),
+}
 
 
 @dataclass(frozen=True)
 class Equations:
-    """A body's equations of motion, with a weight for each term.
+    """Parameters of the equations of motion.
 
-    ``tensor`` is I, or the 6x6 matrix of the energy. ``load`` is M, or (X, L). ``gyroscopic`` weighs
-    (I omega) x omega, or y x W; ``munk`` weighs x x U and ``turning`` x x W. ``damping`` c adds -c z, and
-    ``drag`` d the moment -d omega (in a fluid: force -d U and couple -d W). ``rotor`` is h.
+    ``load`` is constant in body axes, ``space`` in space axes, ``arm`` x R^T e3 is a couple; ``linear``
+    and ``quadratic`` are drags on each component of nu. ``acting`` are the loads that the scene writes as
+    texts, read ``late`` by so much time; all loads of the scene are multiplied by ``weights``, and are
+    those in space axes if ``in_space`` is 1. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2,
+    where W is omega + ``ahead`` omega'. ``current`` moves the centre.
     """
 
-    tensor: Floats
+    mass: Floats
+    gyro: Floats
+    turn: Floats
+    munk: Floats
+    rotor: Floats
     load: Floats
-    damping: float
-    gyroscopic: float = 1.0
-    munk: float = 1.0
-    turning: float = 1.0
-    drag: float = 0.0
-    rotor: tuple[float, ...] = (0.0, 0.0, 0.0)
-
-    @staticmethod
-    def are_known(body: Body) -> bool:
-        """Return True if every part of the body has its terms here, and its loads are constant."""
-        is_constant = body.manufactured is None and body.loads is None
-        return body.others <= _WITH_TERMS and is_constant
+    has_momenta: bool = False
+    acting: Acting | None = None
+    reads: int = 0
+    scene_mass: Floats | None = None
+    start: float = 0.0
+    current: Floats | None = None
+    switches: Floats | None = None
+    weights: Floats | None = None
+    space: Floats | None = None
+    arm: Floats | None = None
+    linear: Floats | None = None
+    quadratic: Floats | None = None
+    damping: Any = 0.0
+    clock: Any = 1.0
+    turns: Floats | None = None
+    ahead: Any = 0.0
+    late: Any = 0.0
+    in_space: Any = 0.0
 
     @classmethod
-    def of(cls, body: Body) -> Equations:
-        """Return the correct equations of a body whose loads are constant."""
-        values = body.parts()
-        loads = [entry for name in body.load_names() for entry in values[name]]
-        tensor = np.array(body.energy_matrix, dtype=float)
-        plain = cls(tensor, np.array(loads, dtype=float), damping=float(body.damping))
-        return replace(plain, rotor=tuple(map(float, values.get("rotor", plain.rotor))))
-
-    def slowed(self, factor: float) -> Equations:
-        """Return the equations with all terms that are quadratic in the state multiplied by a factor."""
-        return replace(self, gyroscopic=factor, munk=factor, turning=factor)
+    def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
+        """Return the right equations of a free body with wheels of this momentum."""
+        rows = mass[:3]
+        return cls(mass, mass[-3:], rows, rows, rotor, np.zeros(len(mass)), scene_mass=mass)
 
     @property
-    def is_rigid(self) -> bool:
-        return len(self.tensor) == 3
+    def size(self) -> int:
+        """Number of components of nu: 3 or 6."""
+        return int(self.mass.shape[-1])
 
     @property
-    def moving(self) -> int:
-        """Number of components that change in time: 3 or 6."""
-        return len(self.tensor)
+    def coupled(self) -> int:
+        """Number of components of the state that the rates of v depend on."""
+        return self.size + max(4 * self._has_frame, self.reads)
+
+    @property
+    def _has_frame(self) -> bool:
+        return self.space is not None or self.arm is not None or "in_space" in self._has
+
+    @property
+    def sets(self) -> int:
+        """Number of parameter sets."""
+        return max(
+            len(value) if np.ndim(value := getattr(self, name)) > axes else 1
+            for name, axes in _AXES.items()
+        )
 
     @cached_property
     def inverse(self) -> Floats:
-        return np.asarray(np.linalg.inv(self.tensor), dtype=float)
+        return np.asarray(np.linalg.inv(self.mass))
 
-    @property
-    def is_possible(self) -> bool:
-        """Return True if the tensor is positive definite."""
-        return bool(np.all(np.linalg.eigvalsh(self.tensor) > 0))
+    @cached_property
+    def _has(self) -> frozenset[str]:
+        """The names of the parameters that have an effect."""
+        plain = {
+            "clock": 1.0,
+            **dict.fromkeys(("damping", "ahead", "rotor", "load", "in_space"), 0.0),
+        }
+        return frozenset(n for n, v in plain.items() if np.any(np.asarray(getattr(self, n)) != v))
 
-    def rates(self, z: Floats) -> Floats:
-        """Return z' of rows z = (omega, 1) or (x, y, 1)."""
-        rates = self._rigid(z) if self.is_rigid else self._immersed(z)
-        return np.column_stack([rates, np.zeros(len(z))])
+    def changed(self, changes: Changes) -> Equations:
+        """Return the equations with one set of other parameters."""
+        return replace(self, **changes)
 
-    def omega(self, z: Floats) -> Floats:
-        """Return the angular velocity of every row, body axes."""
-        return z[:, :3] if self.is_rigid else z[:, :6] @ self.tensor[:, 3:]
+    def copies(self, sets: Sequence[Changes]) -> Equations:
+        """Return equations with an axis of parameter sets; a set names the parameters that it changes."""
+        stacked: dict[str, Any] = {}
+        for name in {name for changes in sets for name in changes}:
+            values = [changes.get(name, getattr(self, name)) for changes in sets]
+            shape = np.shape(next(value for value in values if value is not None))
+            plain = {"weights": np.ones(shape), "turns": np.array([0.0, 1.0])}
+            empty = plain.get(name, np.zeros(shape))
+            filled = [empty if value is None else value for value in values]
+            stacked[name] = np.array(filled, dtype=float)
+        return replace(self, **stacked)
 
-    @property
-    def map(self) -> Floats:
-        """Quadratic map Q of the rates."""
-        return bilinear(self.rates, self.moving + 1)
+    def rates(self, time: Floats, z: Floats) -> Floats:
+        """Return the rates of states with or without a quaternion and a centre."""
+        n, count = self.size, z.shape[1]
+        nu = self.inverse @ z[:, :n] if self.has_momenta else z[:, :n]
+        momentum = self._forces(time, z, nu)
+        out = np.empty((max(len(momentum), len(z)), *z.shape[1:]))
+        acceleration = None
+        if not self.has_momenta or "ahead" in self._has:
+            acceleration = self.inverse @ momentum
+        out[:, :n] = momentum if self.has_momenta else acceleration
+        if count > n:
+            q, W = _parts(z[:, n : n + 4]), _parts(nu[:, -3:])
+            if acceleration is not None and "ahead" in self._has:
+                W = _parts(nu[:, -3:] + _number(self.ahead) * acceleration[:, -3:])
+            for i, component in enumerate(self._turned(q, W)):
+                out[:, n + i] = component
+        if count > n + 4:
+            for i, component in enumerate(centre_rate(_parts(z[:, n : n + 4]), _parts(nu[:, :3]))):
+                out[:, n + 4 + i] = (
+                    component if self.current is None else component + self.current[i]
+                )
+        return out * _number(self.clock) if "clock" in self._has else out
 
-    def _rigid(self, z: Floats) -> Floats:
-        omega, unit = z[:, :3], z[:, 3:]
-        torque = self.gyroscopic * np.cross(omega @ self.tensor, omega) + unit**2 * self.load
-        torque = torque + unit * np.cross(self.rotor, omega)
-        driven = (torque - self.drag * unit * omega) @ self.inverse
-        return driven - self.damping * unit * omega
+    @cached_property
+    def _has_loads(self) -> bool:
+        parts = (self.acting, self.space, self.arm, self.linear, self.quadratic)
+        return "load" in self._has or any(part is not None for part in parts)
 
-    def _immersed(self, z: Floats) -> Floats:
-        state, unit = z[:, :6], z[:, 6:]
-        x, y = state[:, :3], state[:, 3:]
-        velocities = state @ self.tensor
-        U, W = velocities[:, :3], velocities[:, 3:]
-        x_rate = self.turning * np.cross(x, W)
-        y_rate = self.gyroscopic * np.cross(y, W) + self.munk * np.cross(x, U)
-        rates: Floats = np.column_stack([x_rate, y_rate]) + unit**2 * self.load
-        return rates - unit * (self.damping * state + self.drag * velocities)
+    def _forces(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+        """Return the rates of the momenta without the factor of the clock."""
+        n = self.size
+        W, turning = _parts(nu[:, -3:]), self.gyro @ nu
+        y = _parts(turning + _column(self.rotor) if "rotor" in self._has else turning)
+        load = self._loads(time, z, nu)
+        if n == 3:
+            rates = add(cross(y, W), load)
+        else:
+            x, U = _parts(self.turn @ nu), _parts(nu[:, :3])
+            of_x, of_y = impulse_rates(x, y, U, W, load[:3], load[3:])
+            if self.munk is not self.turn:
+                apart = _parts((self.munk - self.turn) @ nu)
+                of_y = add(of_y, cross(apart, U))
+            rates = [*of_x, *of_y]
+        total = _stacked(rates)
+        if "damping" in self._has:
+            momentum = z[:, :n] if self.has_momenta else self.mass @ nu
+            total = total - _number(self.damping) * momentum
+        return total
+
+    def _loads(self, time: Floats, z: Floats, nu: Floats) -> list[Any]:
+        """Return the components of all loads but damping, body axes."""
+        n = self.size
+        total: Any = _column(self.load)
+        if not self._has_loads:
+            return [ABSENT] * n
+        if self.acting is not None:
+            total = total + self._written(time, z, nu)
+        if self.weights is not None:
+            total = total * _column(self.weights)
+        if z.shape[1] > n and self._has_frame:
+            q = z[:, n : n + 4]
+            R = rotation(_parts(q / np.sqrt(np.sum(q * q, axis=1, keepdims=True))))
+            if "in_space" in self._has:
+                vectors = np.broadcast_to(total, (len(total), n, z.shape[2]))
+                total = total + _number(self.in_space) * (_to_body(R, vectors) - total)
+            if self.space is not None:
+                total = total + _to_body(R, _column(self.space))
+            if self.arm is not None:
+                couple = np.stack(cross(_parts(_column(self.arm)), R[2]), axis=1)
+                total = total + (couple if n == 3 else np.concatenate([0 * couple, couple], axis=1))
+        if self.linear is not None:
+            total = total - _column(self.linear) * nu
+        if self.quadratic is not None:
+            total = total - _column(self.quadratic) * np.abs(nu) * nu
+        return _parts(total)
+
+    def _written(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+        """Return the loads that are texts, (parameters, components, arcs)."""
+        assert self.acting is not None
+        n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
+        moving = nu if n == 3 or self.scene_mass is None else self.scene_mass @ nu
+        state = np.concatenate([moving, z[:, n:]], axis=1).transpose(0, 2, 1)
+        when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
+        values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
+        stacked = values if n == 3 else np.concatenate(values, axis=-1)
+        return np.asarray(stacked).transpose(0, 2, 1)
+
+    def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
+        right = attitude_rate(q, W)
+        if self.turns is None:
+            return right
+        weights = np.asarray(self.turns, dtype=float)
+        conjugate = [q[0], -q[1], -q[2], -q[3]]
+        # W q is the conjugate of q* W*, and W* = -W.
+        r0, *r = attitude_rate(conjugate, [-w for w in W])
+        left = [r0, *(-component for component in r)]
+        before, after = _number(weights[..., 0])[..., 0], _number(weights[..., 1])[..., 0]
+        return [before * a + after * b for a, b in zip(left, right, strict=True)]
+
+
+PARAMETERS: Final = tuple(field.name for field in fields(Equations))
+
+
+def _parts(rows: Floats) -> list[Floats]:
+    """Return the components, each (parameters, arcs)."""
+    return [rows[:, i] for i in range(rows.shape[1])]
+
+
+def _column(vector: Floats) -> Floats:
+    """Return (components,) or (parameters, components) with the axes of an array of states."""
+    if np.ndim(vector) == 3:
+        return vector
+    return vector[..., :, None] if np.ndim(vector) == 2 else vector[None, :, None]
+
+
+def _number(value: Any) -> Floats:
+    """Return a number, or one for each parameter set, with the axes of an array of states."""
+    return np.asarray(value, dtype=float).reshape(-1, 1, 1)
+
+
+def _to_body(R: list[list[Any]], vectors: Floats) -> Floats:
+    """Return R^T v for every vector of three components."""
+    turned = [
+        sum(R[k][i] * vectors[:, first + k] for k in range(3))
+        for first in range(0, vectors.shape[1], 3)
+        for i in range(3)
+    ]
+    return _stacked(turned)
+
+
+def _stacked(parts: Sequence[Any]) -> Floats:
+    """Return components (parameters or 1, arcs) as one array."""
+    sets, arcs = max(len(part) for part in parts), max(part.shape[1] for part in parts)
+    stacked = np.empty((sets, len(parts), arcs))
+    for i, part in enumerate(parts):
+        stacked[:, i] = part
+    return stacked

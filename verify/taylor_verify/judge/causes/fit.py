@@ -1,43 +1,110 @@
-"""Gauss-Newton least squares, for hypotheses whose numbers are fitted to the answer."""
+"""Gauss-Newton fit of the numbers of a family of faults to the defects of arcs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.flow import Floats
 
-# Step of a central difference in a parameter's unit: truncation and roundoff errors are about equal.
-_DIFFERENCE: Final = 1e-5
-_ITERATIONS: Final = 8
-_SETTLED: Final = 1e-10
-# Directions that change the motion less than this part of the strongest direction are left alone.
-_UNSEEN: Final = 1e-7
+# Part of each number's scale for a central difference.
+DIFFERENCE: Final = 1e-4
+_ROUNDS: Final = 8
+# Trial steps: directions below this part of the largest singular value are left alone; length of the step.
+_TRIALS: Final = ((1e-7, 1.0), (1e-4, 1.0), (1e-2, 1.0), (1e-4, 0.3), (1e-2, 0.3), (0.1, 0.3))
+_LONGEST: Final = 3.0
+# A fit ends early if so much is left after three rounds, or if a round gains less than a twentieth.
+_HOPELESS: Final = 0.3
+_GAIN: Final = 0.95
+_NOTHING: Final = 1e-13
+# Defects above this are measured with the steps of derivatives.
+_COARSE: Final = 1e-3
 
-# A function from parameters (m, p) to states (m, n, d); NaN for impossible parameters.
-Model = Callable[[Floats], Floats]
+
+@dataclass(frozen=True)
+class Family:
+    """Faults with numbers: ``right`` are the scene's, ``scale`` natural sizes of a change.
+
+    ``kind`` is the class that a family belongs to; families of one kind are no alternatives.
+    ``labels`` name the numbers of a body, whose changes are said one by one.
+    """
+
+    name: str
+    kind: str
+    right: Floats
+    scale: Floats
+    changes: Callable[[Floats], Changes]
+    labels: tuple[str, ...] = ()
+
+    @property
+    def count(self) -> int:
+        return len(self.right)
+
+    def around(self, numbers: Floats) -> list[Changes]:
+        """Return the changes at both ends of a central difference in every number."""
+        shifts = DIFFERENCE * np.diag(self.scale)
+        return [self.changes(numbers + sign * shift) for sign in (1, -1) for shift in shifts]
+
+    @property
+    def ahead(self) -> list[Changes]:
+        """The changes of a forward difference from the right numbers, in every number."""
+        return [self.changes(self.right + shift) for shift in DIFFERENCE * np.diag(self.scale)]
+
+    def slopes(self, ends: Floats) -> Floats:
+        """Return the derivatives (entries, numbers) from the values at ``around``."""
+        flat = ends.reshape(2, self.count, -1)
+        return np.asarray(((flat[0] - flat[1]) / (2 * DIFFERENCE * self.scale[:, None])).T)
 
 
-def fitted(model: Model, target: Floats, sizes: Floats, start: Floats) -> tuple[Floats, Floats]:
-    """Return the parameters whose states are nearest to the target, and those states."""
-    count = len(start)
-    best, nearest = start, np.full(target.shape, np.nan)
-    least, parameters = np.inf, start
-    shifts = _DIFFERENCE * np.vstack([np.zeros(count), np.eye(count), -np.eye(count)])
-    for _ in range(_ITERATIONS):
-        tried = model(parameters + shifts)
-        if not np.all(np.isfinite(tried)):
+@dataclass(frozen=True)
+class Fitted:
+    """The numbers of a family that fit best, and the size of the defects that they leave."""
+
+    numbers: Floats
+    size: float
+
+
+def gauss_newton(arcs: Arcs, family: Family, begin: Floats | None = None) -> Fitted:
+    """Return the best numbers of a family; of infinite size where they cannot be computed."""
+    numbers = family.right if begin is None else begin
+    first = size = np.inf
+    for count in range(_ROUNDS):
+        steps = arcs.few_steps if size > _COARSE * np.sqrt(arcs.of_right.size) else arcs.steps
+        defects = arcs.defects([family.changes(numbers)], steps)[0].ravel()
+        size = float(np.linalg.norm(defects))
+        first = first if count else size
+        slopes = family.slopes(arcs.defects(family.around(numbers), arcs.few_steps))
+        if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
+            return Fitted(numbers, np.inf)
+        trials = _trial_steps(slopes, defects, family.scale)
+        sizes = _sizes(arcs.defects([family.changes(numbers + step) for step in trials], steps))
+        best = int(np.argmin(sizes))
+        if not sizes[best] < size:
             break
-        miss = ((target - tried[0]) / sizes).ravel()
-        size = float(miss @ miss)
-        if size >= least:
+        numbers, before, size = numbers + trials[best], size, float(sizes[best])
+        is_hopeless = count == 2 and size > _HOPELESS * first
+        if is_hopeless or size < _NOTHING or (count > 1 and size > _GAIN * before):
             break
-        best, nearest, least = parameters, tried[0], size
-        slopes = (tried[1 : count + 1] - tried[count + 1 :]) / (2 * _DIFFERENCE) / sizes
-        step = np.linalg.lstsq(slopes.reshape(count, -1).T, miss, rcond=_UNSEEN)[0]
-        parameters = parameters + step
-        if np.max(np.abs(step)) <= _SETTLED * np.max(np.abs(parameters)):
-            break
-    return best, nearest
+    exact = arcs.defects([family.changes(numbers)])[0]
+    return Fitted(numbers, float(_sizes(exact[None])[0]))
+
+
+def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> list[Floats]:
+    U, singular, V = np.linalg.svd(slopes * scale, full_matrices=False)
+    along = U.T @ -defects
+    steps = []
+    for cut, length in _TRIALS if len(scale) > 1 else (_TRIALS[0], _TRIALS[3]):
+        is_seen = singular > cut * singular[0]
+        step = V[is_seen].T @ (along[is_seen] / singular[is_seen])
+        steps.append(scale * step * length / max(1.0, float(np.max(np.abs(step))) / _LONGEST))
+    return steps
+
+
+def _sizes(defects: Floats) -> Floats:
+    sizes = np.linalg.norm(defects.reshape(len(defects), -1), axis=1)
+    return np.where(np.isfinite(sizes), sizes, np.inf)

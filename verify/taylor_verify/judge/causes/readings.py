@@ -1,85 +1,272 @@
-"""Readings of an answer in other axes or another order, proven by its first row or by its motion."""
+"""Conventions of a file that are no exact reading of its columns: signs, offsets, turned and moving frames.
+
+All rows are compared with the truth, fewest numbers first. A convention leaves at most ten
+roundings of the file, or the millionth part of the error: the simulator has errors of its own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import permutations, product
 from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices
+from taylor_verify.judge.causes.answer import product as times
+from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.material import Candidate, Material
-from taylor_verify.judge.errors.shift import LEAVES
+from taylor_verify.judge.conventions.axes import quaternion_columns
 
-# A relative error of the start above OFF means another start; up to PRINTED it is the same start.
-OFF: Final = 1e-3
-PRINTED: Final = 1e-6
-_CONJUGATE: Final = np.array([1, -1, -1, -1])
+_ROUNDINGS: Final = 10.0
+_PART: Final = 1e-6
+_MOST: Final = 0.03
+_NEAR: Final = 1e-2
 
-
-def attitude_reading(material: Material) -> tuple[list[Candidate], Material]:
-    """Return the reading that makes the attitude at the start correct, and the answer read in that way."""
-    q, row = material.quaternions, material.start_row
-    if q is None or row is None or "attitude" not in material.failed:
-        return [], material
-    first = np.roll(q, 1, axis=1)
-    before = _apart(q[row], material.start_attitude)
-    for name, why, read in (
-        ("transposed attitude", "it takes space to body axes", q * _CONJUGATE),
-        ("scalar last", "the quaternion has its scalar last", first),
+# All signed permutations, those of signs alone first.
+SIGNED: Final = tuple(
+    sorted(
         (
-            "scalar last and transposed attitude",
-            "the quaternion has its scalar last and takes space to body axes",
-            first * _CONJUGATE,
+            np.eye(3)[list(order)] * np.array(signs)[:, None]
+            for order in permutations(range(3))
+            for signs in product((1.0, -1.0), repeat=3)
         ),
-    ):
-        after = _apart(read[row], material.start_attitude)
-        if before > OFF and after <= PRINTED:
-            reason = f"{why}, by the row at the start"
-            candidate = Candidate(name, "attitude", after / before, reason)
-            return [candidate], replace(material, quaternions=read)
-    return [], material
+        key=lambda P: (not np.array_equal(np.abs(P), np.eye(3)), int(np.sum(P < 0))),
+    )
+)
+FACTORS: Final = {
+    "degrees for radians": 180 / np.pi,
+    "radians for degrees": np.pi / 180,
+    "turns": 1 / (2 * np.pi),
+    "turns per minute": 30 / np.pi,
+    "knots": 3600 / 1852,
+    "thousandths": 1e3,
+    "thousands": 1e-3,
+    "feet": 1 / 0.3048,
+}
 
 
-def _apart(q: Floats, other: Floats) -> float:
-    return min(float(np.linalg.norm(q - other)), float(np.linalg.norm(q + other)))
+@dataclass(frozen=True)
+class Reading:
+    """A convention: the rows that a right file would have by it, and how many numbers were fitted."""
+
+    name: str
+    count: int
+    rows: Floats
 
 
-def omega_reading(
-    material: Material, dynamics: Callable[[Material], list[Candidate]]
-) -> tuple[list[Candidate], Material, list[Candidate]]:
-    """Return a proven reading of omega in space axes, the answer read in that way, and its ``dynamics``.
+def readings(answer: Answer) -> dict[str, Cause]:
+    """Return the convention that explains each failed group, where there is one."""
+    causes: dict[str, Cause] = {}
+    for name in answer.failed:
+        tried = _attitudes(answer) if name == "attitude" else _vectors(answer, name)
+        near = []
+        for reading in tried:
+            left = _left(answer, name, reading.rows)
+            least = _ROUNDINGS * answer.roundings[name]
+            if left <= max(least, _PART * answer.worst[name]) and left < _MOST * answer.worst[name]:
+                near.append((reading.count, left, reading.name))
+        if near:
+            count = min(each[0] for each in near)
+            same = sorted(each for each in near if each[0] == count)
+            alike = [each for each in same[1:4] if each[1] <= max(10 * same[0][1], least)]
+            causes[name] = Cause(
+                f"{_noun(answer, name)} {same[0][2]}",
+                "convention",
+                {name: same[0][1] / answer.worst[name]},
+                alike=tuple(f"{_noun(answer, name)} {each[2]}" for each in alike),
+            )
+    omega = causes.get("omega")
+    is_alone = "attitude" in answer.failed and "attitude" not in causes
+    if omega is not None and is_alone and "turned by a fixed" in omega.name:
+        # An axisymmetric body of the other sign looks like a turn.
+        del causes["omega"]
+    return causes
 
-    The answer's own attitude, or its transpose, converts the axes. The row at the start proves or refutes
-    the reading. If that row is correct in both axes, as for the identity attitude, the motion decides:
-    after the reading it must be exact, or have a cause with at most one fitted number; without the
-    reading it must have no cause.
-    """
-    plain, q = dynamics(material), material.quaternions
-    if q is None or not material.equations.is_rigid or "omega" not in material.failed:
-        return [], material, plain
-    by_motion = bool(plain) and not any(candidate.leaves <= LEAVES for candidate in plain)
-    for turn, words in ((q, ""), (q * _CONJUGATE, ", if that is the transposed one")):
-        read = replace(material, states=to_body(turn, material.states))
-        before, after = material.start_error, read.start_error
-        leaves = np.inf
-        if before is not None and after is not None and max(before, after) > OFF:
-            if not (before > OFF and after <= PRINTED):
+
+def _noun(answer: Answer, name: str) -> str:
+    return {"velocity": "the linear velocity", "centre": "the centre"}.get(name, name)
+
+
+def _left(answer: Answer, name: str, rows: Floats) -> float:
+    if name == "attitude":
+        assert answer.file.q is not None
+        return float(np.max(angles(answer.file.q, rows)))
+    file, _, size = _group(answer, name)
+    return float(np.max(np.linalg.norm(file - rows, axis=1))) / size
+
+
+def _group(answer: Answer, name: str) -> tuple[Floats, Floats, float]:
+    """Return the file's rows of a group of vectors, the truth, and the size of an error of 1."""
+    if name == "centre":
+        assert answer.file.c is not None
+        assert answer.truth.c is not None
+        return answer.file.c, answer.truth.c, 1.0
+    part = answer.groups[name]
+    return answer.file.v[:, part], answer.truth.v[:, part], float(answer.sizes[part][0])
+
+
+def numbers(values: Floats) -> str:
+    """Return fitted numbers as text; what is nothing beside the others is 0."""
+    size = float(np.max(np.abs(values))) or 1.0
+    cut = [0.0 if abs(value) < 1e-6 * size else float(value) for value in np.atleast_1d(values)]
+    return "(" + ", ".join(f"{value:.6g}" for value in cut) + ")"
+
+
+def axes(P: Floats) -> str:
+    """Return a signed permutation as the signed numbers of its axes."""
+    places = np.argmax(np.abs(P), axis=1)
+    return " ".join(
+        f"{'-' if P[i, k] < 0 else ''}{k + 1}" for i, k in zip(range(3), places, strict=True)
+    )
+
+
+def _vectors(answer: Answer, name: str) -> Iterator[Reading]:
+    file, truth, _ = _group(answer, name)
+    assert answer.truth.q is not None
+    R = matrices(answer.truth.q)
+    is_centre = name == "centre"
+    for P in SIGNED[1:]:
+        yield Reading(_signs(P), 0, truth @ P.T)
+    if not is_centre:
+        in_space = np.einsum("nij,nj->ni", R, truth)
+        yield Reading("is in space axes", 0, in_space)
+        for P in SIGNED[1:]:
+            yield Reading(f"is in space axes, as axes {axes(P)}", 0, in_space @ P.T)
+        yield Reading("is turned by R^T once more", 0, np.einsum("nji,nj->ni", R, truth))
+    for unit, factor in FACTORS.items():
+        yield Reading(f"is in another unit: {unit}", 0, factor * truth)
+    if name == "omega" and answer.n == 3:
+        yield Reading("is I omega", 0, truth @ answer.right.mass.T)
+    yield from _fitted(answer, name, file, truth, R)
+
+
+def _signs(P: Floats) -> str:
+    flipped = np.flatnonzero(np.diag(P) < 0)
+    if np.array_equal(np.abs(P), np.eye(3)):
+        listed = " and ".join(str(i + 1) for i in flipped)
+        return f"has the other sign on axis {listed}" if len(flipped) < 3 else "has the other sign"
+    return f"has other axes: {axes(P)}"
+
+
+def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -> Iterator[Reading]:
+    is_centre, unit = name == "centre", np.eye(3)
+    factor = np.sum(file * truth) / max(float(np.sum(truth * truth)), 1e-300)
+    yield Reading(f"has the factor {factor:.8g}", 1, factor * truth)
+    for i in range(3):
+        offset = np.mean(file[:, i] - truth[:, i])
+        yield Reading(
+            f"has a constant offset on axis {i + 1}: {offset:.6g}", 1, truth + offset * unit[i]
+        )
+    constant = [np.broadcast_to(axis, truth.shape) for axis in unit]
+    p, rows = _best(file - truth, constant)
+    yield Reading(f"has a constant offset {numbers(p)}", 3, truth + rows)
+    p, rows = _best(file, [truth * axis for axis in unit])
+    if not (name == "omega" and "attitude" in answer.failed):
+        yield Reading(f"has factors {numbers(p)} on its axes", 3, rows)
+    if is_centre or name == "velocity":
+        p, rows = _best(file - truth, [R[:, :, i] if is_centre else R[:, i, :] for i in range(3)])
+        words = (
+            "is the path of the body's point"
+            if is_centre
+            else "is relative to a moving frame, with the velocity"
+        )
+        yield Reading(f"{words} {numbers(p)}", 3, truth + rows)
+        p, rows = _best(file - truth, [axis * answer.times[:, None] for axis in unit])
+        yield Reading(f"drifts with the constant velocity {numbers(p)}", 3, truth + rows)
+    if name == "velocity":
+        omega = answer.truth.v[:, 3:]
+        p, rows = _best(file - truth, [np.cross(omega, axis) for axis in unit])
+        yield Reading(f"is that of another point of the body, at {numbers(p)}", 3, truth + rows)
+    yield from _turned(file, truth, R, is_centre)
+
+
+def _turned(file: Floats, truth: Floats, R: Floats, is_centre: bool) -> Iterator[Reading]:
+    """Yield the best fixed rotation (Kabsch), in body and in space axes."""
+    of_space = np.einsum("nij,nj->ni", R, truth)
+    for words, rows in (("space" if is_centre else "body", truth), ("space", of_space))[
+        : 1 if is_centre else 2
+    ]:
+        U, singular, V = np.linalg.svd(file.T @ rows)
+        if singular[1] > 1e-6 * singular[0]:
+            Q = U @ np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ V))]) @ V
+            angle = np.degrees(np.arccos(np.clip((np.trace(Q) - 1) / 2, -1, 1)))
+            yield Reading(
+                f"is turned by a fixed rotation of {angle:.4g} degrees, {words} axes", 3, rows @ Q.T
+            )
+
+
+def _best(rows: Floats, columns: list[Floats]) -> tuple[Floats, Floats]:
+    """Return the least-squares numbers of columns for rows, and the rows that they make."""
+    matrix = np.array([column.ravel() for column in columns]).T
+    scale = np.linalg.norm(matrix, axis=0)
+    scale = np.where(scale > 0, scale, 1.0)
+    p = np.linalg.lstsq(matrix / scale, rows.ravel(), rcond=1e-10)[0] / scale
+    return p, (matrix @ p).reshape(rows.shape)
+
+
+# Attitudes.
+
+
+def _attitudes(answer: Answer) -> Iterator[Reading]:
+    q, truth = answer.file.q, answer.truth.q
+    assert q is not None
+    assert truth is not None
+    yield Reading("is the conjugate: it takes space to body axes", 0, conjugate(truth))
+    yield Reading("has the scalar last", 0, np.roll(truth, -1, axis=1))
+    yield Reading("has the scalar last, read as first", 0, np.roll(truth, 1, axis=1))
+    for words, rows in (("", truth), ("is the conjugate, and ", conjugate(truth))):
+        for side, turn in (
+            ("space", times(q, conjugate(rows))),
+            ("body", times(conjugate(rows), q)),
+        ):
+            mean = np.linalg.eigh(turn.T @ turn)[1][:, -1]
+            angle = np.degrees(2 * np.arccos(min(1.0, abs(float(mean[0])))))
+            name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
+            turned = (mean[None], rows) if side == "space" else (rows, mean[None])
+            yield Reading(name, 3, times(*turned))
+    yield from _both_frames(q, truth)
+    yield _frame_that_turns(answer, q, truth)
+
+
+def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
+    """Yield S R P with a signed permutation P of the body's axes and a fixed S."""
+    R, file = matrices(truth), matrices(q)
+    for words, rows in (("", R), ("is transposed, and ", R.transpose(0, 2, 1))):
+        for P in (P for P in SIGNED[1:] if np.linalg.det(P) > 0):
+            S = file[0] @ P.T @ rows[0].T
+            turned = S @ rows @ P
+            middle = len(turned) // 2
+            if max(np.max(np.abs(turned[k] - file[k])) for k in (middle, -1)) > _NEAR:
                 continue
-            leaves, tried = after / before, dynamics(read)
-        elif by_motion:
-            tried = dynamics(read)
-            simple = [1.0, *(candidate.leaves for candidate in tried if candidate.fitted <= 1)]
-            leaves = min(simple) * read.pairs.largest / material.pairs.largest
-        if leaves <= LEAVES:
-            why = f"by the answer's own attitude it is taken to body axes{words}"
-            return [Candidate("omega in space axes", "omega", leaves, why)], read, tried
-    return [], material, plain
+            known = [s for s in SIGNED if np.max(np.abs(S - s)) < 1e-6]
+            of_space = f"space axes {axes(known[0])}" if known else "space axes turned"
+            rotations = quaternion_columns(turned)
+            unit = rotations / np.linalg.norm(rotations, axis=1, keepdims=True)
+            name = f"{words}has other frames: body axes {axes(P.T)}, {of_space}, q = E q F"
+            yield Reading(name, 0 if known else 3, unit)
 
 
-def to_body(q: Floats, vectors: Floats) -> Floats:
-    """Return R(q)^T v for every row."""
-    scalar, axis = q[:, :1], -q[:, 1:]
-    twice = 2 * np.cross(axis, vectors)
-    return vectors + scalar * twice + np.cross(axis, twice)
+def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
+    """Return the attitude relative to a frame that turns at a constant rate, by Newton's method."""
+    elapsed = answer.times - answer.begins
+    early = np.argsort(np.abs(elapsed))[1 : max(3, len(elapsed) // 10)]
+    apart, rate = _small_turns(times(q, conjugate(truth))), np.zeros(3)
+    squares = max(float(np.sum(elapsed[early] ** 2)), 1e-300)
+    rate = np.sum(apart[early] * elapsed[early, None], axis=0) / squares
+    turned = truth
+    for _ in range(4):
+        turn = elapsed[:, None] * rate
+        angle = np.linalg.norm(turn, axis=1, keepdims=True) + 1e-300
+        frame = np.hstack([np.cos(angle / 2), np.sin(angle / 2) * turn / angle])
+        turned = times(frame, truth)
+        rest = _small_turns(times(q, conjugate(turned)))
+        rate = rate + np.sum(rest * elapsed[:, None], axis=0) / max(
+            float(np.sum(elapsed**2)), 1e-300
+        )
+    return Reading(f"is relative to a space frame that turns at {numbers(rate)}", 3, turned)
+
+
+def _small_turns(q: Floats) -> Floats:
+    return np.asarray(2 * q[:, 1:] * np.where(q[:, :1] < 0, -1.0, 1.0))

@@ -1,96 +1,156 @@
-"""Hypotheses that rows belong to another time or to another scene."""
+"""Rows of a right motion: repeated, single ones wrong, or interpolated between exact ones."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-from fractions import Fraction
+from collections.abc import Callable, Iterator
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.material import Candidate, Material
-from taylor_verify.judge.causes.readings import OFF, PRINTED
-from taylor_verify.records.quantities import MOMENTA
-from taylor_verify.records.reason import Kind
-from taylor_verify.scenes.library import names
-from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.scene import Scene
+from taylor_verify.judge.causes.answer import Answer, Motion, Places
+from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.flow import Floats
 
-_FEWEST_ROWS: Final = 3
-# Rows are evenly spaced if no interval differs by more than this part.
-_EVEN: Final = 1e-6
-# A shift is known to this part at best, and to a few times the error that remains after it.
-_KNOWN: Final = 1e-6
-_LEAVES_TIMES: Final = 3.0
-# The shift must be known well enough to recognise a whole number of steps.
-_WHOLE: Final = 0.05
-# The first rows are compared with the exact motion of scenes that have the same start, to this accuracy.
-_FIRST_ROWS: Final = 5
-_FITS: Final = 1e-2
-_DIGITS: Final = 20
+_BAD: Final = 30.0
+_FEWEST: Final = 4
+_ONE_IN: Final = 20
+_MOST_BETWEEN: Final = 12
+# What interpolation leaves, and how far single rows stand out from all others.
+_LEAVES: Final = 1e-2
+_ROUNDINGS: Final = 10.0
+_STANDS_OUT: Final = 100.0
 
 
-def other_rows(material: Material) -> Iterator[Candidate]:
-    """Yield the number of rows or of steps that equals a constant shift of time."""
-    spaces = np.diff(material.elapsed)
-    if len(spaces) < _FEWEST_ROWS - 1 or np.ptp(spaces) > _EVEN * np.max(np.abs(spaces)):
-        return
-    for quantity, verdict in material.failed.items():
-        shift = verdict.time_shift
-        if verdict.shift != Kind.CONSTANT.value or not shift or not verdict.max:
+def wrong_rows(answer: Answer) -> Cause | None:
+    """Return the cause of an answer most of whose rows are right."""
+    bad = np.zeros(answer.count, dtype=bool)
+    for name in answer.failed:
+        bad |= answer.error[name] > _BAD * answer.roundings[name]
+    wrong, good = np.flatnonzero(bad), ~bad
+    if not len(wrong) or np.count_nonzero(good) < max(_FEWEST, answer.count // _ONE_IN):
+        return None
+    return _repeated(answer, wrong) or _interpolated(answer, bad) or _single(answer, wrong, good)
+
+
+def _time(answer: Answer, row: int) -> str:
+    return f"{answer.times[row] + answer.right.start:.6g}"
+
+
+def _repeated(answer: Answer, wrong: Places) -> Cause | None:
+    parts = [part for part in (answer.file.v, answer.file.q, answer.file.c) if part is not None]
+    is_repeated = all(
+        row > 0 and all(np.array_equal(part[row], part[row - 1]) for part in parts) for row in wrong
+    )
+    if not is_repeated or len(wrong) > answer.count // 2:
+        return None
+    count = "one row repeats" if len(wrong) == 1 else f"{len(wrong)} rows repeat"
+    name = (
+        f"{count} the row before (first at t = {_time(answer, int(wrong[0]))}); "
+        f"all others of {answer.count} rows are right"
+    )
+    return Cause(name, "rows", dict.fromkeys(answer.failed, 0.0))
+
+
+def _single(answer: Answer, wrong: Places, good: Floats) -> Cause | None:
+    stands_out = all(
+        np.max(answer.error[name][wrong])
+        > _STANDS_OUT * max(answer.roundings[name], float(np.max(answer.error[name][good])))
+        for name in answer.failed
+    )
+    is_end = len(wrong) > 1 and wrong[-1] == answer.count - 1 and bool(np.all(np.diff(wrong) == 1))
+    if not stands_out or is_end or len(wrong) > max(1, answer.count // _ONE_IN):
+        return None
+    count = "one row is" if len(wrong) == 1 else f"{len(wrong)} rows are"
+    name = (
+        f"{count} wrong (first at t = {_time(answer, int(wrong[0]))}); "
+        f"all others of {answer.count} rows are right"
+    )
+    return Cause(name, "rows", dict.fromkeys(answer.failed, 0.0))
+
+
+# Interpolation: every so many rows one is exact.
+
+
+def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
+    for every in range(2, _MOST_BETWEEN + 1):
+        nodes = np.arange(0, answer.count, every)
+        if len(nodes) < _FEWEST or np.any(bad[nodes]):
             continue
-        leaves = (verdict.remains or 0.0) / verdict.max
-        doubt = max(_KNOWN, _LEAVES_TIMES * leaves)
-        # Negative if row k is too old.
-        steps = -float(np.mean(spaces)) / shift
-        whole = round(steps)
-        if abs(abs(steps) - 1) <= min(doubt, _WHOLE):
-            other = "k+1" if steps > 0 else "k-1"
-            why = f"row k holds the state of row {other}"
-            yield Candidate("one row off", quantity, leaves, why)
-        elif whole > 1 and whole * doubt <= _WHOLE and abs(steps - whole) <= whole * doubt:
-            why = (
-                f"every row holds the state a step of {abs(shift):.6g} later, {whole} of which make "
-                "the time from row to row"
+        for name, between in _KINDS.items():
+            motion = Motion(
+                between(answer, nodes, answer.file.v, _rates(answer)[0]),
+                None
+                if answer.file.q is None
+                else _unit(between(answer, nodes, answer.file.q, _rates(answer)[1])),
             )
-            yield Candidate("first row stepped already", quantity, leaves, why)
+            leaves = _leaves_between(answer, motion, int(nodes[-1]))
+            if leaves and max(leaves.values()) <= _allowed(answer, leaves):
+                words = f"{name} between exact rows: every {every} rows one is exact"
+                return Cause(words, "interpolation", leaves)
+    return None
 
 
-def another_scene(material: Material, scene: Scene) -> Iterator[Candidate]:
-    """Yield the shipped scenes of the same model that begin as the answer does."""
-    own = material.start_error
-    if own is None or not own > OFF:
-        return
-    for other in map(load, names(scene.model)):
-        begins = replace(material, start=np.array(other.initial.moving, dtype=float))
-        error = begins.start_error
-        if other.clock.start != scene.clock.start or error is None or not error <= PRINTED:
-            continue
-        within = _error(material, other)
-        if within <= _FITS:
-            why = f"the rows fit {other.name} better ({material.quantity} within {within:.2g})"
-        else:
-            why = f"the row at the start is that of {other.name} (within {error:.2g}), those after it not"
-        yield Candidate(
-            "another scene", material.quantity, error / own, why, is_sure=within <= _FITS
-        )
+def _allowed(answer: Answer, leaves: dict[str, float]) -> float:
+    return max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor(list(leaves))))
 
 
-def _error(material: Material, scene: Scene) -> float:
-    """Return the largest relative error of the rows near the start, as an answer to a scene."""
-    order = np.argsort(np.abs(material.elapsed))[:_FIRST_ROWS]
-    elapsed = [Fraction(float(material.elapsed[k])) for k in order]
-    try:
-        exact = solution(replace(scene, track=frozenset())).evaluate(elapsed, _DIGITS)
-    except Unsettled:
-        return np.inf
-    errors = []
-    for i, name in enumerate(MOMENTA[scene.model]):
-        right = exact[name].astype(float)
-        answer = material.states[order, 3 * i : 3 * i + 3]
-        size = np.max(np.linalg.norm(right, axis=1)) or 1.0
-        errors.append(float(np.max(np.linalg.norm(answer - right, axis=1)) / size))
-    return max(errors)
+def _leaves_between(answer: Answer, motion: Motion, last: int) -> dict[str, float]:
+    errors = answer.errors(motion)
+    return {
+        name: float(np.max(errors[name][:last])) / answer.worst[name]
+        for name in answer.failed
+        if name in errors
+    }
+
+
+def _unit(q: Floats) -> Floats:
+    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def _rates(answer: Answer) -> tuple[Floats, Floats]:
+    """Return the rates of v and q along the truth, with the file's sign of q."""
+    parts = [answer.truth.v, answer.truth.q]
+    if answer.right.reads > 4:
+        parts.append(answer.truth.c)
+    z = np.hstack([part for part in parts if part is not None]).T[None]
+    rates = answer.right.rates(answer.times, z)[0].T
+    of_q = rates[:, answer.n : answer.n + 4]
+    if answer.file.q is not None and answer.truth.q is not None:
+        of_q = of_q * np.sign(np.sum(answer.file.q * answer.truth.q, axis=1))[:, None]
+    return rates[:, : answer.n], of_q
+
+
+def _linear(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
+    times = answer.times
+    return np.stack([np.interp(times, times[nodes], column[nodes]) for column in rows.T], axis=1)
+
+
+def _held(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
+    last = np.searchsorted(nodes, np.arange(answer.count), side="right") - 1
+    return np.asarray(rows[nodes][np.maximum(last, 0)])
+
+
+def _cubic(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
+    times = answer.times
+    k = np.clip(np.searchsorted(times[nodes], times, side="right") - 1, 0, len(nodes) - 2)
+    i, j = nodes[k], nodes[k + 1]
+    h = (times[j] - times[i])[:, None]
+    s = ((times - times[i])[:, None]) / h
+    return np.asarray(
+        (1 + 2 * s) * (1 - s) ** 2 * rows[i]
+        + s * (1 - s) ** 2 * h * rates[i]
+        + s * s * (3 - 2 * s) * rows[j]
+        + s * s * (s - 1) * h * rates[j]
+    )
+
+
+_KINDS: Final[dict[str, Callable[[Answer, Places, Floats, Floats], Floats]]] = {
+    "linear interpolation": _linear,
+    "cubic interpolation (Hermite)": _cubic,
+    "values that are held": _held,
+}
+
+
+def names() -> Iterator[str]:
+    """Yield the names of the kinds of interpolation."""
+    yield from _KINDS

@@ -1,96 +1,200 @@
-"""Search for the likely causes of a failure: every hypothesis is tested, and the best ones are returned.
+"""The search for likely causes: rows and times first, then conventions and starts, then equations.
 
-To add a hypothesis: write a function from Material to candidates in the file of its family, name it in
-DYNAMICS or OTHERS, write its broken twin in tests/judge/test_causes.py and its line in docs/verdicts.md.
+Only what is proven on the whole answer is said. To add a fault: add it to terms.py, bodies.py, methods.py
+or readings.py, its broken twin to tests/judge/test_causes.py, and its line to docs/verdicts.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from typing import Final
 
-from taylor_verify.judge.causes.damping import damping
-from taylor_verify.judge.causes.damping_step import damping_step, wrong_damping
-from taylor_verify.judge.causes.gyroscopic import gyroscopic_step
+import numpy as np
+
+from taylor_verify.judge.causes import starts
+from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.dynamics import dynamics
+from taylor_verify.judge.causes.fault import Fault
+from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.material import Candidate, Material
-from taylor_verify.judge.causes.readings import attitude_reading, omega_reading
-from taylor_verify.judge.causes.rows import another_scene, other_rows
-from taylor_verify.judge.causes.single_precision import single_precision
-from taylor_verify.judge.causes.tensor import another_body, other_tensors
-from taylor_verify.judge.causes.terms import loads, space_loads, wrong_terms
-from taylor_verify.judge.errors.shift import LEAVES
-from taylor_verify.records.answers import LikelyCause
-from taylor_verify.scenes.scene import Scene
+from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
+from taylor_verify.judge.causes.rows import wrong_rows
+from taylor_verify.judge.causes.stamps import other_times
 
-Hypothesis = Callable[[Material], Iterator[Candidate]]
-
-# Two candidates explain equally well if the error that one leaves is at most three times the other's,
-_ALIKE: Final = 3.0
-# or if both leave less than this part of the error.
-_NOTHING: Final = 1e-3
-
-# Hypotheses about the equations of the states; those without fitted numbers come first.
-DYNAMICS: Final[tuple[Hypothesis, ...]] = (
-    other_tensors,
-    loads,
-    space_loads,
-    wrong_terms,
-    wrong_damping,
-    gyroscopic_step,
-    damping,
-    damping_step,
-    another_body,
-)
-# Hypotheses about rows, attitudes and number formats.
-OTHERS: Final[tuple[Hypothesis, ...]] = (other_rows, kinematics, single_precision)
+# An attitude so many times better than omega refutes every equation.
+_CONTRADICTED: Final = 1e-3
+_PROVEN: Final = 0.1
+_ROUNDINGS: Final = 10.0
+_FEWEST: Final = 6
 
 
-def likely_causes(material: Material | None, scene: Scene) -> tuple[LikelyCause, ...]:
-    """Return the causes that explain nearly all of an error, quantity by quantity."""
-    if material is None or not material.failed:
-        return ()
-    attitude, turned = attitude_reading(material)
-    omega, read, tried = omega_reading(turned, _dynamics)
-    for hypothesis in OTHERS:
-        tried += [
-            candidate for candidate in hypothesis(read) if candidate.quantity in material.failed
-        ]
-    others = list(another_scene(material, scene))
-    if any(candidate.is_sure for candidate in others):
-        omega, attitude, tried = [], [], []
-    every = ([*omega, *attitude], tried, others)
-    return tuple(cause for candidates in every for cause in _causes_of(candidates))
-
-
-def _dynamics(material: Material) -> list[Candidate]:
-    """Return the candidates for the equations of the states; none if the defects are roundoff."""
-    if material.quantity not in material.failed or not material.is_telling:
+def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
+    """Return the proven causes of the failures of an answer."""
+    if not answer.failed or answer.count < _FEWEST:
         return []
-    return [candidate for hypothesis in DYNAMICS for candidate in hypothesis(material)]
+    whole_answer = wrong_rows(answer) or other_times(answer)
+    if whole_answer is not None:
+        return [whole_answer]
+    by_group = readings(answer)
+    undone = _attitude_undone(answer, by_group, more) or _omega_undone(answer, by_group, more)
+    if undone:
+        return undone
+    left = [name for name in answer.failed if name not in by_group]
+    causes = list(by_group.values())
+    if not left:
+        return causes
+    moving = [name for name in left if name in answer.groups]
+    if moving and _is_attitude_right(answer, by_group) and _contradicts(answer, moving):
+        words = "omega contradicts the file's own attitude, which is right"
+        return [*causes, Cause(words, "omega against attitude", {})]
+    of_motion = _of_motion(answer, moving, "attitude" in left, more)
+    if not of_motion and not causes:
+        return _in_space(answer, more)
+    return [*causes, *of_motion]
 
 
-# The choice.
+def _is_attitude_right(answer: Answer, by_group: dict[str, Cause]) -> bool:
+    return answer.file.q is not None and ("attitude" not in answer.failed or "attitude" in by_group)
 
 
-def _causes_of(candidates: Iterable[Candidate]) -> tuple[LikelyCause, ...]:
-    """Return the best candidates for each quantity; none if none explains nearly all of the error."""
-    good = [candidate for candidate in candidates if candidate.leaves <= LEAVES]
-    quantities = dict.fromkeys(candidate.quantity for candidate in good)
-    return tuple(
-        candidate.cause()
-        for quantity in quantities
-        for candidate in _best([other for other in good if other.quantity == quantity])
+def _contradicts(answer: Answer, moving: list[str]) -> bool:
+    attitude = answer.worst["attitude"]
+    return answer.n == 3 and "omega" in moving and attitude < _CONTRADICTED * answer.worst["omega"]
+
+
+def _of_motion(
+    answer: Answer, moving: list[str], has_wrong_attitude: bool, more: tuple[Fault, ...]
+) -> list[Cause]:
+    """Return the causes in the motion, and in the attitude given the motion."""
+    causes: list[Cause] = []
+    cause = None
+    if moving:
+        causes = _pieces(answer, more) or []
+        cause = causes[-1] if causes else dynamics(answer, more)
+        causes = causes or ([cause] if cause else [])
+    if not has_wrong_attitude:
+        return causes
+    if cause is not None and cause.leaves.get("attitude", 1.0) <= _PROVEN:
+        return causes
+    is_slight = cause is not None and max(answer.worst[name] for name in moving) < (
+        _CONTRADICTED * answer.worst["attitude"]
     )
+    if is_slight:
+        cause, causes, moving = None, [], []
+    if cause is None and moving:
+        return causes
+    return _with_attitude(answer, cause, causes)
 
 
-def _best(good: list[Candidate]) -> Iterable[Candidate]:
-    """Return the candidates that explain best, with the fewest fitted numbers; one for each name."""
-    least = max(min(candidate.leaves for candidate in good), _NOTHING)
-    alike = [candidate for candidate in good if candidate.leaves <= _ALIKE * least]
-    fewest = min(candidate.fitted for candidate in alike)
-    simple = [candidate for candidate in alike if candidate.fitted == fewest]
-    first: dict[str, Candidate] = {}
-    for candidate in sorted(simple, key=lambda candidate: candidate.leaves):
-        first.setdefault(candidate.name, candidate)
-    return first.values()
+def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
+    right = answer.right if cause is None else answer.right.changed(cause.changes)
+    of_attitude = kinematics(answer, right, None if cause is None else cause.method)
+    if of_attitude is not None:
+        return [*causes, of_attitude]
+    # An attitude that no cause explains refutes a cause that does not explain it.
+    is_refuted = cause is not None and cause.method is None and cause.kind not in _OF_PIECES
+    return [each for each in causes if each is not cause] if is_refuted else causes
+
+
+_OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
+
+
+def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
+    """Return the causes of an answer that is right in pieces, each with the times of its ends."""
+    defects = starts.roundings(answer)
+    cause = starts.exact_in_pieces(answer, defects)
+    if cause is not None:
+        return [cause]
+    row = starts.last_right_row(answer, defects)
+    if row is None:
+        return None
+    stopped = starts.stopped(answer, row)
+    if stopped is not None:
+        return [stopped]
+    later = starts.from_row(answer, row)
+    time = answer.times[row] + answer.right.start
+    return [
+        replace(cause, where=f"right up to t = {time:.6g}, then")
+        for cause in causes_of(later, more)
+    ]
+
+
+def _attitude_undone(
+    answer: Answer, by_group: dict[str, Cause], more: tuple[Fault, ...]
+) -> list[Cause]:
+    """Return a convention of the attitude that its first row shows, with the causes of what is left."""
+    q, start = answer.file.q, answer.start.q
+    if q is None or start is None or "attitude" in by_group or not answer.is_from_start:
+        return []
+    allowed = _ROUNDINGS * answer.roundings["attitude"]
+    if "attitude" not in answer.failed or answer.error["attitude"][0] <= allowed:
+        return []
+    last = np.roll(q, 1, axis=1)
+    for name, rows in (
+        ("is transposed: it takes space to body axes", conjugate(q)),
+        ("is scalar last", last),
+        ("is scalar last and transposed", conjugate(last)),
+    ):
+        if angles(rows[:1], start)[0] <= allowed:
+            read = replace(answer, file=replace(answer.file, q=steady_signs(rows)))
+            return _beside(Cause(f"attitude {name}", "convention", {}), causes_of(read, more))
+    return []
+
+
+def _beside(convention: Cause, causes: list[Cause]) -> list[Cause]:
+    """Return a convention and the causes that are proven by it; none without these."""
+    with_that = [replace(cause, where=cause.where or "with that") for cause in causes]
+    return [convention, *with_that] if causes else []
+
+
+def _omega_undone(
+    answer: Answer, by_group: dict[str, Cause], more: tuple[Fault, ...]
+) -> list[Cause]:
+    """Return a convention of omega that its first row shows, with the causes of what is left by it."""
+    if "omega" not in answer.failed or answer.right.has_momenta or not answer.is_from_start:
+        return []
+    attitude_is_left = "attitude" in answer.failed and "attitude" not in by_group
+    if "omega" in by_group and not attitude_is_left:
+        return []
+    allowed = _ROUNDINGS * answer.roundings["omega"]
+    if "omega" not in by_group and answer.error["omega"][0] <= allowed:
+        return []
+    part = answer.groups["omega"]
+    for name, rows in _conventions(answer, answer.file.v[:, part]):
+        apart = np.linalg.norm(rows[0] - answer.truth.v[0, part]) / answer.sizes[part][0]
+        if apart <= allowed:
+            read = _with_omega(answer, rows)
+            causes = _of_motion(read, list(read.moving), attitude_is_left, more)
+            first = by_group.get("omega", Cause(f"omega {name}", "convention", {}))
+            if both := _beside(first, causes):
+                return both
+    return []
+
+
+def _with_omega(answer: Answer, rows: Floats) -> Answer:
+    v = answer.file.v.copy()
+    v[:, answer.groups["omega"]] = rows
+    return replace(answer, file=replace(answer.file, v=v))
+
+
+def _in_space(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
+    """Return omega in space axes with the causes that the motion has then, where nothing else is proven."""
+    if answer.file.q is None or answer.n == 6 or "omega" not in answer.failed:
+        return []
+    name, rows = _conventions(answer, answer.file.v)[0]
+    if np.array_equal(rows, answer.file.v):
+        return []
+    read = _with_omega(answer, rows)
+    causes = _of_motion(read, list(read.moving), "attitude" in answer.failed, more)
+    return _beside(Cause(f"omega {name}", "convention", {}), causes)
+
+
+def _conventions(answer: Answer, omega: Floats) -> list[tuple[str, Floats]]:
+    tried: list[tuple[str, Floats]] = []
+    if answer.file.q is not None:
+        in_body = np.einsum("nji,nj->ni", matrices(answer.file.q), omega)
+        tried.append(("is in space axes", in_body))
+    tried += [(f"has other axes: {axes(P)}", omega @ P) for P in SIGNED[1:]]
+    tried += [(f"is in another unit: {unit}", omega / factor) for unit, factor in FACTORS.items()]
+    return tried

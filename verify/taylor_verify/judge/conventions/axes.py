@@ -16,6 +16,8 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact import rotation
+
 Array = np.ndarray[Any, Any]
 
 # There are many ways to name axes, so a renaming costs more than another convention.
@@ -118,9 +120,9 @@ class Frames:
         """Return the quaternions of ``attitudes``, with the length that they have in the file."""
         if not self.cost:
             return rows
-        s, *vector = self.body.quaternion
-        backward = (s, *(-entry for entry in vector))
-        turned = _product(_product(self.space.quaternion, list(rows.T)), backward)
+        backward = rotation.conjugate(self.body.quaternion)
+        forward = rotation.product(self.space.quaternion, list(rows.T))
+        turned = rotation.product(forward, backward)
         square = sum(e * e for e in self.space.quaternion) * sum(e * e for e in backward)
         length = mp.sqrt(square) if rows.dtype == object else np.sqrt(square)
         renamed: Array = np.array(turned).T / length
@@ -155,13 +157,3 @@ def quaternion_columns(matrices: Array) -> Array:
     largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
     quaternions: Array = squares[np.arange(len(squares)), largest]
     return quaternions
-
-
-def _product(a: Sequence[Any], b: Sequence[Any]) -> tuple[Any, ...]:
-    """Return the product of two quaternions, component by component."""
-    return (
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    )

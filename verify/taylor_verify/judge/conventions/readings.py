@@ -17,6 +17,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.exact.rotation import rotation_rows
 from taylor_verify.judge.conventions.axes import Axes, Frames
 from taylor_verify.judge.errors.state import norms
 from taylor_verify.records.quantities import GROUPS
@@ -117,10 +118,5 @@ def rotations(quaternions: Array) -> Array:
     else:
         lengths = np.linalg.norm(quaternions, axis=1)
         lengths = np.where(lengths > 0, lengths, np.nan)
-    s, a, b, c = (quaternions / lengths[:, None]).T
-    rows = [
-        [s * s + a * a - b * b - c * c, 2 * (a * b - s * c), 2 * (a * c + s * b)],
-        [2 * (a * b + s * c), s * s - a * a + b * b - c * c, 2 * (b * c - s * a)],
-        [2 * (a * c - s * b), 2 * (b * c + s * a), s * s - a * a - b * b + c * c],
-    ]
+    rows = rotation_rows(list((quaternions / lengths[:, None]).T))
     return np.array(rows).transpose(2, 0, 1)

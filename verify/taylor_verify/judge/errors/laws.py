@@ -30,6 +30,17 @@ from taylor_verify.solvers.trajectory import motion_of
 Column = np.ndarray[Any, Any]
 
 
+def laws_of(scene: Scene) -> list[str]:
+    """Return the names of the laws of the held states that a scene tracks."""
+    loads = scene.body.loads
+    states = () if loads is None else loads.states
+    return [_named_law(s) for s in states if isinstance(s, Held) and s.name in scene.states]
+
+
+def _named_law(state: Held) -> str:
+    return f"{state.name} law"
+
+
 @dataclass(frozen=True)
 class Law:
     """The errors of a held state at the rows on its instants, zero at others, and their roundoff floor."""
@@ -93,7 +104,7 @@ class Laws:
             errors[k] = norms(apart[None, :])[0] / peaks[k]
             floor[k] = self.roundoff * sizes[k] / float(peaks[k])
         known = Errors(
-            f"{state.name} law", f"max|{state.name}|", in_doubles(errors), np.zeros(count), {}
+            _named_law(state), f"max|{state.name}|", in_doubles(errors), np.zeros(count), {}
         )
         return Law(known, floor)
 

@@ -16,8 +16,7 @@ import numpy as np
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, causes_of_file
-from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, are_known, causes_of_file
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
@@ -43,7 +42,7 @@ from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.answers import Convention, FileRead, LikelyCause
+from taylor_verify.records.answers import Convention, FileRead
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
@@ -126,12 +125,13 @@ def judge_file(
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({scene.known_groups[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
-    known = Conventions((), World(scene), {})
+    known, explained = Conventions((), World(scene), {}), Explained()
     answer = FileRows.of(compared, rung, known)
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
-            if scene.body.loads is None:
+            explained = causes_of_file(compared, rung, known, judged)
+            if scene.body.loads is None and (accept_conventions or not explained.is_motion):
                 known = conventions(compared, scene, rung)
             if accept_conventions:
                 answer = FileRows.of(compared, rung, known)
@@ -147,10 +147,11 @@ def judge_file(
         judged = _alone(answer, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
         judged = _alone(answer, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
-    causes: tuple[LikelyCause, ...] = ()
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
-        causes = causes_of_file(compared, rung, known, judged)
-        notes += () if Equations.are_known(scene.body) else (NOT_LOOKED_FOR,)
+        if known.findings:
+            explained = causes_of_file(compared, rung, known, judged)
+        notes += explained.notes
+        notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
@@ -159,7 +160,7 @@ def judge_file(
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions, breaks_of(scene))
-    return FileJudgement(verdicts, judged.record, *of_file, causes=causes, notes=notes)
+    return FileJudgement(verdicts, judged.record, *of_file, causes=explained.causes, notes=notes)
 
 
 def _fits(judged: Judgement) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from itertools import count
 from math import gcd
-from typing import Final, NamedTuple
+from typing import Final
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.cube import Spread, places
@@ -19,31 +19,25 @@ _LEAST_TRIALS: Final = 16
 _MOST_CHARACTERS: Final = 2**20
 
 
-class _Refusal(NamedTuple):
-    """Faults of one trial body: those that any numbers have, and those that other numbers may not have."""
-
-    fixed: list[str]
-    varying: list[str]
-
-
 def trial_faults(family: Family, faulty: Collection[str] = ()) -> list[str]:
     """Return the faults of a template of which no trial body is a scene; none if one trial body is.
 
-    Faults that do not come from the numbers are returned as they are. All others become one fault,
+    The faults are those of a trial body that has fewest. All that come from the numbers become one fault,
     which says how many trial bodies were refused. ``faulty`` are the paths of numbers whose rules
     have faults: the faults of a scene at these places are left out.
     """
-    refusals: list[_Refusal] = []
+    refused: list[list[str]] = []
     for place, node in _trials(family):
         faults = [f for f in _faults(family, place, node) if not _has_number(f, faulty)]
         if not faults:
             return []
-        refusals.append(_refusal(faults, family))
-    fixed = _common([each.fixed for each in refusals if each.fixed])
-    if fixed and not all(each.varying for each in refusals):
-        return fixed
-    first = refusals[0]
-    return [*fixed, _summary((first.varying or first.fixed)[0], len(refusals), family)]
+        refused.append(faults)
+    fewest = min(refused, key=len)
+    paths = [variable.path for variable in family.variables]
+    # A fault of a whole array, which has a wrong length for example, is one that any numbers have.
+    varying = [f for f in fewest if ", got [" not in f and _has_number(f, paths)]
+    fixed = [f for f in fewest if f not in varying]
+    return [*fixed, *(_summary(f, len(refused), family) for f in varying[:1])]
 
 
 def _trials(family: Family) -> list[tuple[Place, int]]:
@@ -70,16 +64,6 @@ def _faults(family: Family, place: Place, node: int) -> Sequence[str]:
     return ()
 
 
-def _refusal(faults: Sequence[str], family: Family) -> _Refusal:
-    """Return the faults of a trial body in their two groups.
-
-    A fault of a whole array, which has a wrong length for example, is one that any numbers have.
-    """
-    paths = [variable.path for variable in family.variables]
-    varying = [f for f in faults if ", got [" not in f and _has_number(f, paths)]
-    return _Refusal([f for f in faults if f not in varying], varying)
-
-
 def _has_number(fault: str, paths: Collection[str]) -> bool:
     """Return True if a number with one of these paths stands at the place of a fault, or within it."""
     place = place_of(fault)
@@ -89,17 +73,6 @@ def _has_number(fault: str, paths: Collection[str]) -> bool:
 def place_of(fault: str) -> str:
     """Return the place that a fault names, such as ``body.inertia[0]``."""
     return fault.rpartition(" @ ")[2].partition(" (")[0]
-
-
-def _common(refusals: Sequence[Sequence[str]]) -> list[str]:
-    """Return the faults of the first refusal that the others have too, whatever number came."""
-    others = [{_kind(fault) for fault in faults} for faults in refusals]
-    first = refusals[0] if refusals else ()
-    return [fault for fault in first if all(_kind(fault) in kinds for kinds in others)]
-
-
-def _kind(fault: str) -> tuple[str, str]:
-    return fault.partition(", got ")[0], place_of(fault)
 
 
 def _summary(example: str, trials: int, family: Family) -> str:

@@ -155,8 +155,8 @@ def from_columns(
     if clock and (factor := taken["t"].factor) != 1:
         times = tuple(t * factor for t in times)
     digits = written_digits(read.values())
-    said = (*notes, *selection.notes)
-    return TrajectoryFile(place, times, groups, digits, said, columns={**COLUMNS, **own})
+    sentences = (*notes, *selection.notes)
+    return TrajectoryFile(place, times, groups, digits, sentences, columns={**COLUMNS, **own})
 
 
 def _apart(

@@ -131,10 +131,8 @@ class FreeBody(Body):
         All are in body axes; without a time it is that of the last step.
         """
         assert self.push is not None
-        acting, sign = self.push.acting, self.question.sign
-        moment = acting.moment(
-            acting.t if time is None else sign * time, self._state(omega, unit(attitude))
-        )
+        acting, state = self.push.acting, self._state(omega, unit(attitude))
+        moment = acting.moment(acting.t if time is None else self.question.sign * time, state)
         return moment if self.turn == _IDENTITY else to_body(self.turn, moment)
 
     def moment_in_space(self, omega: Vector, attitude: Quaternion) -> Vector:
@@ -213,8 +211,7 @@ class FreeBody(Body):
         if self.push is None:
             return state[: len(columns)]
         self.push.state = state
-        own = self.push.acting.own
-        named = dict(zip(_NAMES, state, strict=True)) | own
+        named = dict(zip(_NAMES, state, strict=True)) | self.push.acting.own
         return [named[name] for name in columns]
 
     def _state(self, omega: Vector, attitude: Quaternion) -> list[float]:

@@ -60,12 +60,12 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     solver = getattr(exudyn.DynamicSolverType, settings.integrator)
     asked = simulation_settings(settings.step, counts[-1], every)
     if body.is_pushed:
-        rows = Pushed(body, system, settings.step)
+        pushed = Pushed(body, system, settings.step)
         _, seconds, more = twice(
-            lambda: rows.solve(lambda: system.SolveDynamic(asked, solverType=solver))
+            lambda: pushed.solve(lambda: system.SolveDynamic(asked, solverType=solver))
         )
         return Solved(
-            [rows.of[count] for count in counts],
+            [pushed.of[count] for count in counts],
             counts[-1],
             evaluations=0,
             seconds=seconds,

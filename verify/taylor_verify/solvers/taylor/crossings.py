@@ -11,7 +11,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.form import Form
-from taylor_verify.models.kinks import Kink, smooth, values
+from taylor_verify.models.kinks import Kink, changing, smooth, values
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.roots import lengths, radicands
 from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
@@ -57,8 +57,9 @@ def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], ru
     """
     import heyoka as hy
 
-    near_zero = radicands(form)
-    if not kinks and not near_zero:
+    moving = changing(form)
+    near_zero = [place for place in radicands(form) if place in moving]
+    if not near_zero and not any(kink.place in moving for kink in kinks):
         return []
     steps = values(form, hy.make_vars(*form.states), coefficients, hy.time)
     numbers = arithmetic(rung)
@@ -67,10 +68,13 @@ def crossings(form: Form, kinks: Sequence[Kink], coefficients: Sequence[Any], ru
     rest = numbers.number(power_of_two(-(rung.bits // 2)))
     first, events = len(form.parameters) - sum(len(kink.names) for kink in kinks), []
     for kink in kinks:
-        choice = _Choice(kink, first, rung)
-        events.append(
-            hy.t_event(steps[kink.place], callback=choice, fp_type=numbers.fp_type, cooldown=rest)
-        )
+        # heyoka takes no event of parameters alone, and such a one cannot come.
+        if kink.place in moving:
+            choice = _Choice(kink, first, rung)
+            event = steps[kink.place]
+            events.append(
+                hy.t_event(event, callback=choice, fp_type=numbers.fp_type, cooldown=rest)
+            )
         first += len(kink.names)
     little = hy.expression(numbers.number(power_of_two(-_SMALL)))
     events += [hy.t_event(steps[place] - little, fp_type=numbers.fp_type) for place in near_zero]
@@ -144,7 +148,7 @@ class Lengths:
     """The vectors whose lengths the loads of a problem take, at its start and at the rows of its way."""
 
     def __init__(self, problem: Problem, rows: np.ndarray[Any, Any]) -> None:
-        self._parts = lengths(problem.form)
+        self._parts, self._changing = lengths(problem.form), changing(problem.form)
         start = [float(value) for value in problem.initial_momenta]
         states = np.vstack([start, *rows.astype(float)])
         times = np.array([float(t) for t in (problem.begin, *problem.times)][: len(states)])
@@ -162,6 +166,9 @@ class Lengths:
     def are_on_a_line(self) -> bool:
         """Return True where a vector stays on one line: it may go through zero there."""
         for places in self._parts:
+            if any(place not in self._changing and self._steps[place].all() for place in places):
+                # A part that keeps a value is never zero.
+                continue
             vectors = np.array([self._steps[place] for place in places])
             sizes = np.linalg.svd(vectors, compute_uv=False)
             if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:

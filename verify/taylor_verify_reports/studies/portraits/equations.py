@@ -58,11 +58,12 @@ def equations(scene: Scene) -> list[str]:
 
 
 def _euler_equations(body: RigidBody) -> list[str]:
-    loaded = "" if body.is_free else r" + \mathbf M" + _written(body)
+    loaded = "" if body.is_free or not _has_loads(body) else r" + \mathbf M" + _written(body)
     if body.manufactured is not None:
         return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
     damped = r" - c \mathbf H" if body.damping else ""
-    return [f"{_EULER}{damped}{loaded}", _MOMENTUM]
+    wheels = r" + \mathbf h(t, \mathbf z)" if body.loads and body.loads.rotor else ""
+    return [f"{_EULER}{damped}{loaded}", f"{_MOMENTUM}{wheels}"]
 
 
 def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
@@ -80,6 +81,12 @@ def _gyrostat_equations(body: Gyrostat) -> list[str]:
     loaded = "" if body.is_free else r" + \mathbf M" + _written(body)
     damped = r" - c \mathsf I \boldsymbol\omega" if body.damping else ""
     return [f"{_EULER}{damped}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
+
+
+def _has_loads(body: Body) -> bool:
+    """Return False where a scene writes down the momentum of its wheels, and no moment."""
+    loads = body.loads
+    return loads is None or bool(loads.hung) or any(any(each) for _, each in loads.vectors)
 
 
 def _written(body: Body) -> str:

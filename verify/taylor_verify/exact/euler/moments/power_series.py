@@ -91,10 +91,5 @@ def _norm(vector: tensors.Vector) -> arb:
 
 def _times(v: list[arb]) -> list[list[arb]]:
     """The matrix of q -> q (0, v), for rows q."""
-    zero = arb(0)
-    return [
-        [zero, v[0], v[1], v[2]],
-        [-v[0], zero, -v[2], v[1]],
-        [-v[1], v[2], zero, -v[0]],
-        [-v[2], -v[1], v[0], zero],
-    ]
+    units = ([arb(i == j) for j in range(4)] for i in range(4))
+    return [product(unit, [arb(0), *v]) for unit in units]

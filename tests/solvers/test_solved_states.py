@@ -246,6 +246,28 @@ def test_held_values_are_asked_for() -> None:
     assert list(sampled("-w1/2").loads(0, [1, 0, 0], [0, 0.25, 0])) == [0.25, 0, 0]
 
 
+def test_a_kink_of_held_values_alone_is_chosen_at_each_instant() -> None:
+    """No crossing of it can come on the way: |d| pushes forwards whatever d is."""
+    problem = pose(
+        read(SAMPLED.replace("LAW", "-w1").replace('"d", 0', '"abs(d)", 0'), "a"), rung("f64")
+    )
+    quantities = solved(problem)
+    d = [abs(float(row[0])) for row in quantities["d"]]
+    omega = np.cumsum([1.5, *(np.array(d[:-1]) / 8)])
+    np.testing.assert_allclose([float(w[0]) for w in quantities["omega"]], omega, rtol=1e-13)
+
+
+@pytest.mark.parametrize("length", ["norm(d, 1/3)", "sqrt(d^2 + 1/9)", "norm(d, m, w1 - w1)"])
+def test_a_length_of_held_values_does_not_change(length: str) -> None:
+    """Between two instants it is a number, which does not vanish."""
+    text = SAMPLED.replace("LAW", "-w1/2 - 1/9").replace('"d", 0', f'"-{length}", 0')
+    quantities = solved(pose(read(text, "a"), rung("f64")))
+    d, m = ([float(row[0]) for row in quantities[name]] for name in "dm")
+    other = m if ", m" in length else [1 / 3] * len(d)
+    omega = np.cumsum([1.5, *(-np.hypot(d[:-1], other[:-1]) / 8)])
+    np.testing.assert_allclose([float(w[0]) for w in quantities["omega"]], omega, rtol=1e-13)
+
+
 def test_a_value_that_there_is_not_ends_the_run() -> None:
     """The law takes the logarithm of a negative number at the start."""
     answered = solver_named("taylor").solve(sampled("log(-w1)"))

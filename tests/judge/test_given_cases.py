@@ -1,0 +1,133 @@
+"""Files as simulators with one known fault write them, re-enacted from public reports, and their causes.
+
+Every state counts as failed, so that no truth but that of the search is computed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders.wrong_dynamics import failure
+
+import taylor_verify
+from taylor_verify.judge.causes.answers import explained, material_of_file
+from taylor_verify.judge.conventions.fits import Conventions
+from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.quantities import GROUPS, with_needs
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.file import read
+
+CASES = Path(__file__).parent / "cases"
+FREE = "euler/oblique-start"
+STATES = ("omega", "impulse", "attitude")
+
+
+def sentences(name: str, scene_name: str, failed: tuple[str, ...]) -> list[str]:
+    """The causes of a file in which these states failed."""
+    path = CASES / f"{scene_name}.toml"
+    scene = load(str(path) if path.exists() else scene_name)
+    file = read(str(CASES / f"{name}.csv"))
+    tracked = with_needs({GROUPS[group].quantity for group in file.groups if group in GROUPS})
+    scene = replace(scene, track=scene.track & tracked)
+    known = Conventions((), World(scene), {})
+    verdicts = [failure(scene, quantity) for quantity in failed]
+    with np.errstate(all="ignore"):
+        answer = material_of_file(file, rung("f64"), known, verdicts)
+        assert answer is not None
+        return [cause.sentence for cause in explained(answer).causes]
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "words"),
+    [
+        ("gyro-axis-2-flipped", FREE, ["omega has the other sign on axis 2"]),
+        ("imu-mounted-askew", FREE, ["rotation of 31.59 degrees", "rotation of 31.59 degrees"]),
+        ("time-in-frames-60", FREE, ["clock = 0.0166667"]),
+        ("wheels-inertia-1.2x", "wheels", ["factor of the inertia = 1.2;"]),
+        ("wheel-2-missing", "wheels", ["wheel 2 left out"]),
+        ("gyroscopic-half", "link", ["factor of the gyroscopic term = 0.5;"]),
+        ("moment-one-sign", "thruster", ["moment = [0.05, 0.02, 0.08]"]),
+        ("one-product-sign", "link", ["I_13 with the other sign"]),
+        ("speed-capped-at-7", "racket", ["(|omega| is 10.01, then 7)"]),
+        (
+            "momentum-turned-explicitly",
+            "link",
+            ["the rate at the begin of the step, h = 0.00416667", "at the begin of the step"],
+        ),
+        ("local-inverse-inertia-in-world", "thruster", []),
+        ("gf_0.2_2_no_ca", "gf_0.2_2", ["lack the added mass (a rigid body of mass 31.0294)"]),
+        ("gf_1.0_2_lower", "gf_1.0_2", ["three masses in the Munk moment alone"]),
+        ("no_ca", "remus", ["the Coriolis terms lack the added mass"]),
+        ("ca_twice", "remus", ["the Coriolis terms have the added mass twice"]),
+        ("cg_not_in_C", "remus", ["another centre of mass (m r and three moments of inertia) in"]),
+        (
+            "cg_nowhere",
+            "remus",
+            ["another centre of mass (m r and three moments of inertia): M_15"],
+        ),
+        ("no_crb", "remus", ["the Coriolis terms lack the rigid body"]),
+        ("br_thrust_on", "bluerov", ["force 1, body axes = 5;"]),
+        ("br_net_buoyancy", "bluerov", ["force 3, space axes = -1.96;"]),
+        ("br_linear_drag", "bluerov", ["linear drag = 4.03 6.22 5.18 0.07 0.07 0.07;"]),
+    ],
+)
+def test_a_known_fault_is_named(name: str, scene: str, words: list[str]) -> None:
+    """A simulator with one fault gets that word and no other, and silence where two faults are mixed."""
+    said = sentences(name, scene, STATES)
+    assert len(said) == len(words)
+    assert all(word in sentence for word, sentence in zip(words, said, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "scene", "failed", "words"),
+    [
+        (
+            "fr_v_of_cg",
+            "remus_path",
+            "impulse",
+            "is that of another point of the body, at (0, 0, 0.02)",
+        ),
+        ("fr_depth_sign", "remus_path", "centre", "the centre has the other sign on axis 3"),
+        (
+            "at_old_h0.025",
+            "euler/with-attitude",
+            "attitude",
+            "attitude turned by the rate at the begin of the step, h = 0.025",
+        ),
+    ],
+)
+def test_the_quantity_that_failed_has_its_cause(
+    name: str, scene: str, failed: str, words: str
+) -> None:
+    """A convention of one quantity, or a method of the attitude, is named where only that failed."""
+    assert words in sentences(name, scene, (failed,))[0]
+
+
+def test_the_changed_scene_passes(tmp_path: Path) -> None:
+    """A file passes against the scene with the keys that its cause has printed, to what is left."""
+    (sentence,) = sentences("gyroscopic-half", "link", STATES)
+    changed = sentence.partition("as a scene: ")[2]
+    text = (CASES / "link.toml").read_text().replace("[body]\n", f"[body]\n{changed}\n")
+    scene = tmp_path / "changed.toml"
+    scene.write_text(text)
+    judged = taylor_verify.check(str(scene), str(CASES / "gyroscopic-half.csv"), tolerance=1e-7)
+    omega = next(verdict for verdict in judged.verdicts if verdict.quantity == "omega")
+    assert omega.verdict is Status.PASS
+
+
+def test_matrices_that_are_no_rotations_are_said() -> None:
+    """A file whose matrices grow has a note, and the moment that explains its rows names no cause."""
+    judged = taylor_verify.check(
+        str(CASES / "block.toml"), str(CASES / "matrix-not-orthogonal.csv"), tolerance=1e-6
+    )
+    facts = [note for note in judged.notes if "no rotation" in note or "moment acts" in note]
+    assert facts[0].startswith("r11 ... r33 are no rotation: R^T R is off by 0.12 at t = 20")
+    assert facts[1].startswith(
+        "no cause is proven; the rows follow if from t = 0 to 20 a moment acts"
+    )
+    assert judged.causes == ()

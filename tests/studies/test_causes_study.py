@@ -1,0 +1,30 @@
+"""A part of the confusion table of likely causes, and its list of kinds."""
+
+from __future__ import annotations
+
+import pytest
+from builders.turns import by_turns
+
+from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
+from taylor_verify_reports.studies.causes.measure import OUTCOMES, Said, measured, table
+
+
+@pytest.mark.parametrize("kind", by_turns([*KINDS], 7), ids=lambda kind: kind.name)
+def test_no_word_is_false(kind: Kind) -> None:
+    """No sentence on an answer with a known fault names another fault."""
+    (said,) = measured(seed=20, count=1, kinds=[kind])
+    assert said.outcome != "false", said.sentences
+
+
+def test_sound_methods_are_kinds() -> None:
+    """Sound methods and unknown laws are among the kinds, and silence is right for them."""
+    silent = {kind.name for kind in KINDS if not kind.words}
+    assert {"RK45 at 1e-4", "LSODA at 1e-6", "cubic drag", "growing load"} <= silent
+    assert len({kind.name for kind in KINDS}) == len(KINDS)
+
+
+def test_the_table_counts_every_answer() -> None:
+    """The last row is the sum of all rows, outcome by outcome."""
+    answers = [Said("a", "free", "right", ()), Said("b", "free", "false", ("x",))]
+    assert table(answers).splitlines()[0] == f"| answers | {' | '.join(OUTCOMES)} |"
+    assert table(answers).splitlines()[-1] == "| all | 1 | 0 | 0 | 0 | 0 | 1 |"

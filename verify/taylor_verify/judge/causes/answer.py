@@ -1,0 +1,280 @@
+"""An answer as material: float64 rows in the scene's conventions, and the truth beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.budget import Budget
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.models.frame import rotation
+from taylor_verify.scenes.instants import evenly
+
+Places = np.ndarray[Any, np.dtype[np.intp]]
+
+_ROUNDOFF: Final = 2.0**-53
+# Rounding of a whole row: errors of three components, of the truth and of the arithmetic of the search.
+VECTOR: Final = 3.0
+ATTITUDE: Final = 4.0
+# A quantity is wrong if its error is this many times the rounding of the file.
+_WRONG: Final = 30.0
+_SAME_START: Final = 10.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """States at the times of an answer: ``v`` (rows, n), ``q`` (rows, 4) and ``c`` (rows, 3)."""
+
+    v: Floats
+    q: Floats | None = None
+    c: Floats | None = None
+
+    def at(self, rows: Any) -> Motion:
+        q, c = (None if part is None else part[rows] for part in (self.q, self.c))
+        return Motion(self.v[rows], q, c)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Rows of an answer, in the order away from the start, and the exact ``truth`` at the same times.
+
+    ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
+    the last digit of each component of v, of the attitude and of the centre.
+    ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file.
+    """
+
+    right: Equations
+    start: Motion
+    times: Floats
+    file: Motion
+    truth: Motion
+    noise: tuple[Floats, float, float]
+    quantities: tuple[str, ...]
+    budget: Budget
+    decimals: int | None = None
+    own_attitudes: Floats | None = None
+    begins: float = 0.0
+
+    @property
+    def n(self) -> int:
+        return self.right.size
+
+    @property
+    def count(self) -> int:
+        return len(self.times)
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The largest vector of the truth, for each component of v."""
+        vectors = self.truth.v.reshape(self.count, -1, 3)
+        largest = np.max(np.linalg.norm(vectors, axis=2), axis=0)
+        return np.repeat(np.where(largest > 0, largest, 1.0), 3)
+
+    @cached_property
+    def rounding(self) -> Floats:
+        """Noise of each component of v relative to its vector."""
+        own: Floats = np.maximum(self.noise[0] / self.sizes, 8 * _ROUNDOFF)
+        return own
+
+    @cached_property
+    def groups(self) -> dict[str, slice]:
+        """The vectors of v by name."""
+        if self.n == 3:
+            return {"omega": slice(0, 3)}
+        names = ("x", "y") if self.right.has_momenta else ("velocity", "omega")
+        return dict(zip(names, (slice(0, 3), slice(3, 6)), strict=True))
+
+    def quantity(self, group: str) -> str:
+        """Return the quantity of the verdicts that a group belongs to."""
+        return "impulse" if self.n == 6 and group in self.groups else group
+
+    def errors(self, motion: Motion) -> dict[str, Floats]:
+        """Return the errors of the rows against a motion: relative ones of v, angles, distances."""
+        errors = {
+            name: np.linalg.norm(self.file.v[:, part] - motion.v[:, part], axis=1)
+            / self.sizes[part][0]
+            for name, part in self.groups.items()
+        }
+        if self.file.q is not None and motion.q is not None:
+            errors["attitude"] = angles(self.file.q, motion.q)
+        if self.file.c is not None and motion.c is not None:
+            errors["centre"] = np.linalg.norm(self.file.c - motion.c, axis=1)
+        return errors
+
+    @cached_property
+    def error(self) -> dict[str, Floats]:
+        """The errors of the rows against the truth."""
+        return self.errors(self.truth)
+
+    @cached_property
+    def worst(self) -> dict[str, float]:
+        return {name: float(np.max(error)) for name, error in self.error.items()}
+
+    @cached_property
+    def roundings(self) -> dict[str, float]:
+        """The error of a row by the rounding of the file alone."""
+        own = {
+            name: VECTOR * float(np.max(self.rounding[part])) for name, part in self.groups.items()
+        }
+        return {
+            **own,
+            "attitude": ATTITUDE * max(self.noise[1], 1e-15),
+            "centre": VECTOR * max(self.noise[2], 1e-14 * self.reach),
+        }
+
+    @cached_property
+    def reach(self) -> float:
+        """The largest distance of the centre from the origin, at least 1."""
+        return 1.0 if self.truth.c is None else max(1.0, float(np.max(np.abs(self.truth.c))))
+
+    @cached_property
+    def failed(self) -> tuple[str, ...]:
+        """The groups that failed by far more than the rounding of the file."""
+        return tuple(
+            name
+            for name, error in self.error.items()
+            if self.quantity(name) in self.quantities
+            and np.max(error) > _WRONG * self.roundings[name]
+        )
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """The failed vectors of v."""
+        return tuple(name for name in self.failed if name in self.groups)
+
+    def leaves(self, motion: Motion) -> dict[str, float]:
+        """Return the part of each failed group's error that a motion leaves, where the motion has it."""
+        errors = self.errors(motion)
+        return {
+            name: float(np.max(errors[name])) / self.worst[name]
+            for name in self.failed
+            if name in errors
+        }
+
+    def floor(self, groups: Sequence[str]) -> float:
+        """Return the rounding of the file as a part of the error of the worst of these groups."""
+        return max(self.roundings[name] / self.worst[name] for name in groups)
+
+    def at(self, rows: Any) -> Answer:
+        """Return some of the rows."""
+        own = self.attitudes if self.right.coupled > self.n else None
+        return replace(
+            self,
+            times=self.times[rows],
+            file=self.file.at(rows),
+            truth=self.truth.at(rows),
+            own_attitudes=None if own is None else own[rows],
+        )
+
+    def thinned(self, most: int) -> Answer:
+        """Return at most so many rows, spread evenly."""
+        return self if self.count <= most else self.at(np.array(evenly(self.count, most)))
+
+    def begun_at(self, row: int) -> Answer:
+        """Return the rows from one on, with this row of the file as the start."""
+        part = self.at(np.s_[row:])
+        nu = part.file.v[:1]
+        nu = nu @ self.right.inverse.T if self.right.has_momenta else nu
+        q = self.attitudes[row : row + 1] if self.file.q is None else part.file.q[:1]  # type: ignore[index]
+        c = part.start.c if part.file.c is None else part.file.c[:1]
+        return replace(part, start=Motion(nu, q, c), begins=float(self.times[row]))
+
+    @property
+    def is_from_start(self) -> bool:
+        """True if the first row is at the start."""
+        return bool(self.times[0] == self.begins)
+
+    @cached_property
+    def keeps_momenta(self) -> bool:
+        """True if the first row has the momenta of the scene; else its velocities are the scene's."""
+        own = np.abs(self.file.v[0] - self.right.mass @ self.start.v[0]) / self.sizes
+        return self.right.has_momenta and bool(np.all(own <= _SAME_START * self.rounding))
+
+    def first(self, mass: Floats) -> Floats:
+        """Return the first v of a body with this mass matrix, (..., n)."""
+        nu = self.start.v[0]
+        if not self.right.has_momenta:
+            return np.asarray(nu)
+        return np.asarray((self.right.mass if self.keeps_momenta else mass) @ nu)
+
+    @cached_property
+    def attitudes(self) -> Floats:
+        """The file's attitudes; without them, those of its own omega from the start.
+
+        The mean of the turns of the exact arcs forward from a row and backward from the next is used: their
+        errors cancel in first order.
+        """
+        if self.file.q is not None:
+            return self.file.q
+        if self.own_attitudes is not None:
+            return self.own_attitudes
+        assert self.truth.q is not None
+        if self.count < 2:
+            return self.truth.q
+        spans, free = np.diff(self.times), replace(self.right, acting=None, reads=0)
+        turns = []
+        for rows, sign in ((slice(None, -1), 1), (slice(1, None), -1)):
+            one = np.zeros((4, self.count - 1))
+            one[0] = 1.0
+            begin = np.concatenate([self.file.v[rows].T, one])[None]
+            (ends,) = flow(free.rates, begin, self.times[rows], sign * spans, 4)
+            turns.append(sign * _vectors(ends[self.n :].T))
+        steps = _quaternions((turns[0] + turns[1]) / 2)
+        rows_ = [self.truth.q[0]]
+        for step in steps:
+            rows_.append(product(rows_[-1], step))
+        own = np.array(rows_)
+        return own if np.all(np.isfinite(own)) else self.truth.q
+
+
+def angles(q: Floats, other: Floats) -> Floats:
+    """Return the angle between attitudes row by row; q and -q are one attitude."""
+    apart = np.minimum(np.linalg.norm(q - other, axis=1), np.linalg.norm(q + other, axis=1))
+    return np.asarray(4 * np.arcsin(np.minimum(apart / 2, 1.0)))
+
+
+def product(p: Floats, q: Floats) -> Floats:
+    """Return the quaternion products of rows."""
+    a, v, b, w = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
+    scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
+    return np.concatenate([scalar, a * w + b * v + np.cross(v, w)], axis=-1)
+
+
+def conjugate(q: Floats) -> Floats:
+    return np.asarray(q * np.array([1.0, -1.0, -1.0, -1.0]))
+
+
+def matrices(q: Floats) -> Floats:
+    """Return R(q) of rows of unit quaternions, (rows, 3, 3)."""
+    return np.array(rotation(list(q.T))).transpose(2, 0, 1)
+
+
+def _vectors(q: Floats) -> Floats:
+    """Return the rotation vectors of rows of quaternions."""
+    sine = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
+    angle = 2 * np.arctan2(sine, np.abs(q[:, :1]))
+    return np.asarray(np.sign(q[:, :1]) * q[:, 1:] * angle / np.where(sine > 0, sine, 1.0))
+
+
+def _quaternions(turns: Floats) -> Floats:
+    """Return the quaternions of rotation vectors."""
+    angle = np.linalg.norm(turns, axis=1, keepdims=True)
+    return np.concatenate(
+        [np.cos(angle / 2), np.sin(angle / 2) * turns / np.where(angle > 0, angle, 1.0)], axis=1
+    )
+
+
+def steady_signs(q: Floats) -> Floats:
+    """Return unit quaternions whose signs do not jump from row to row."""
+    unit = q / np.linalg.norm(q, axis=1, keepdims=True)
+    signs = np.sign(np.sum(unit[1:] * unit[:-1], axis=1))
+    steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
+    return np.asarray(unit * steady[:, None])
+
+
+Numbers = Mapping[str, float]

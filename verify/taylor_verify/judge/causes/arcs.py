@@ -1,0 +1,195 @@
+"""Evidence: the defects of exact arcs from row to row of an answer, for one or many sets of equations."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Places
+from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.scenes.instants import evenly
+
+# Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
+_ARCS: Final = 48
+_CLEAR: Final = 300.0
+_FEWEST: Final = 16
+# Most steps of an arc, and the accuracy that derivatives need.
+_STEPS: Final = 32
+_COARSE: Final = 1e-6
+_FINEST: Final = 2e-14
+_ORDER: Final = 2.0**8
+# Texts take so many times as long as the equations alone.
+_TEXTS: Final = 4.0
+# Sets of parameters in one flow: more do not fit the caches.
+_SETS: Final = 48
+
+
+def moved(
+    answer: Answer, equations: Equations, begin: Floats, since: Floats, spans: Floats, steps: int
+) -> Floats:
+    """Return the states after the spans, each arc in pieces between the switches of the loads."""
+    sets = max(len(begin), equations.sets)
+    begin = np.broadcast_to(begin, (sets, *begin.shape[1:]))
+    arcs = begin.shape[2]
+    parts = [(since, spans)]
+    switches = equations.switches
+    if switches is not None:
+        parts = _parted(since, spans, switches)
+    for at, span in parts:
+        price = 1.0 if equations.acting is None else _TEXTS
+        answer.budget.spend(price * steps * begin.shape[1] * (70 + 0.11 * sets * arcs))
+        rates = equations.rates if switches is None else _within(equations, at, span)
+        begin = flow(rates, begin, at, span, steps)
+    return begin
+
+
+def _parted(since: Floats, spans: Floats, switches: Floats) -> list[tuple[Floats, Floats]]:
+    """Return begins and spans of the pieces of each arc; arcs with fewer pieces have empty ones."""
+    low, high = np.minimum(since, since + spans), np.maximum(since, since + spans)
+    inside = [switches[(switches > a) & (switches < b)] for a, b in zip(low, high, strict=True)]
+    most = max(len(own) for own in inside)
+    edges = np.empty((most + 2, len(since)))
+    for k, own in enumerate(inside):
+        edges[:, k] = np.sort([low[k], *own, *[high[k]] * (most + 1 - len(own))])
+    backward = spans < 0
+    edges[:, backward] = edges[::-1, backward]
+    return [(a, b - a) for a, b in itertools.pairwise(edges)]
+
+
+def _within(equations: Equations, since: Floats, spans: Floats):  # type: ignore[no-untyped-def]
+    """Return the rates at times on the inner side of the ends, where a load may jump."""
+    low = np.minimum(since, since + spans)
+    high = np.maximum(low, np.nextafter(np.maximum(since, since + spans), -np.inf))
+    return lambda time, z: equations.rates(np.clip(time, low, high), z)
+
+
+@dataclass(frozen=True)
+class Arcs:
+    """Arcs of an answer from the rows ``first`` to the rows ``last``."""
+
+    answer: Answer
+    first: Places
+    last: Places
+
+    @property
+    def since(self) -> Floats:
+        return self.answer.times[self.first]
+
+    @cached_property
+    def spans(self) -> Floats:
+        return self.answer.times[self.last] - self.since
+
+    @cached_property
+    def end(self) -> Floats:
+        return self.answer.file.v[self.last].T
+
+    def begin(self, count: int) -> Floats:
+        """Return the first rows with so many components, (1, components, arcs)."""
+        answer, n = self.answer, self.answer.n
+        parts = [answer.file.v[self.first]]
+        if count > n:
+            parts.append(answer.attitudes[self.first])
+        if count > n + 4:
+            rows = answer.file.c if answer.file.c is not None else answer.truth.c
+            assert rows is not None
+            parts.append(rows[self.first])
+        return np.hstack(parts).T[None]
+
+    @cached_property
+    def steps(self) -> int:
+        """The fewest steps of an arc whose error is below a tenth of the rounding of the file."""
+        return self._steps(np.maximum(0.1 * self.answer.rounding, _FINEST)[:, None])
+
+    @cached_property
+    def few_steps(self) -> int:
+        """The steps of an arc for derivatives."""
+        return min(self.steps, self._steps(np.full((self.answer.n, 1), _COARSE)))
+
+    def _steps(self, goal: Floats) -> int:
+        equations, steps = self.answer.right, 1
+        before = self.ends(equations, 1)
+        while steps < _STEPS:
+            after = self.ends(equations, 2 * steps)
+            apart = np.abs(after - before)[0, : self.answer.n] / self.answer.sizes[:, None] / goal
+            largest = np.max(apart) if np.all(np.isfinite(apart)) else np.inf
+            if largest < 1:
+                return steps
+            steps, before = 2 * steps, after
+            if largest < _ORDER:
+                return steps
+        return steps
+
+    def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:
+        """Return the ends of the arcs by the equations, with at least the components they depend on."""
+        begin = self.begin(max(count, equations.coupled))
+        return moved(self.answer, equations, begin, self.since, self.spans, steps)
+
+    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+        """Return what each set of changed parameters leaves, (sets, n, arcs), relative to the motion.
+
+        Momenta have a further column: the first row against M nu of the scene's start.
+        """
+        parts = [self._defects(sets[k : k + _SETS], steps) for k in range(0, len(sets), _SETS)]
+        return np.concatenate(parts)
+
+    @cached_property
+    def compared(self) -> int:
+        """Number of components that are compared: v, and q where momenta do not tell the velocities."""
+        return self.answer.n + 4 * (self.answer.keeps_momenta and self.answer.file.q is not None)
+
+    def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
+        answer, n = self.answer, self.answer.n
+        equations = answer.right.copies(sets)
+        ends = self.ends(equations, steps or self.steps, self.compared)
+        defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
+        if self.compared > n:
+            assert answer.file.q is not None
+            turned = answer.file.q[self.last].T - ends[:, n : n + 4]
+            defects = np.concatenate([defects, turned], axis=1)
+        defects = np.broadcast_to(defects, (len(sets), *defects.shape[1:]))
+        if not answer.right.has_momenta or answer.keeps_momenta or not answer.is_from_start:
+            return defects
+        starts = [answer.first(changes.get("mass", answer.right.mass)) for changes in sets]
+        first = (answer.file.v[0] - np.array(starts)) / answer.sizes
+        return np.concatenate([defects, first[:, :, None]], axis=2)
+
+    @cached_property
+    def rounding(self) -> Floats:
+        """The rounding of the file in each component that is compared."""
+        of_q = np.full(self.compared - self.answer.n, max(self.answer.noise[1], 2.0**-50))
+        return np.concatenate([self.answer.rounding, of_q])
+
+    @cached_property
+    def of_right(self) -> Floats:
+        """The defects of the right equations, (n, arcs)."""
+        defects: Floats = self.defects([{}])[0]
+        return defects
+
+    @cached_property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.of_right))
+
+    @cached_property
+    def floor(self) -> float:
+        """The rounding of the file as a part of the defects."""
+        noise = np.linalg.norm(np.broadcast_to(self.rounding[:, None], self.of_right.shape))
+        return float(noise) / self.size if self.size > 0 else np.inf
+
+
+def telling_arcs(answer: Answer) -> tuple[Arcs, int]:
+    """Return arcs whose defects stand out of the rounding: over as many rows as needed, and that number."""
+    stride = 1
+    while True:
+        starts = np.array(evenly(answer.count - stride, _ARCS))
+        arcs = Arcs(answer, starts, starts + stride)
+        ratio = np.max(np.abs(arcs.of_right) / (2 * arcs.rounding[:, None]), axis=0)
+        is_clear = np.nanmedian(ratio) >= _CLEAR
+        if is_clear or 4 * stride > answer.count or answer.count - stride < _FEWEST:
+            return arcs, stride
+        stride *= 2

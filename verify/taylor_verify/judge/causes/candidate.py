@@ -1,0 +1,60 @@
+"""A candidate for a cause: evidence from the arcs, and the motion by which it is proven."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from taylor_verify.judge.causes.answer import Motion
+from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.words.causes import with_numbers
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A fault with the part of the ``defects`` that it leaves, and its motion on the whole answer.
+
+    ``changes`` are those of the equations; a ``method`` with a number of steps takes their place.
+    """
+
+    name: str
+    kind: str
+    defects: float
+    prove: Callable[[], Motion | None]
+    count: int = 0
+    numbers: Floats | None = None
+    changes: Changes = field(default_factory=dict)
+    family: Family | None = None
+    method: Any = None
+
+    @property
+    def text(self) -> str:
+        """The name, with numbers where there are some."""
+        if self.family is None or self.numbers is None:
+            return self.name
+        return with_numbers(self.name, self.family.labels, self.family.right, self.numbers)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A proven cause: the part of the error of each group that it ``leaves``, and others as good.
+
+    ``where`` stands before the name: the part of the run, or the convention, that it is said for.
+    """
+
+    name: str
+    kind: str
+    leaves: Mapping[str, float]
+    text: str = ""
+    alike: tuple[str, ...] = ()
+    changes: Changes = field(default_factory=dict)
+    method: Any = None
+    where: str = ""
+
+    @property
+    def title(self) -> str:
+        """Name of the cause with its numbers, and where it acts."""
+        return ": ".join(filter(None, (self.where, self.text or self.name)))

@@ -1,0 +1,382 @@
+"""Causes in the equations of motion: evidence from arcs, fewest numbers first, and the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Motion
+from taylor_verify.judge.causes.arcs import telling_arcs
+from taylor_verify.judge.causes.bodies import (
+    entries,
+    families_of_bodies,
+    faults_of_bodies,
+    nearest_factor,
+    structure,
+)
+from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.fault import Fault, Sizes, of_body
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.replays import replays
+from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
+from taylor_verify.words.causes import with_numbers
+
+# Error of float64 over a whole answer.
+_FLOAT64: Final = 5e-13
+# What a cause leaves: of the error on the whole answer or of the defects, or so many roundings of the file.
+LEAVES: Final = 1e-3
+ROUNDINGS: Final = 3.0
+DEFECT_ROUNDINGS: Final = 30.0
+# Never more than this, with no number and with any.
+_CAPS: Final = (0.1, 0.01)
+# Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
+_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
+_STRICTEST: Final = 1e-4
+# Two families at once leave at most this, and defects of so many roundings are needed to look for them.
+_PAIR: Final = 1e-4
+_PAIR_ROUNDINGS: Final = 100.0
+_PAIR_NUMBERS: Final = 6
+# More numbers must leave this much less; what leaves no more than this much more explains as well.
+_BETTER: Final = 10.0
+_NOTHING: Final = 1e-9
+# Without an attitude in the file a load in space axes is only nearly right on the arcs.
+_LOOSE: Final = 0.1
+# A fault, or the linear fit of a family, that leaves more than this is not tried.
+_FAULT: Final = 0.3
+_LINEAR: Final = 0.6
+_FIT_ROWS: Final = 160
+_POLISHED: Final = 4
+_PROVEN: Final = 6
+# Factors of a clock that is not nearly right.
+_CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
+_FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
+
+
+@dataclass(frozen=True)
+class _Linear:
+    """A family with its slopes at the right numbers, and the part that its linear fit leaves."""
+
+    family: Family
+    slopes: Floats
+    left: float
+
+
+@dataclass(frozen=True)
+class _Proven:
+    candidate: Candidate
+    leaves: dict[str, float]
+    worst: float
+
+
+def dynamics(answer: Answer, more: Sequence[Fault] = ()) -> Cause | None:
+    """Return the proven cause of the errors of the moving part, with all others that explain as well."""
+    return _Dynamics(answer, tuple(more)).cause()
+
+
+class _Dynamics:
+    def __init__(self, answer: Answer, more: tuple[Fault, ...]) -> None:
+        self.answer, self.more = answer, more
+        self.few = answer.thinned(_FIT_ROWS)
+        self.arcs, self.stride = telling_arcs(self.few)
+        self.floor = self.arcs.floor
+        self.polished = 0
+
+    def cause(self) -> Cause | None:
+        if not self.arcs.size > 0 or not self.floor * 2 < 1:
+            return None
+        candidates = [*self._faults()]
+        if not any(self._is_exact(candidate) for candidate in candidates):
+            stride = min(self.stride, 8) if self.few is self.answer else 1
+            candidates += replays(self.answer, stride)
+        linear: list[_Linear] = []
+        for group in self._groups(candidates):
+            of_group = self._linear(group)
+            linear += of_group
+            candidates += self._families(of_group, candidates)
+        cause = self._settled(candidates, LEAVES)
+        is_method = any(candidate.kind == "method" for candidate in candidates)
+        if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
+            cause = self._settled([*self._pairs(linear)], _PAIR)
+        return cause
+
+    def _is_exact(self, candidate: Candidate) -> bool:
+        """Return True if a candidate leaves no more than the rounding of the file."""
+        return candidate.defects < 3 * self.floor + _NOTHING
+
+    @property
+    def _floor(self) -> float:
+        """What the roundings of the file and of the search leave, as a part of the error."""
+        answer = self.answer
+        least = min(answer.worst[name] for name in answer.moving)
+        return max(ROUNDINGS * answer.floor(answer.moving), _FLOAT64 / least)
+
+    # Evidence.
+
+    def _candidate(
+        self, name: str, kind: str, left: float, changes: Changes, **more: Any
+    ) -> Candidate:
+        answer = self.answer
+        return Candidate(
+            name,
+            kind,
+            left / self.arcs.size,
+            lambda: whole(answer, answer.right.changed(changes)),
+            changes=changes,
+            **more,
+        )
+
+    def _faults(self) -> Iterator[Candidate]:
+        right = self.answer.right
+        faults = [*faults_of_terms(right), *faults_of_bodies(right), *self.more]
+        every = self.arcs.defects([fault.changes for fault in faults])
+        for fault, defects in zip(faults, every, strict=True):
+            left = float(np.linalg.norm(defects))
+            if left < _FAULT * self.arcs.size:
+                yield self._candidate(fault.name, fault.kind, left, fault.changes)
+
+    def _groups(self, candidates: list[Candidate]) -> Iterator[list[Family]]:
+        """Yield the families of one number, of few and of many, while no candidate is exact."""
+        sizes, right = Sizes.of(self.answer), self.few.right
+        families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
+        for least, most in ((1, 1), (2, 3), (4, len(right.mass) ** 2)):
+            if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
+                yield [family for family in families if least <= family.count <= most]
+
+    def _linear(self, families: Sequence[Family]) -> list[_Linear]:
+        """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
+        sets = [changes for family in families for changes in family.ahead]
+        defects, first, linear = (
+            self.arcs.defects([{}, *sets], self.arcs.few_steps),
+            1,
+            list[_Linear](),
+        )
+        for family in families:
+            change = defects[first : first + family.count] - defects[0]
+            first += family.count
+            slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
+            if np.all(np.isfinite(slopes)) and np.any(slopes):
+                basis = _basis(slopes * family.scale, 1e-6)
+                rest = self._across(basis, self.arcs.of_right.ravel())
+                linear.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
+        return sorted(linear, key=lambda each: (each.family.count, each.left))
+
+    @staticmethod
+    def _across(basis: Floats, vector: Floats) -> Floats:
+        return np.asarray(vector - basis @ (basis.T @ vector))
+
+    def _families(
+        self, linear: Sequence[_Linear], simple: Sequence[Candidate]
+    ) -> Iterator[Candidate]:
+        """Yield fitted families; with more numbers than one that reached the rounding, none is tried."""
+        counts = [c.count for c in simple if self._is_exact(c)]
+        for each in linear:
+            family = each.family
+            if each.left > _LINEAR and family.kind != "clock":
+                continue
+            if family.count > 1 and counts and family.count > max(1, min(counts)):
+                continue
+            fit = gauss_newton(self.arcs, family)
+            if family.kind == "clock" and not fit.size < _CAPS[1] * self.arcs.size:
+                fit = self._clock(family, fit)
+            if np.isfinite(fit.size):
+                candidate = self._fitted(family, fit.numbers, fit.size)
+                if self._is_exact(candidate):
+                    counts.append(family.count)
+                yield candidate
+
+    def _fitted(self, family: Family, numbers: Floats, size: float) -> Candidate:
+        changes = family.changes(numbers)
+        more = {"count": family.count, "numbers": numbers, "family": family}
+        return self._candidate(family.name, family.kind, size, changes, **more)
+
+    def _clock(self, family: Family, best: Any) -> Any:
+        """Return the fit from the best factor of a grid, if that is better."""
+        tried = [
+            (float(np.linalg.norm(defects)), factor)
+            for factors, steps in ((_CLOCKS, max(self.arcs.steps, 4)), (_FRAMES, 32))
+            for defects, factor in zip(
+                self.arcs.defects([{"clock": f} for f in factors], steps), factors, strict=True
+            )
+        ]
+        size, factor = min((each for each in tried if np.isfinite(each[0])), default=(np.inf, 1.0))
+        if not size < best.size:
+            return best
+        arcs = self.arcs
+        if factor > 3:
+            arcs = replace(self.arcs)
+            steps = min(128, int(self.arcs.steps * np.ceil(factor)))
+            arcs.__dict__.update(steps=steps, few_steps=steps)
+        fit = gauss_newton(arcs, family, np.array([factor]))
+        return fit if fit.size < best.size else best
+
+    def _pairs(self, linear: Sequence[_Linear]) -> Iterator[Candidate]:
+        """Yield the best pairs of families with at most six numbers together."""
+        few = [each for each in linear if each.family.count <= 3]
+        defects, size = self.arcs.of_right.ravel(), self.arcs.size
+        bases = [_basis(each.slopes * each.family.scale, 1e-6) for each in few]
+        names = [set(each.family.changes(each.family.right)) for each in few]
+        tried = []
+        rests = [self._across(basis, defects) for basis in bases]
+        for i, k in combinations(range(len(few)), 2):
+            count = few[i].family.count + few[k].family.count
+            if names[i] & names[k] or count > _PAIR_NUMBERS or few[i].left > 0.97:
+                continue
+            basis = _basis(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
+            left = float(np.linalg.norm(self._across(basis, rests[i]))) / size
+            if left < 0.15:
+                tried.append((left * 3.0**count, i, k))
+        for _, i, k in sorted(tried)[:8]:
+            family = _both(few[i].family, few[k].family)
+            fit = gauss_newton(self.arcs, family)
+            if fit.size / size < max(_PAIR, 3 * self.floor):
+                yield self._fitted(family, fit.numbers, fit.size)
+
+    # Proof.
+
+    def _settled(self, candidates: list[Candidate], leaves: float) -> Cause | None:
+        proven: list[_Proven] = []
+        for candidate in sorted(filter(self._is_near, candidates), key=_simplest):
+            if proven and candidate.count > proven[0].candidate.count:
+                decided = self._is_decided(proven[0].candidate, candidate, proven)
+                if decided and candidate.count > 1:
+                    break
+                if decided:
+                    continue
+            proof = self._proof(candidate, leaves)
+            if proof is None:
+                continue
+            if proven and candidate.count > max(1, proven[0].candidate.count):
+                before = proven[0].worst
+                if not before > max(_BETTER * proof.worst, self._floor):
+                    continue
+                proven = []
+            proven.append(proof)
+            if len(proven) > _PROVEN:
+                break
+        return self._cause(proven)
+
+    def _is_near(self, candidate: Candidate) -> bool:
+        """Return True if the defects that are left allow a proof."""
+        is_loose = self.answer.file.q is None and bool(
+            {"space", "arm", "in_space"} & set(candidate.changes)
+        )
+        most = _LOOSE if is_loose else max(LEAVES, DEFECT_ROUNDINGS * self.floor)
+        if candidate.kind == "method":
+            most = 0.02
+        return bool(candidate.defects < most)
+
+    def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
+        """Return True if a proven candidate with fewer numbers makes another one needless."""
+        if simple.defects > max(_BETTER * other.defects, 5 * self.floor, _NOTHING):
+            return False
+        kinds = {each.candidate.kind for each in proven}
+        is_worse = other.defects > _BETTER * max(simple.defects, self.floor)
+        return other.count > 1 or other.kind in kinds or is_worse
+
+    def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
+        answer, moving = self.answer, self.answer.moving
+        motion = candidate.prove()
+        if motion is None:
+            return None
+        leaves = answer.leaves(motion)
+        worst = max(leaves[name] for name in moving)
+        if candidate.family is not None and worst > _PAIR and self.polished < _POLISHED:
+            self.polished += 1
+            better = self._refitted(candidate)
+            if better is not None and max(better.leaves[name] for name in moving) < worst:
+                candidate, leaves, worst = better.candidate, better.leaves, better.worst
+        part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
+        allowed = max(most * part, self._floor)
+        if worst > min(allowed, _CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
+            return None
+        return _Proven(candidate, leaves, worst)
+
+    def _refitted(self, candidate: Candidate) -> _Proven | None:
+        """Return a candidate whose numbers are fitted once more, on the whole answer."""
+        family, numbers, few = candidate.family, candidate.numbers, self.few
+        assert family is not None
+        assert numbers is not None
+        last = np.inf
+        for _ in range(5):
+            base = whole(few, few.right.changed(family.changes(numbers)), has_frame=False)
+            if base is None:
+                return None
+            rest = ((few.file.v - base.v) / few.sizes).ravel()
+            largest = float(np.max(np.abs(rest)))
+            if largest > 0.5 * last or largest < 1e-11:
+                break
+            last, slopes = largest, []
+            for i, step in enumerate(1e-5 * family.scale):
+                shifted = numbers + step * np.eye(family.count)[i]
+                other = whole(few, few.right.changed(family.changes(shifted)), has_frame=False)
+                if other is None:
+                    return None
+                slopes.append(((other.v - base.v) / few.sizes).ravel() / step)
+            matrix = np.transpose(slopes) * family.scale
+            numbers = numbers + family.scale * np.linalg.lstsq(matrix, rest, rcond=1e-9)[0]
+        refitted = self._fitted(family, numbers, candidate.defects * self.arcs.size)
+        motion: Motion | None = refitted.prove()
+        if motion is None:
+            return None
+        leaves = self.answer.leaves(motion)
+        return _Proven(refitted, leaves, max(leaves[name] for name in self.answer.moving))
+
+    def _cause(self, proven: list[_Proven]) -> Cause | None:
+        if not proven:
+            return None
+        if "attitude" in self.answer.failed:
+            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= _CAPS[0]]
+            proven = with_attitude or proven
+        proven.sort(key=lambda each: _simplest(each.candidate))
+        best = proven[0].candidate
+        as_well = max(_BETTER * best.defects, 5 * self.floor, _NOTHING)
+        alike = [p.candidate for p in proven[1:] if p.candidate.defects <= as_well]
+        text, changes = self._described(best)
+        others = tuple(self._described(each)[0] for each in alike)
+        return Cause(best.name, best.kind, proven[0].leaves, text, others, changes, best.method)
+
+    def _described(self, candidate: Candidate) -> tuple[str, Changes]:
+        """Return a candidate in words, with its changes; a body has the factor that changes the least."""
+        right, changes = self.answer.right, candidate.changes
+        if candidate.kind == "body" and candidate.count > 1:
+            mass = nearest_factor(right, changes["mass"])
+            words = with_numbers(candidate.name, *entries(right.mass, mass))
+            return words, of_body(mass)
+        words = structure(right.mass, changes) if candidate.family else ""
+        return ": ".join(filter(None, (words, candidate.text))), changes
+
+
+def _simplest(candidate: Candidate) -> tuple[int, float]:
+    return candidate.count, candidate.defects
+
+
+def _is_nothing(candidate: Candidate) -> bool:
+    """Return True for a factor that prints as 1, and for a step back in time: no causes."""
+    if candidate.kind == "damping step" and candidate.numbers is not None:
+        return not candidate.numbers[0] > 0
+    is_factor = candidate.kind == "clock" or candidate.name.startswith("factor")
+    return is_factor and candidate.numbers is not None and f"{candidate.numbers[0]:.6g}" == "1"
+
+
+def _basis(columns: Floats, least: float) -> Floats:
+    """Return an orthonormal basis of the columns, without directions below a part of the largest."""
+    U, singular, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(U[:, singular > least * max(singular[0], 1e-300)])
+
+
+def _both(one: Family, other: Family) -> Family:
+    count = one.count
+    return Family(
+        f"{one.name} and {other.name}",
+        "pair",
+        np.concatenate([one.right, other.right]),
+        np.concatenate([one.scale, other.scale]),
+        lambda p: {**one.changes(p[:count]), **other.changes(p[count:])},
+    )

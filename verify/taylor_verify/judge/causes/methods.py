@@ -1,0 +1,204 @@
+"""One-step methods, replayed from each row of an answer to the next: no number but that of the steps.
+
+A rate is a function of time and state; states are arrays (sets, components, arcs), and h has one entry for
+each arc. An attitude's update takes q, the angular velocities at both ends of the step, and h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats
+
+_Step = Callable[[Equations, Floats, Floats, Floats], Floats]
+_Update = Callable[[Floats, Floats, Floats, Floats], Floats]
+
+_ITERATIONS: Final = 30
+_NEWTON: Final = 4
+_SHIFT: Final = 1e-7
+_SETTLED: Final = 1e-15
+
+
+@dataclass(frozen=True)
+class Method:
+    """A step (equations, time, v, h) of some order; an implicit one costs more."""
+
+    order: int
+    step: _Step
+    is_implicit: bool = False
+
+
+def _explicit(weights: Sequence[float], *rows: Sequence[float]) -> _Step:
+    """Return the step of a Runge-Kutta method; the first stage has no row."""
+
+    def step(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+        slopes = [equations.rates(time, v)]
+        for row in rows:
+            inner = v + h * sum(a * k for a, k in zip(row, slopes, strict=True))
+            slopes.append(equations.rates(time + sum(row) * h, inner))
+        return v + h * sum(b * k for b, k in zip(weights, slopes, strict=True))
+
+    return step
+
+
+def _backward(rounds: int) -> _Step:
+    """Return backward Euler by so many steps of Newton's method from the begin of the step."""
+
+    def step(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+        z, n = v, v.shape[1]
+        size = _SHIFT * (np.max(np.abs(v)) or 1.0)
+        shifts = size * np.eye(n)[:, None, :, None]
+        for _ in range(rounds):
+            rest = z - v - h * equations.rates(time + h, z)
+            slopes = [
+                (z + s - v - h * equations.rates(time + h, z + s) - rest) / size for s in shifts
+            ]
+            matrix = np.stack(slopes, axis=2).transpose(0, 3, 1, 2)
+            change = np.linalg.solve(matrix, rest.transpose(0, 2, 1)[..., None])[..., 0]
+            z = z - change.transpose(0, 2, 1)
+        return z
+
+    return step
+
+
+def _iterated(slope: Callable[[Equations, Floats, Floats, Floats, Floats], Floats]) -> _Step:
+    """Return an implicit step z = v + h slope(v, z), solved by iteration."""
+
+    def step(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+        z = v + h * equations.rates(time, v)
+        for _ in range(_ITERATIONS):
+            before, z = z, v + h * slope(equations, time, v, z, h)
+            if np.max(np.abs(z - before)) < _SETTLED * np.max(np.abs(v)):
+                break
+        return z
+
+    return step
+
+
+def _midpoint(equations: Equations, time: Floats, v: Floats, z: Floats, h: Floats) -> Floats:
+    return equations.rates(time + h / 2, (v + z) / 2)
+
+
+def _trapezoid(equations: Equations, time: Floats, v: Floats, z: Floats, h: Floats) -> Floats:
+    return (equations.rates(time, v) + equations.rates(time + h, z)) / 2
+
+
+def _in_place(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+    z = v.copy()
+    for i in range(v.shape[1]):
+        z[:, i] += h * equations.rates(time, z)[:, i]
+    return z
+
+
+def _momentum(equations: Equations, v: Floats) -> Floats:
+    return equations.mass @ v + equations.rotor[:, None]
+
+
+def _velocity(equations: Equations, momentum: Floats) -> Floats:
+    return equations.inverse @ (momentum - equations.rotor[:, None])
+
+
+def _turned_by_the_rate(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+    momentum = _momentum(equations, v)
+    torque = equations.mass @ equations.rates(time, v) - np.cross(momentum, v, axis=1)
+    return _velocity(equations, _rotated(momentum, v, -h) + h * torque)
+
+
+def _rotated(vectors: Floats, omega: Floats, h: Floats) -> Floats:
+    """Return the vectors turned about omega by the angle h |omega|."""
+    size = np.linalg.norm(omega, axis=1, keepdims=True)
+    axis, angle = omega / np.where(size > 0, size, 1.0), h * size
+    along = np.sum(axis * vectors, axis=1, keepdims=True) * axis
+    across = np.cross(axis, vectors, axis=1)
+    return np.asarray(along + (vectors - along) * np.cos(angle) + across * np.sin(angle))
+
+
+def _of_fixed_size(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
+    before = _momentum(equations, v)
+    after = before + h * (equations.mass @ equations.rates(time, v))
+    sizes = [np.linalg.norm(each, axis=1, keepdims=True) for each in (before, after)]
+    return _velocity(equations, after * sizes[0] / sizes[1])
+
+
+METHODS: Final[Mapping[str, Method]] = {
+    "explicit Euler": Method(1, _explicit([1])),
+    "backward Euler": Method(1, _backward(_NEWTON), is_implicit=True),
+    "one Newton step of backward Euler": Method(1, _backward(1), is_implicit=True),
+    "components updated in place": Method(1, _in_place),
+    "midpoint": Method(2, _explicit([0, 1], [1 / 2])),
+    "Heun": Method(2, _explicit([1 / 2, 1 / 2], [1])),
+    "Ralston": Method(2, _explicit([1 / 4, 3 / 4], [2 / 3])),
+    "implicit midpoint": Method(2, _iterated(_midpoint), is_implicit=True),
+    "trapezoid": Method(2, _iterated(_trapezoid), is_implicit=True),
+    "RK3 (Kutta)": Method(3, _explicit([1 / 6, 2 / 3, 1 / 6], [1 / 2], [-1, 2])),
+    "RK3 (SSP)": Method(3, _explicit([1 / 6, 1 / 6, 2 / 3], [1], [1 / 4, 1 / 4])),
+    "RK4": Method(4, _explicit([1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1])),
+    "RK4 with its fourth stage at h/2": Method(
+        1, _explicit([1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1 / 2])
+    ),
+    "RK4 (3/8)": Method(
+        4, _explicit([1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1])
+    ),
+}
+# Methods of the momentum of a rigid body.
+OF_MOMENTUM: Final[Mapping[str, Method]] = {
+    "momentum turned by the rate at the begin of the step": Method(1, _turned_by_the_rate),
+    "explicit step of the momentum, its size restored": Method(1, _of_fixed_size),
+}
+
+
+# Attitudes.
+
+
+def _quaternion_of(omega: Floats, h: Floats) -> Floats:
+    size = np.linalg.norm(omega, axis=1, keepdims=True)
+    sine = np.where(size > 0, np.sin(h * size / 2) / np.where(size > 0, size, 1.0), h / 2)
+    return np.concatenate([np.cos(h * size / 2), omega * sine], axis=1)
+
+
+def _times(p: Floats, q: Floats) -> Floats:
+    """Return the product of quaternions whose components are on axis 1."""
+    scalar = p[:, :1] * q[:, :1] - np.sum(p[:, 1:] * q[:, 1:], axis=1, keepdims=True)
+    vector = p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:], axis=1)
+    return np.concatenate([scalar, vector], axis=1)
+
+
+def _slope(q: Floats, omega: Floats) -> Floats:
+    return _times(q, np.concatenate([np.zeros_like(omega[:, :1]), omega], axis=1)) / 2
+
+
+def _updated_in_place(q: Floats, before: Floats, after: Floats, h: Floats) -> Floats:
+    q = q.copy()
+    for i in range(4):
+        q[:, i] += h * _slope(q, before)[:, i]
+    return q
+
+
+UPDATES: Final[Mapping[str, tuple[int, _Update]]] = {
+    "turned by the rate at the begin of the step": (
+        1,
+        lambda q, before, after, h: _times(q, _quaternion_of(before, h)),
+    ),
+    "turned by the rate at the end of the step": (
+        1,
+        lambda q, before, after, h: _times(q, _quaternion_of(after, h)),
+    ),
+    "turned by the mean of the rates of a step": (
+        2,
+        lambda q, before, after, h: _times(q, _quaternion_of((before + after) / 2, h)),
+    ),
+    "q + h q omega / 2 with the rate at the begin": (
+        1,
+        lambda q, before, after, h: q + h * _slope(q, before),
+    ),
+    "q + h q omega / 2 with the rate at the end": (
+        1,
+        lambda q, before, after, h: q + h * _slope(q, after),
+    ),
+    "quaternion updated in place": (1, _updated_in_place),
+}

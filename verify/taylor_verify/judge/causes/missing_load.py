@@ -1,0 +1,69 @@
+"""The load that explains the rows where no cause is proven: constant from each row to the next.
+
+It is always true and names nothing: with it the scene's equations lead from row to row.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Places
+from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.fault import Sizes
+from taylor_verify.judge.causes.flow import Floats
+
+_ROUNDS: Final = 3
+_SHIFT: Final = 1e-3
+# A load stands out if it is so many times what the rounding of the rows makes.
+_STANDS_OUT: Final = 30.0
+# The rows must follow to this part of their defects.
+_LEAVES: Final = 1e-3
+_TIMES: Final = 5
+
+
+def missing_load(answer: Answer) -> str:
+    """Return the load in words; empty where rows are too far apart to tell it, or where it is rounding."""
+    if answer.count < 4 or not answer.moving:
+        return ""
+    rows = np.arange(answer.count - 1)
+    arcs = Arcs(answer, rows, rows + 1)
+    load, slopes, left = _fitted(answer, arcs)
+    if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
+        return ""
+    unit = np.abs(np.linalg.inv(slopes)) @ answer.rounding
+    clear = np.flatnonzero(np.any(np.abs(load) > _STANDS_OUT * unit, axis=1))
+    return _words(answer, load, clear) if len(clear) else ""
+
+
+def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
+    """Return the load of each arc (arcs, n), its slopes (arcs, n, n), and the defects that it leaves."""
+    right, n, scale = answer.right, answer.n, Sizes.of(answer).load * _SHIFT
+    load = np.zeros((len(arcs.first), n))
+    slopes = np.zeros((len(arcs.first), n, n))
+    for _ in range(_ROUNDS):
+        shifts = np.concatenate([np.zeros((1, n)), np.diag(scale)])
+        tried = right.load[None, :, None] + load.T[None] + shifts[:, :, None]
+        ends = arcs.ends(right.changed({"load": tried}), arcs.steps)[:, :n]
+        ends = ends / answer.sizes[:, None]
+        slopes = (ends[1:] - ends[0]).transpose(2, 1, 0) / scale
+        defects = (arcs.end / answer.sizes[:, None] - ends[0]).T
+        load = load + np.linalg.solve(slopes, defects[..., None])[..., 0]
+    return load, slopes, float(np.linalg.norm(defects))
+
+
+def _words(answer: Answer, load: Floats, clear: Places) -> str:
+    times = answer.times + answer.right.start
+    noun = "moment" if answer.n == 3 else "force and couple"
+    some = clear[np.unique(np.linspace(0, len(clear) - 1, _TIMES).astype(int))]
+    listed = "; ".join(f"t = {times[k]:.6g}: {_vector(load[k])}" for k in some)
+    begin, end = times[clear[0]], times[clear[-1] + 1]
+    return (
+        f"no cause is proven; the rows follow if from t = {begin:.6g} to {end:.6g} a {noun} acts (body "
+        f"axes) that the scene does not have: {listed}"
+    )
+
+
+def _vector(values: Floats) -> str:
+    return "(" + ", ".join(f"{value:.3g}" for value in values) + ")"

@@ -1,0 +1,160 @@
+"""Proof on the whole answer: the motion of a candidate from the scene's start at all rows.
+
+Multiple shooting from the file's own rows Z_k: with F_k = flow(Z_k) and A_k = dF_k/dZ_k the corrections
+obey delta_0 = 0, delta_k+1 = A_k delta_k + F_k - Z_k+1. All arcs are integrated at once, and two rounds
+are usual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Motion
+from taylor_verify.judge.causes.arcs import moved
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.scenes.instants import evenly
+
+# A function from the states of all rows but the last (sets, components, arcs) to those one row later.
+Stepper = Callable[[Floats], Floats]
+
+_ROUNDS: Final = 5
+# The next correction is of second order.
+_SMALL: Final = 1e-6
+_LOST: Final = 1e3
+_DIFFERENCE: Final = 1e-6
+_SOME: Final = 24
+
+
+def whole(
+    answer: Answer,
+    equations: Equations,
+    stepper: Stepper | None = None,
+    has_frame: bool = True,
+) -> Motion | None:
+    """Return the motion of the equations from the start of the answer; None if it is not reached.
+
+    A ``stepper`` takes the place of the flow for the moving part.
+    """
+    n, count = answer.n, equations.coupled
+    start = _start(answer, equations, count)
+    rows = _rows(answer, count)
+    times = answer.times
+    if not answer.is_from_start:
+        rows, times = np.vstack([start, rows]), np.r_[answer.begins, times]
+    rows = rows.copy()
+    rows[0] = start
+    since, spans = times[:-1], np.diff(times)
+    if not len(spans):
+        return None
+    steps = 1 if stepper else _enough_steps(answer, equations, rows, since, spans)
+    go = stepper or (lambda z: moved(answer, equations, z, since, spans, steps))
+    scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
+    if not _shoot(rows, go, scale):
+        return None
+    q, c = (rows[:, n : n + 4] if count > n else None), None
+    if q is None and has_frame and (answer.file.q is not None or n == 6) and stepper is None:
+        q = _attitudes(answer, equations, rows, since, spans, steps)
+    if count > n + 4:
+        c = rows[:, n + 4 :]
+    elif n == 6 and q is not None and answer.file.c is not None:
+        c = _centres(answer, equations, rows[:, :6], q, since, spans, steps)
+    unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
+    motion = Motion(rows[:, :n], unit, c)
+    return motion if answer.is_from_start else motion.at(np.s_[1:])
+
+
+def _start(answer: Answer, equations: Equations, count: int) -> Floats:
+    frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
+    return np.concatenate([answer.first(equations.mass), *frame])[:count]
+
+
+def _rows(answer: Answer, count: int) -> Floats:
+    parts = [answer.file.v]
+    if count > answer.n:
+        parts.append(answer.attitudes)
+    if count > answer.n + 4:
+        own = answer.file.c if answer.file.c is not None else answer.truth.c
+        assert own is not None
+        parts.append(own)
+    return np.hstack(parts)
+
+
+def _enough_steps(
+    answer: Answer, equations: Equations, rows: Floats, since: Floats, spans: Floats
+) -> int:
+    """Return the steps of an arc whose error is below a tenth of the file's rounding."""
+    some = np.array(evenly(len(spans), _SOME))
+    goal = np.maximum(0.1 * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
+    begin, steps = rows[:-1][some].T[None], 1
+    before = moved(answer, equations, begin, since[some], spans[some], steps)
+    while steps < 32:
+        after = moved(answer, equations, begin, since[some], spans[some], 2 * steps)
+        apart = np.abs(after - before)[0, : answer.n] / goal
+        largest = np.max(apart) if np.all(np.isfinite(apart)) else np.inf
+        if largest < 1:
+            return steps
+        steps, before = 2 * steps, after
+        if largest < 2.0**8:
+            return steps
+    return steps
+
+
+def _shoot(rows: Floats, go: Stepper, scale: Floats) -> bool:
+    """Correct the rows until they are one motion; False if they do not become one."""
+    shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
+    for _ in range(_ROUNDS):
+        ends = go(rows[:-1].T[None] + shifts[:, :, None])
+        if not np.all(np.isfinite(ends)):
+            return False
+        slopes = ((ends[1:] - ends[0]).transpose(2, 1, 0)) / (_DIFFERENCE * scale)
+        gaps = ends[0].T - rows[1:]
+        correction = np.zeros_like(rows)
+        for k, (slope, gap) in enumerate(zip(slopes, gaps, strict=True)):
+            correction[k + 1] = slope @ correction[k] + gap
+        size = np.max(np.abs(correction) / scale)
+        if not size < _LOST:
+            return False
+        rows += correction
+        if size < _SMALL:
+            return True
+    return False
+
+
+def _attitudes(
+    answer: Answer, equations: Equations, rows: Floats, since: Floats, spans: Floats, steps: int
+) -> Floats:
+    """Return the attitudes of a motion; they are linear in the first one, given the moving part."""
+    assert answer.start.q is not None
+    v = np.broadcast_to(rows[:-1].T, (4, rows.shape[1], len(spans)))
+    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, len(spans)))
+    ends = moved(answer, equations, np.concatenate([v, unit], axis=1), since, spans, steps)
+    return chained(ends[:, rows.shape[1] :].transpose(2, 1, 0), answer.start.q[0])
+
+
+def chained(maps: Floats, first: Floats) -> Floats:
+    """Return unit quaternions that follow from the first one by linear maps."""
+    rows = [first]
+    for each in maps:
+        q = each @ rows[-1]
+        rows.append(q / np.linalg.norm(q))
+    return np.array(rows)
+
+
+def _centres(
+    answer: Answer,
+    equations: Equations,
+    v: Floats,
+    q: Floats,
+    since: Floats,
+    spans: Floats,
+    steps: int,
+) -> Floats:
+    assert answer.start.c is not None
+    first = answer.start.c[0]
+    frame = np.concatenate([v[:-1].T, q[:-1].T, np.zeros((3, len(spans)))])[None]
+    ends = moved(answer, equations, frame, since, spans, steps)[0, 10:].T
+    return np.asarray(first + np.concatenate([np.zeros((1, 3)), np.cumsum(ends, axis=0)]))

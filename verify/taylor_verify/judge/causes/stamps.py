@@ -1,0 +1,129 @@
+"""Rows of the right motion at other times than those that are written beside them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.flow import Floats, flow
+
+_FEWEST: Final = 6
+_ROUNDS: Final = 5
+_MOST_ROWS: Final = 6.0
+_ROUNDINGS: Final = 10.0
+# What other times leave of the error, at most, and where there is no rounding to reach.
+_LEAVES: Final = 1e-2
+_NEAR: Final = 1e-5
+_PATTERN: Final = 1e-3
+_SCATTER: Final = "times scatter"
+
+
+def other_times(answer: Answer) -> Cause | None:
+    """Return the cause of rows that are exact at other times; the factor of a clock is another question."""
+    if answer.count < _FEWEST or answer.right.reads or answer.right.acting is not None:
+        return None
+    late, left = _offsets(answer)
+    errors = [
+        answer.error[name] / (2 if name == "attitude" else 1)
+        for name in answer.error
+        if name != "centre"
+    ]
+    largest = float(np.max(errors))
+    noise = max(answer.roundings[name] for name in answer.error if name != "centre")
+    remains = float(np.max(left))
+    if not (remains <= max(_ROUNDINGS * noise, _NEAR * largest) and remains < _LEAVES * largest):
+        return None
+    words = _pattern(answer, late)
+    is_telling = answer.n == 6 or answer.file.q is not None
+    if words is None or not answer.failed or (words.startswith(_SCATTER) and not is_telling):
+        return None  # one number for each row explains much of three
+    leaves = {name: remains / answer.worst[name] for name in answer.failed}
+    return Cause(words, "stamps", leaves)
+
+
+def _offsets(answer: Answer) -> tuple[Floats, Floats]:
+    """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
+    right, truth, _n = answer.right, answer.truth, answer.n
+    has_q = answer.file.q is not None and truth.q is not None
+    z, rows = truth.v.T, answer.file.v.T
+    scale = answer.sizes[:, None]
+    if has_q:
+        assert answer.file.q is not None
+        assert truth.q is not None
+        signs = np.sign(np.sum(answer.file.q * truth.q, axis=1))
+        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, answer.file.q.T * signs])
+        scale = np.vstack([scale, np.ones((4, 1))])
+    spacing = float(np.median(np.abs(np.diff(answer.times))))
+    late, at = np.zeros(answer.count), z[None]
+    for _ in range(_ROUNDS):
+        slopes = right.rates(answer.times, at)[0] / scale
+        apart = (rows - at[0]) / scale
+        square = np.sum(slopes**2, axis=0)
+        step = np.sum(slopes * apart, axis=0) / np.where(square > 0, square, np.inf)
+        late = np.clip(
+            late + np.clip(step, -2 * spacing, 2 * spacing),
+            -_MOST_ROWS * spacing,
+            _MOST_ROWS * spacing,
+        )
+        answer.budget.spend(4000 + 0.5 * z.size)
+        at = flow(right.rates, z[None], answer.times, late, 4)
+    return late, np.linalg.norm((rows - at[0]) / scale, axis=0)
+
+
+def _pattern(answer: Answer, late: Floats) -> str | None:
+    """Return the pattern of the offsets in words; None for a factor, which the equations explain."""
+    times, size = answer.times, float(np.max(np.abs(late)))
+    spacing = float(np.median(np.diff(times)))
+    if not size > 0:
+        return None
+    mean = float(np.mean(late[1:]))
+    if np.ptp(late[1:]) < _PATTERN * size:
+        rows = mean / spacing
+        if abs(rows - round(rows)) < _PATTERN and round(rows):
+            return f"rows shifted: row k holds the state of row k{round(rows):+d}"
+        return (
+            f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
+        )
+    return (
+        _decimals(answer, size)
+        or _single_precision(times, times + late, size)
+        or _factor_or_jumps(times, late, size, spacing)
+    )
+
+
+def _decimals(answer: Answer, size: float) -> str | None:
+    digits = answer.decimals
+    if digits is None:
+        return None
+    unit = 10.0**-digits
+    if digits <= 6 and 0.05 * unit < size <= 0.51 * unit:
+        return f"times are rounded to {digits} decimals; no error is left beyond that"
+    return None
+
+
+def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
+    count = len(times) - 1
+    h = (exact[-1] - exact[0]) / count
+    if np.max(np.abs(exact - exact[0] - h * np.arange(count + 1))) > _PATTERN * size:
+        return None
+    sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
+    is_sum = np.max(np.abs(times[1:] - times[0] - sums)) < _PATTERN * size
+    return "times are a running sum in float32" if is_sum else None
+
+
+def _factor_or_jumps(times: Floats, late: Floats, size: float, spacing: float) -> str | None:
+    line = np.polynomial.Polynomial.fit(times, late, 1)
+    if np.max(np.abs(late - line(times))) < 1e-2 * size:
+        return None
+    jumps = np.flatnonzero(np.abs(np.diff(late)) > 0.2 * size)
+    if 0 < len(jumps) <= max(3, len(times) // 50):
+        rows = np.diff(late)[jumps] / spacing
+        if np.max(np.abs(rows - np.rint(rows))) < _PATTERN:
+            return (
+                f"rows dropped or doubled: from row {jumps[0] + 2} on, a row holds the state of row "
+                f"k{round(float(rows[0])):+d}"
+            )
+    return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"

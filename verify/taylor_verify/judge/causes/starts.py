@@ -1,0 +1,161 @@
+"""Answers whose motion is right but for its start, for jumps, or from some row on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Motion, Places
+from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.proof import whole
+
+# A defect of so many roundings, and of this part of the largest one, is a jump.
+_JUMP: Final = 40.0
+_PART: Final = 1e-2
+# Jumps are few: this many, or one in so many rows.
+_FEW: Final = 2
+_ONE_IN: Final = 50
+_OFF: Final = 10.0
+LEAVES: Final = 1e-3
+_ROUNDINGS: Final = 3.0
+_FEWEST: Final = 12
+_EARLY: Final = 20
+_STANDS_OUT: Final = 30.0
+_AT_REST: Final = 4.0
+
+
+def roundings(answer: Answer) -> Floats:
+    """Return the largest defect of each arc from row to row, in roundings of the file."""
+    rows = np.arange(answer.count - 1)
+    arcs = Arcs(answer, rows, rows + 1)
+    ends = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
+    defects = np.abs(arcs.end - ends) / answer.sizes[:, None]
+    return np.asarray(np.max(defects / answer.rounding[:, None], axis=0))
+
+
+def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
+    """Return the cause of an answer that is the exact motion from its own first row, or between jumps."""
+    bad = np.flatnonzero(defects > max(_JUMP, _PART * float(np.max(defects))))
+    is_off = (
+        any(answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
+        and answer.is_from_start
+    )
+    if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
+        return None
+    first = 1 if len(bad) and bad[0] == 0 else 0
+    if len(bad) <= first:
+        return _from_a_row(answer, first, is_off)
+    begins = [0, *(int(row) + 1 for row in bad)]
+    leaves = _leaves(answer, begins, is_off)
+    if leaves is None or max(leaves.values()) > _allowed(answer):
+        return None
+    last = answer.file.v[bad[-1] + 1 :]
+    times = ", ".join(f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad[:4])
+    if _is_at_rest(answer, last):
+        return Cause(
+            f"at rest from t = {times} on: the motion is right before, and then all velocities are 0",
+            "at rest",
+            leaves,
+        )
+    name = (
+        f"exact motion between jumps at t = {times}: each piece is the scene's motion from its own "
+        "first row"
+    )
+    return Cause(name, "jump", leaves)
+
+
+def _allowed(answer: Answer) -> float:
+    return max(LEAVES, min(0.1, _ROUNDINGS * answer.floor(answer.moving)))
+
+
+def _is_at_rest(answer: Answer, rows: Floats) -> bool:
+    return bool(np.all(np.abs(rows) <= _AT_REST * np.maximum(answer.noise[0], 1e-300)))
+
+
+def _from_a_row(answer: Answer, first: int, is_off: bool) -> Cause | None:
+    part = answer.begun_at(first)
+    motion = whole(part, part.right)
+    if motion is None:
+        return None
+    errors = part.errors(motion)
+    leaves = {
+        name: float(np.max(errors[name])) / answer.worst[name]
+        for name in answer.failed
+        if name in errors
+    }
+    if max(leaves[name] for name in answer.moving) > _allowed(answer):
+        return None
+    if leaves.get("attitude", 0.0) > 0.1:
+        del leaves["attitude"]
+    if first:
+        begin, end = answer.times[0] + answer.right.start, answer.times[1] + answer.right.start
+        sizes = [np.linalg.norm(answer.file.v[k, -3:]) for k in (0, 1)]
+        of_rate = (
+            "" if answer.right.has_momenta else f" (|omega| is {sizes[0]:.4g}, then {sizes[1]:.4g})"
+        )
+        name = (
+            f"all of the error arises between the first two rows, from t = {begin:.6g} to {end:.6g}"
+            f"{of_rate}: from the second row on the motion is exact"
+        )
+        return Cause(name, "jump at the start", leaves)
+    name = "another start: from the file's own first row the motion is exact"
+    return Cause(name, "own start", leaves)
+
+
+def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float] | None:
+    """Return what is left of v if each piece is the exact motion from its own first row."""
+    leaves = dict.fromkeys(answer.moving, 0.0)
+    for begin, end in zip(begins, [*begins[1:], answer.count], strict=True):
+        if end - begin < 2:
+            continue
+        piece = (answer.begun_at(begin) if begin or is_off else answer).at(np.s_[: end - begin])
+        piece = replace(piece, file=Motion(piece.file.v, None, None))
+        motion = whole(piece, piece.right, has_frame=False)
+        if motion is None:
+            return None
+        for name in leaves:
+            part = answer.groups[name]
+            apart = np.linalg.norm(piece.file.v[:, part] - motion.v[:, part], axis=1)
+            left = float(np.max(apart)) / answer.sizes[part][0] / answer.worst[name]
+            leaves[name] = max(leaves[name], left)
+    return leaves
+
+
+def last_right_row(answer: Answer, defects: Floats) -> int | None:
+    """Return the row up to which the motion is right, if it is wrong from there on."""
+    bad = np.flatnonzero(defects > _JUMP)
+    if not len(bad) or not bad[0] > max(3, answer.count // _EARLY):
+        return None
+    rest = answer.count - 1 - bad[0]
+    is_clear = np.median(defects[bad[0] :]) > _STANDS_OUT * np.max(defects[: bad[0]])
+    return int(bad[0]) if is_clear and len(bad) > rest / 2 and rest >= _FEWEST else None
+
+
+def stopped(answer: Answer, row: int) -> Cause | None:
+    """Return the cause of rows that are all the same after a row that is right."""
+    rest, limit = answer.file.v[row + 1 :], _AT_REST * np.maximum(answer.noise[0], 1e-300)
+    if np.any(np.ptp(rest, axis=0) > limit):
+        return None
+    is_at_rest = bool(np.all(np.abs(rest[-1, -3:]) <= limit[-3:]))
+    time = answer.times[row + 1] + answer.right.start
+    what = "all velocities are 0" if is_at_rest else "all rows have the same numbers"
+    leaves = dict.fromkeys(answer.failed, 0.0)
+    return Cause(f"right before t = {time:.6g}, and {what} from there on", "at rest", leaves)
+
+
+def from_row(answer: Answer, row: int) -> Answer:
+    """Return the rows from one on, with the truth there as the start."""
+    part = answer.at(np.s_[row:])
+    truth = part.truth.at(np.s_[:1])
+    nu = truth.v @ answer.right.inverse.T if answer.right.has_momenta else truth.v
+    start = replace(truth, v=nu)
+    return replace(part, start=start, begins=float(answer.times[row]))
+
+
+def rest_of(rows: Places, count: int) -> Places:
+    """Return the rows that are not among these."""
+    return np.setdiff1d(np.arange(count), rows)

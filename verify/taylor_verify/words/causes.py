@@ -1,0 +1,75 @@
+"""Sentences of likely causes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import ceil, log10
+from typing import Any, Final
+
+_NOTHING: Final = 1e-7
+# A change below this part of the largest one is none: the entry agrees.
+_AGREES: Final = 1e-4
+_MOST_DIGITS: Final = 15
+
+
+def sentence(
+    title: str,
+    leaves: Mapping[str, float],
+    errors: Mapping[str, float],
+    alike: Iterable[str] = (),
+    changed: str = "",
+) -> str:
+    """Return a cause as a sentence: what it is, what it leaves of which error, and what is as good.
+
+    ``leaves`` are parts of the largest ``errors``, by quantity; ``changed`` are keys of a scene's [body].
+    """
+    parts = [title]
+    if leaves:
+        left = (_left(left, errors.get(name, 1.0), name) for name, left in leaves.items())
+        parts.append(f"leaves {', '.join(left)}")
+    others = " | ".join(alike)
+    parts += [f"not told apart from: {others}"] * bool(others)
+    parts += [f"as a scene: {changed}"] * bool(changed)
+    return "; ".join(parts)
+
+
+def _left(left: float, error: float, name: str) -> str:
+    return f"{left * error:.2g} of {error:.2g} of {name}"
+
+
+def with_numbers(
+    name: str, labels: Sequence[str], right: Iterable[Any], numbers: Iterable[Any]
+) -> str:
+    """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
+    values = [float(number) for number in numbers]
+    if labels:
+        changes = _changes(labels, [float(number) for number in right], values)
+        return changes if [*labels] == [name] else f"{name}: {changes}"
+    largest = max(map(abs, values)) or 1.0
+    cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
+    return f"{name} = {' '.join(f'{value:.6g}' for value in cut)}"
+
+
+def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> str:
+    """Return the entries that changed, each with its relative change, and how well the others agree."""
+    largest = max(map(abs, right)) or 1.0
+    parts = [
+        abs(value - old) / (abs(old) or largest) for old, value in zip(right, values, strict=True)
+    ]
+    most = max(parts)
+    changed = [k for k, part in enumerate(parts) if part > _AGREES * most]
+    words = [_change(labels[k], right[k], values[k]) for k in changed]
+    rest = [part for part in parts if part <= _AGREES * most]
+    if rest:
+        words.append(f"the other entries agree to {max(*rest, 2.0**-52):.0e}")
+    return ", ".join(words)
+
+
+def _change(label: str, old: float, value: float) -> str:
+    if not old:
+        return f"{label} = {value:.6g} for 0"
+    part = value / old - 1
+    digits = min(_MOST_DIGITS, 6 + max(0, ceil(-log10(abs(part)))) if part else 6)
+    if abs(value) < _NOTHING * abs(old):
+        return f"{label} = 0 for {old:.6g}"
+    return f"{label} = {value:.{digits}g} for {old:.{digits}g} ({100 * part:+.3g} %)"

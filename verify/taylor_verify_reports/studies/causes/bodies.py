@@ -1,0 +1,79 @@
+"""Random bodies and starts, as scenes and as plain numbers for the simulators of this study."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+SORTS: Final = ("free", "moment", "wheels", "fluid", "momenta")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A body with its start and sampling; v is omega, or U and Omega; ``digits`` are printed."""
+
+    sort: str
+    mass: Floats
+    load: Floats
+    rotor: Floats
+    v0: Floats
+    q0: Floats
+    times: Floats
+    digits: int
+
+    @property
+    def n(self) -> int:
+        return len(self.mass)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene of this sample."""
+        n, rows = self.n, [[f"{x:.17g}" for x in row] for row in self.mass]
+        body = [f"{'inertia' if n == 3 else 'mass_matrix'} = {rows}".replace("'", '"')]
+        if np.any(self.load):
+            body.append(f"moment = {_texts(self.load)}")
+        if np.any(self.rotor):
+            body.append(f"rotor = {_texts(self.rotor)}")
+        start = [f"omega = {_texts(self.v0)}"]
+        if n == 6:
+            start = [f"linear_velocity = {_texts(self.v0[:3])}"]
+            start.append(f"angular_velocity = {_texts(self.v0[3:])}")
+        lines = [
+            'title = "Sample"',
+            f'model = "{"euler" if n == 3 else "kirchhoff"}"',
+            'track = ["attitude"]',
+            *("[body]", *body),
+            *("[initial]", *start, f"attitude = {_texts(self.q0)}"),
+            *("[time]", f"end = {float(self.times[-1])!r}", "samples = 2"),
+        ]
+        return read("\n".join(lines), "sample")
+
+
+def _texts(vector: Floats) -> str:
+    return str([f"{x:.17g}" for x in vector]).replace("'", '"')
+
+
+def sample(sort: str, draw: np.random.Generator) -> Sample:
+    """Draw a body of a sort, with a full tensor and coarse or fine rows."""
+    n = 6 if sort in ("fluid", "momenta") else 3
+    root = np.eye(n) + 0.15 * draw.standard_normal((n, n))
+    moments = draw.uniform(0.8, 2.4, n)
+    mass = np.round((root * moments) @ root.T, 6)
+    q = draw.standard_normal(4)
+    is_coarse, pace = bool(draw.integers(2)), draw.uniform(0.6, 1.2)
+    v0 = np.round(draw.uniform(-1, 1, n) * pace, 6)
+    rows = int(draw.integers(26, 45)) if is_coarse else int(draw.integers(90, 180))
+    spacing = (0.5 if is_coarse else 0.08) / max(float(np.linalg.norm(v0[-3:])), 0.3)
+    step = float(np.round(spacing, 3))
+    load = np.round(0.1 * draw.uniform(-1, 1, 3), 6) if sort == "moment" else np.zeros(n)
+    rotor = np.round(0.6 * draw.uniform(-1, 1, 3), 6) if sort == "wheels" else np.zeros(3)
+    times = np.round(step * np.arange(rows), 9)
+    return Sample(
+        sort, mass, load, rotor, v0, np.round(q, 6), times, int(draw.choice([7, 9, 12, 16]))
+    )

@@ -1,0 +1,117 @@
+"""The confusion table: each kind of fault on random bodies, and what is said of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Motion, steady_signs
+from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.judge.judgement import unjudged
+from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.reason import Cause
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import Recorded
+from taylor_verify_reports.studies.causes.bodies import Sample, sample
+from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
+from taylor_verify_reports.studies.causes.simulated import Rows, printed
+
+SIZES: Final = (3e-3, 0.06, 0.5)
+OUTCOMES: Final = ("right", "several", "half", "silent", "passes", "false")
+_LARGEST: Final = 1e3
+_TRIES: Final = 20
+
+
+@dataclass(frozen=True)
+class Said:
+    """One answer: its kind and body, the outcome, and the sentences."""
+
+    kind: str
+    sort: str
+    outcome: str
+    sentences: tuple[str, ...]
+
+
+def measured(seed: int, count: int, kinds: Iterable[Kind] = KINDS) -> Iterator[Said]:
+    """Yield what is said of so many answers of each kind."""
+    for kind in kinds:
+        for number in range(count):
+            answer = _answer(kind, seed, number)
+            if answer is not None:
+                yield _said(kind, *answer)
+
+
+def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
+    """Return an answer that stays of moderate size."""
+    for attempt in range(_TRIES):
+        draw = np.random.default_rng([seed, KINDS.index(kind), number, attempt])
+        body = sample(str(draw.choice(kind.sorts)), draw)
+        with np.errstate(all="ignore"):
+            rows = kind.make(body, draw, SIZES[number % len(SIZES)])
+        if np.all(np.isfinite(rows.v)) and np.max(np.abs(rows.v)) < _LARGEST:
+            return body, rows
+    return None
+
+
+def _said(kind: Kind, body: Sample, rows: Rows) -> Said:
+    has_momenta = body.sort == "momenta"
+    v, noise = printed(rows.v @ body.mass.T if has_momenta else rows.v, body.digits)
+    q, of_q = printed(rows.q, body.digits)
+    scene = body.scene
+    given = adopt(scene, rung("f64"), [Fraction(str(t)) for t in rows.times]).given
+    motion = Motion(v, steady_signs(q))
+    verdicts = [_failure(scene, name) for name in ("omega", "impulse", "attitude")]
+    with np.errstate(all="ignore"):
+        answer = material(
+            given, motion, has_momenta, (noise, 2 * float(np.max(of_q)), 0.0), verdicts, 3
+        )
+        if answer is None or not answer.failed:
+            return Said(kind.name, body.sort, "passes", ())
+        sentences = tuple(cause.sentence for cause in explained(answer).causes)
+    return Said(kind.name, body.sort, _outcome(kind, sentences), sentences)
+
+
+def _failure(scene: Scene, quantity: str) -> Verdict:
+    """Return a verdict that says no more than that a quantity failed."""
+    solver = Recorded({}, setting="sample")
+    judged = unjudged(scene, solver, rung("f64"), Status.FAIL, "made", Cause.NO_TRUTH)
+    return replace(judged.verdicts[0], quantity=quantity)
+
+
+def _outcome(kind: Kind, sentences: tuple[str, ...]) -> str:
+    """Return how an answer was named; each sentence must have one of the right words."""
+    if not sentences:
+        return "silent"
+    said = [sentence.partition("; leaves")[0] for sentence in sentences]
+    if all(sentence.startswith("truncation of order") for sentence in said):
+        return "right"
+    rest = [s.partition("not told apart from: ")[2].partition("; as a scene")[0] for s in sentences]
+    hits = [any(word in text for word in kind.words) for text in said]
+    others = [any(word in text for word in kind.words) for text in rest]
+    if not all(hit or other for hit, other in zip(hits, others, strict=True)):
+        return "false"
+    if kind.name in ("two faults", "a fault and Euler steps") and " and " not in "".join(said):
+        return "half"
+    return "right" if all(hits) and not any(rest) else "several"
+
+
+def table(answers: Iterable[Said]) -> str:
+    """Return the confusion table as Markdown, a row for each kind."""
+    counts: dict[str, Counter[str]] = {}
+    for said in answers:
+        counts.setdefault(said.kind, Counter())[said.outcome] += 1
+    total = sum(counts.values(), Counter[str]())
+    head = f"| answers | {' | '.join(OUTCOMES)} |\n|{'---|' * (len(OUTCOMES) + 1)}"
+    rows = [
+        f"| {name} | {' | '.join(str(own[outcome]) for outcome in OUTCOMES)} |"
+        for name, own in [*counts.items(), ("all", total)]
+    ]
+    return "\n".join([head, *rows])

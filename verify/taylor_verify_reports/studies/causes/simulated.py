@@ -1,0 +1,167 @@
+"""Simulators with one known fault, in plain code that shares nothing with the search for causes.
+
+A simulator integrates M v' = (M v + h) x w + ... by SciPy's DOP853, or by steps of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+
+
+class Rows(NamedTuple):
+    """The rows of an answer: v (or momenta) and unit quaternions at some times."""
+
+    times: Floats
+    v: Floats
+    q: Floats
+
+
+@dataclass
+class Law:
+    """The numbers that a simulator uses; a fault changes some of them."""
+
+    mass: Floats
+    coriolis: Floats
+    munk: Floats
+    rotor: Floats
+    load: Floats
+    space: Floats
+    linear: Floats
+    quadratic: Floats
+    clock: float = 1.0
+    damping: float = 0.0
+    from_time: float = -np.inf
+    loads_of: Callable[[float, Floats], Floats] | None = None
+    turn: Callable[[Floats, Floats], Floats] | None = field(default=None)
+
+
+def law(sample: Sample) -> Law:
+    """Return the right law of a sample."""
+    n, zeros = sample.n, np.zeros(sample.n)
+    mass = sample.mass.copy()
+    return Law(
+        mass,
+        mass.copy(),
+        mass[:3].copy(),
+        sample.rotor.copy(),
+        sample.load.copy() if n == 3 else zeros.copy(),
+        zeros.copy(),
+        zeros.copy(),
+        zeros.copy(),
+    )
+
+
+def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
+    """Return v' of omega or of U and Omega."""
+    n, w = len(v), v[-3:]
+    momentum = law.coriolis @ v
+    force = np.empty(n)
+    force[-3:] = np.cross(momentum[-3:] + law.rotor, w)
+    if n == 6:
+        force[:3] = np.cross(momentum[:3], w)
+        force[3:] += np.cross(law.munk @ v, v[:3])
+    turn = rotation(q)
+    extra = law.load - law.linear * v - law.quadratic * np.abs(v) * v
+    for i in range(0, n, 3):
+        extra[i : i + 3] += turn.T @ law.space[i : i + 3]
+    if law.loads_of is not None:
+        extra = extra + law.loads_of(t, v)
+    if t < law.from_time:
+        extra = 0 * extra
+    return np.asarray(law.clock * (np.linalg.solve(law.mass, force + extra) - law.damping * v))
+
+
+def _rates_at(law: Law, t: float, q: Floats, v: Floats) -> Floats:
+    return rates(law, t, v, q)
+
+
+def rotation(q: Floats) -> Floats:
+    """Return the rotation matrix of a quaternion of any length."""
+    a, b, c, d = q / np.linalg.norm(q)
+    return np.array(
+        [
+            [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+            [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
+            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d],
+        ]
+    )
+
+
+def turned(q: Floats, w: Floats) -> Floats:
+    """Return q' = q w / 2."""
+    return 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
+
+
+def integrated(
+    sample: Sample,
+    law: Law,
+    times: Floats | None = None,
+    method: str = "DOP853",
+    rtol: float = 3e-14,
+) -> Rows:
+    """Return the rows of a fine integration of a law, or of a coarse one by another method."""
+    from scipy.integrate import solve_ivp
+
+    n, times = sample.n, sample.times if times is None else times
+    turn = law.turn or turned
+
+    def slope(t: float, z: Floats) -> Floats:
+        v, q = z[:n], z[n:]
+        return np.concatenate([rates(law, t, v, q), law.clock * turn(q, v[-3:])])
+
+    z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0)])
+    parts, edges = [], [sample.times[0], times[-1]]
+    if edges[0] < law.from_time < times[-1]:
+        edges.insert(1, law.from_time)
+    for k, (begin, end) in enumerate(pairwise(edges)):
+        inside = times[(times > begin) & (times <= end)] if k else times[times <= end]
+        ask = np.union1d(inside, [end])
+        solved = solve_ivp(slope, (begin, end), z0, method, t_eval=ask, rtol=rtol, atol=1e-3 * rtol)
+        parts.append(solved.y.T[np.isin(ask, inside)])
+        z0 = solved.y[:, -1]
+    return _rows(times, np.vstack(parts), n)
+
+
+def stepped(
+    sample: Sample,
+    step: Callable[[Callable[[Floats], Floats], Floats, float], Floats],
+    update: Callable[[Floats, Floats, Floats, float], Floats],
+    steps: int,
+    of: Law | None = None,
+) -> Rows:
+    """Return the rows of a one-step method, so many steps from row to row."""
+    used = of or law(sample)
+    v, q = sample.v0.copy(), sample.q0 / np.linalg.norm(sample.q0)
+    rows = [np.concatenate([v, q])]
+    for begin, end in zip(sample.times[:-1], sample.times[1:], strict=True):
+        h = (end - begin) / steps
+        for k in range(steps):
+            now = begin + k * h
+            after = step(partial(_rates_at, used, now, q), v, h)
+            q = update(q, v[-3:], after[-3:], h)
+            q, v = q / np.linalg.norm(q), after
+        rows.append(np.concatenate([v, q]))
+    return _rows(sample.times, np.array(rows), sample.n)
+
+
+def _rows(times: Floats, z: Floats, n: int) -> Rows:
+    q = z[:, n:]
+    return Rows(times, z[:, :n], q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def printed(values: Floats, digits: int) -> tuple[Floats, Any]:
+    """Return numbers rounded to so many digits, and half a unit of each column's last place."""
+    largest = np.max(np.abs(values), axis=0)
+    if digits >= 16:
+        return values, 2.0**-53 * largest
+    texts = np.array([[float(f"{x:.{digits}g}") for x in row] for row in values])
+    unit = 10.0 ** (np.floor(np.log10(np.where(largest > 0, largest, 1.0))) + 1 - digits)
+    return texts, 0.5 * unit
