@@ -214,7 +214,7 @@ def test_a_counter_is_exact() -> None:
     states = (
         'n = { every = "1/10", start = 0, value = "n + 0.1" }\n'
         'k = { start = "1/3", rate = 0 }\n'
-        'm = { every = "1/10", value = "floor(3*k) + (1 if n >= 1 else 0)" }'
+        'm = { every = "1/10", value = "floor(3*norm(k, 0*n)) + (1 if sqrt(n*n) >= 1 else 0)" }'
     )
     got = motion(about_axes(states, 'moment = ["m", 0, 0]'), "9/10", "1")
     assert [row[0] for row in got["m"]] == [1, 2]

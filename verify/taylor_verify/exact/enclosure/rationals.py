@@ -10,10 +10,11 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.exact.enclosure.jumps import Choice, Jump
-from taylor_verify.exact.enclosure.kinks import Absolute
+from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import Bilinear, Operation, Polynomial, State, Time
-from taylor_verify.exact.enclosure.powers import Quotient
+from taylor_verify.exact.enclosure.powers import Quotient, Root
 from taylor_verify.exact.enclosure.tape import Tape
+from taylor_verify.scenes.loads.steps import exact_root
 
 Rationals = list[Fraction | None]
 
@@ -44,12 +45,25 @@ def _value(
         case Quotient(b=b, a=a):
             above, below = Fraction(1) if b is None else values[b], values[a]
             return above / below if above is not None and below else None
-        case Absolute(a=a) | Jump(a=a):
-            inner = values[a]
-            if inner is None:
-                return None
-            return operation.of(inner) if isinstance(operation, Jump) else abs(inner)
+        case Norm(nodes=nodes):
+            parts = [values[a] for a in nodes]
+            known = [part for part in parts if part is not None]
+            return (
+                exact_root(sum((p * p for p in known), Fraction(0)))
+                if len(known) == len(parts)
+                else None
+            )
+        case Absolute(a=a) | Jump(a=a) | Root(a=a):
+            return None if (inner := values[a]) is None else _of_one(operation, inner)
     return None
+
+
+def _of_one(operation: Operation, value: Fraction) -> Fraction | None:
+    if isinstance(operation, Jump):
+        return operation.of(value)
+    if isinstance(operation, Root):
+        return exact_root(value) if value >= 0 else None
+    return abs(value)
 
 
 def _rational(number: Any) -> Fraction | None:
