@@ -59,6 +59,9 @@ def columns_at(scene: Scene, instants: Sequence[Fraction], matrix: bool = False)
             columns |= named(MATRIX, [R.reshape(9) for R in motion["attitude"]])
         elif "attitude" in motion:
             columns |= named(QUATERNION, [quaternion(R) for R in motion["attitude"]])
+        for group in given.groups:
+            if group.name in given.states:
+                columns |= named(group.columns, motion[group.name])
     return columns
 
 

@@ -203,7 +203,7 @@ def test_an_engine_for_free_bodies_is_not_asked_for_others(
     """With a moment, wheels or damping an engine of `loads = false` is unavailable: it has not failed."""
     judgement = run(name, twin(tmp_path, 'data = "tensor"', monkeypatch), "f32", causes=False)
     assert {str(v.verdict) for v in judgement.verdicts} == {"unavailable"}
-    assert "free bodies without wheels" in str(judgement.verdicts[0].reason)
+    assert "is made for a body without" in str(judgement.verdicts[0].reason)
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,16 @@ from taylor_verify.solvers.engines.launcher import NotMade, Tell
 from taylor_verify.solvers.engines.script import Script, scripts
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.process import process
-from taylor_verify.solvers.solver import Lack, Solver, not_started, refused
+from taylor_verify.solvers.solver import Lack, Solver, made_without, not_started, refused
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+
+# What acts on a body that an engine takes, by what its script says of loads.
+_CONSTANT: Final = ("moment", "force", "couple", "rotor", "damping")
+_TAKEN: Final[Mapping[bool | str, Sequence[str]]] = {
+    False: (),
+    True: _CONSTANT,
+    "written": (*_CONSTANT, "loads"),
+}
 
 PREFIX: Final = "outside:"
 SCRIPTS: Final = Path(__file__).parents[1] / "outside"
@@ -147,18 +155,10 @@ class Outside(Solver):
         return answer if isinstance(answer, Lack) else ""
 
     def unsuited(self, problem: Problem) -> str:
-        takes_written = self.engine.script.about.loads == "written"
-        if not takes_written and (reason := super().unsuited(problem)):
-            return reason
-        models = self.engine.script.about.models
-        if problem.given.model not in models:
-            return f"{self.name} is made for {' and '.join(models)} alone"
-        body = problem.given.body
-        if body.manufactured is not None:
-            return f"{self.name} is made for constant loads, and not for a manufactured motion"
-        if not (self.engine.script.about.loads or body.is_plain):
-            return f"{self.name} is made for free bodies without wheels and without damping"
-        return ""
+        about = self.engine.script.about
+        if problem.given.model not in about.models:
+            return f"{self.name} is made for {' and '.join(about.models)} alone"
+        return made_without(self.name, problem.given.body, _TAKEN[about.loads])
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:
         # The truth starts from the same numbers as the engine.
