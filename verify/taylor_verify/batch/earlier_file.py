@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +12,7 @@ from taylor_verify.batch.differences import ERRORS
 from taylor_verify.records.json_text import parsed
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.status import Status
+from taylor_verify.records.store import with_digest
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.regular_file import read_bytes
 
@@ -46,6 +47,7 @@ class _Rows:
     """The part of a document that a baseline needs; a document of several files has one for each file."""
 
     verdicts: tuple[Verdict, ...] | None = None
+    scenes: Mapping[str, str] = field(default_factory=dict)
     files: tuple[_Rows, ...] = ()
 
 
@@ -54,7 +56,7 @@ def _placed(document: _Rows, place: str = "") -> Iterator[tuple[str, Verdict]]:
     if document.verdicts is None and not document.files:
         raise ValueError(f"expected a key verdicts, got none @ {place or 'the document'}")
     for i, verdict in enumerate(document.verdicts or ()):
-        yield f"{place}verdicts[{i}]", verdict
+        yield f"{place}verdicts[{i}]", with_digest(verdict, document.scenes)
     for k, file in enumerate(document.files):
         yield from _placed(file, f"{place}files[{k}].")
 

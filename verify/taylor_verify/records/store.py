@@ -1,6 +1,7 @@
 """Verdicts and records as JSON files; the time and the machine of each run are stored separately.
 
-    verdicts.json   every verdict, one a line; the same on any machine that computes the same;
+    verdicts.json   every verdict, one a line, and the digest of each scene's text; the same on any
+                    machine that computes the same;
                     shifts of time of failed gates alone: a passed one has them of its roundings
     timings.json    seconds of every run; Python, processor and command of every machine
     records/        one file a run: the equations built and every sample's error; of which verdicts
@@ -15,6 +16,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -56,8 +58,9 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     ordered_runs = runs(verdicts)
     data = folder / FOLDER
     ordered = [verdict for run in ordered_runs for verdict in run.verdicts]
-    rows = [row(verdict) for verdict in ordered]
-    text = laid_out({**_MADE_BY, "versions": versions(ordered), "verdicts": rows})
+    rows = [_without_digest(row(verdict)) for verdict in ordered]
+    same = {"versions": versions(ordered), "scenes": _digests(ordered)}
+    text = laid_out({**_MADE_BY, **same, "verdicts": rows})
     # The verdicts are written last, so that the files they refer to are already there.
     texts: dict[str, str | Iterator[str]] = {
         **_record_texts(records),
@@ -105,8 +108,36 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     stored = read_document(file)
     timed = _timed(folder / FOLDER / TIMINGS)
     with expecting("verdicts", file):
-        same = stored["versions"]
-        return tuple(verdict(row, same, timed.get(_key(row), {})) for row in stored["verdicts"])
+        same, digests = stored["versions"], stored.get("scenes", {})
+        return tuple(
+            with_digest(verdict(row, same, timed.get(_key(row), {})), digests)
+            for row in stored["verdicts"]
+        )
+
+
+def with_digest(verdict: Verdict, digests: Mapping[str, str]) -> Verdict:
+    """Return a stored verdict with the digest of its scene, which a document has once for each scene."""
+    if "scene" in verdict.provenance or verdict.scene not in digests:
+        return verdict
+    provenance = {**verdict.provenance, "scene": digests[verdict.scene]}
+    return replace(verdict, provenance=provenance)
+
+
+def _without_digest(row: dict[str, Any]) -> dict[str, Any]:
+    own = {key: value for key, value in row["provenance"].items() if key != "scene"}
+    del row["provenance"]
+    return {**row, "provenance": own} if own else row
+
+
+def _digests(verdicts: Iterable[Verdict]) -> dict[str, str]:
+    """Return the digest of each scene's text. Raises ValueError for two of one scene."""
+    digests: dict[str, str] = {}
+    for verdict in verdicts:
+        if (digest := verdict.provenance.get("scene")) is None:
+            continue
+        if digests.setdefault(verdict.scene, digest) != digest:
+            raise ValueError(f"expected one text of {verdict.scene}, got two")
+    return digests
 
 
 def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
@@ -125,7 +156,7 @@ def versions(verdicts: Iterable[Verdict]) -> dict[str, str]:
 # Made of the other numbers of a row, or of the scene.
 _DERIVED = ("because", "digits", "sentence", "until")
 # Most rows have none of these.
-_SELDOM = ("tolerance", "since", "change", "error_kind")
+_SELDOM = ("tolerance", "since", "change", "error_kind", "exponent")
 
 
 def row(verdict: Verdict) -> dict[str, Any]:
@@ -290,7 +321,7 @@ def verdict(
     python = {"python": own.pop("python")} if "python" in own else {}
     all_versions = {**python, **same}
     provenance: dict[str, Any] = {"versions": all_versions} if all_versions else {}
-    provenance |= {**own, **stored["provenance"]}
+    provenance |= {**own, **stored.get("provenance", {})}
     return read_row({**stored, "provenance": provenance, "seconds": timing.get("seconds")})
 
 
