@@ -18,6 +18,7 @@ from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
@@ -27,6 +28,8 @@ _CONTRADICTED: Final = 1e-3
 _PROVEN: Final = 0.1
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
+# The truth has left the start if it is so many roundings of the file away.
+_LEFT: Final = 30.0
 
 
 def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
@@ -36,6 +39,9 @@ def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
     whole_answer = wrong_rows(answer) or other_times(answer)
     if whole_answer is not None:
         return [whole_answer]
+    undone = _clock_undone(answer, more)
+    if undone:
+        return undone
     by_group = readings(answer)
     undone = _attitude_undone(answer, by_group, more) or _omega_undone(answer, by_group, more)
     if undone:
@@ -118,6 +124,32 @@ def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
         replace(cause, where=f"right up to t = {time:.6g}, then")
         for cause in causes_of(later, more)
     ]
+
+
+def _clock_undone(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
+    """Return the causes by the clock that the first row shows, if it is the scene's start at another time."""
+    late = float(answer.times[0]) - answer.begins
+    if not late or answer.right.acting is not None or not _begins_at_start(answer):
+        return []
+    at_start = replace(answer, times=answer.times - late)
+    truth = whole(replace(at_start, file=answer.truth), answer.right)
+    if truth is None:
+        return []
+    how = f"late by {late:.6g}" if late > 0 else f"early by {-late:.6g}"
+    where = f"with the clock {how}, as the first row shows"
+    causes = causes_of(replace(at_start, truth=truth), more)
+    return [replace(cause, where=": ".join(filter(None, (where, cause.where)))) for cause in causes]
+
+
+def _begins_at_start(answer: Answer) -> bool:
+    """Return True if the first row is the state of the start, and the truth has left it there."""
+    start = replace(answer.start, v=answer.first(answer.right.mass)[None])
+    kept, moved = (
+        replace(answer.at(np.s_[:1]), file=file.at(np.s_[:1]), truth=start).error
+        for file in (answer.file, answer.truth)
+    )
+    is_kept = all(kept[name][0] <= _ROUNDINGS * answer.roundings[name] for name in kept)
+    return is_kept and any(moved[name][0] > _LEFT * answer.roundings[name] for name in kept)
 
 
 def _attitude_undone(
