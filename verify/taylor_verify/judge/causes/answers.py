@@ -46,6 +46,10 @@ NOT_LOOKED_FOR: Final = (
     "does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
+# Other bodies that are conventions of a scene's text: judge.conventions.worlds reads a file by them.
+_OTHER_BODIES: Final = frozenset(
+    {"products of inertia with the other sign", "coupling B of the energy transposed"}
+)
 _WITH_TERMS: Final = frozenset({"rotor"})
 _DIGITS: Final = 20
 # R^T R of printed digits is off by less.
@@ -131,12 +135,16 @@ def explained(answer: Answer) -> Explained:
         causes = causes_of(answer, ())
     except _SILENT:
         return Explained()
-    is_motion = bool(causes) and not any(cause.kind in _READINGS for cause in causes)
+    is_motion = bool(causes) and not any(map(_is_convention, causes))
     notes: tuple[str, ...] = ()
     if not causes:
         with suppress(*_SILENT):
             notes = tuple(filter(None, (missing_load(answer),)))
     return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
+
+
+def _is_convention(cause: Cause) -> bool:
+    return cause.kind in _READINGS or cause.name in _OTHER_BODIES
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:

@@ -127,7 +127,7 @@ def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
 
 
 def _clock_undone(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
-    """Return the causes by the clock that the first row shows, if it is the scene's start at another time."""
+    """Return the causes by the clock of a first row that is the start at another time."""
     late = float(answer.times[0]) - answer.begins
     if not late or answer.right.acting is not None or not _begins_at_start(answer):
         return []
