@@ -246,8 +246,8 @@ def test_a_moment_in_space_axes_is_named() -> None:
 @pytest.mark.parametrize("rate", by_turns([euler, damped], 2))
 def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
     """A wrong turn of the attitude has its name, beside whatever is wrong with omega."""
-    found = set(causes(load(FREE), simulated(load(FREE), rate, turn)))
-    assert found == {name} | ({"damping"} if rate is damped else set())
+    named = set(causes(load(FREE), simulated(load(FREE), rate, turn)))
+    assert named == {name} | ({"damping"} if rate is damped else set())
 
 
 @pytest.mark.parametrize(
@@ -280,11 +280,50 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
         scene, initial=replace(scene.initial, attitude=(Fraction(1), *[Fraction(0)] * 3))
     )
     columns = in_space_axes(simulated(scene, back))
-    found = set(causes(scene, columns))
-    assert found == {"omega is in space axes", "gyroscopic term with the other sign"}
+    named = set(causes(scene, columns))
+    assert named == {"omega is in space axes", "gyroscopic term with the other sign"}
 
 
 # Rows.
+
+
+def late(columns: Columns) -> Columns:
+    return columns | {"t": [t + 0.005 for t in columns["t"]]}
+
+
+def without_start(columns: Columns) -> Columns:
+    return {name: values[1:] for name, values in columns.items()}
+
+
+def turned_by_steps(columns: Columns) -> Columns:
+    """The columns with an attitude that the rate at each row turns up to the next."""
+    w, q = (np.array([columns[name] for name in v]).T for v in (VECTORS["omega"], QUATERNION))
+    steps = w[:-1] * np.diff(columns["t"])[:, None]
+    turn = Rotation.from_quat(np.roll(q[0], -1))
+    turns = [turn] + [turn := turn * Rotation.from_rotvec(step) for step in steps]
+    rows = np.roll([each.as_quat() for each in turns], 1, axis=1)
+    return columns | dict(zip(QUATERNION, rows.T.tolist(), strict=True))
+
+
+@pytest.mark.parametrize(
+    ("rate", "spoil", "words"),
+    [
+        (back, late, "with the clock late by 0.005, as the first row shows: gyroscopic term with"),
+        (back, without_start, "gyroscopic term with the other sign; leaves"),
+        (
+            euler,
+            lambda c: without_start(turned_by_steps(c)),
+            "attitude turned by the rate at the b",
+        ),
+    ],
+    ids=["late", "without-start", "attitude-without-start"],
+)
+def test_rows_that_begin_late_have_their_cause(
+    rate: Rate, spoil: Callable[[Columns], Columns], words: str
+) -> None:
+    """The start is integrated to the first row, unless that row is the start at another time."""
+    (sentence,) = causes(load(FREE), spoil(simulated(load(FREE), rate))).values()
+    assert sentence.startswith(words)
 
 
 def one_up(sound: Columns) -> Columns:

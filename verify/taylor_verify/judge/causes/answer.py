@@ -38,6 +38,15 @@ class Motion:
         q, c = (None if part is None else part[rows] for part in (self.q, self.c))
         return Motion(self.v[rows], q, c)
 
+    def before(self, other: Motion) -> Motion:
+        """Return the rows with those of another motion behind them, and its quantities."""
+        v, q, c = (
+            None if part is None or own is None else np.concatenate([own, part])
+            for own, part in ((self.v, other.v), (self.q, other.q), (self.c, other.c))
+        )
+        assert v is not None
+        return Motion(v, q, c)
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -188,6 +197,18 @@ class Answer:
     def is_from_start(self) -> bool:
         """True if the first row is at the start."""
         return bool(self.times[0] == self.begins)
+
+    def with_start(self, mass: Floats) -> Answer:
+        """Return the answer of a body with this mass matrix, with the start as a row before the first."""
+        if self.is_from_start:
+            return self
+        start = replace(self.start, v=self.first(mass)[None])
+        return replace(
+            self,
+            times=np.concatenate([[self.begins], self.times]),
+            file=start.before(self.file),
+            truth=start.before(self.truth),
+        )
 
     @cached_property
     def keeps_momenta(self) -> bool:

@@ -112,7 +112,7 @@ class _Dynamics:
 
     @property
     def _floor(self) -> float:
-        """What the roundings of the file and of the search leave, as a part of the error."""
+        """The roundings of the file and of the search, as a part of the error."""
         answer = self.answer
         least = min(answer.worst[name] for name in answer.moving)
         return max(ROUNDINGS * answer.floor(answer.moving), _FLOAT64 / least)

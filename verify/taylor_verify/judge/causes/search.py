@@ -144,12 +144,13 @@ def _clock_undone(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
 def _begins_at_start(answer: Answer) -> bool:
     """Return True if the first row is the state of the start, and the truth has left it there."""
     start = replace(answer.start, v=answer.first(answer.right.mass)[None])
-    kept, moved = (
+    of_file, of_truth = (
         replace(answer.at(np.s_[:1]), file=file.at(np.s_[:1]), truth=start).error
         for file in (answer.file, answer.truth)
     )
-    is_kept = all(kept[name][0] <= _ROUNDINGS * answer.roundings[name] for name in kept)
-    return is_kept and any(moved[name][0] > _LEFT * answer.roundings[name] for name in kept)
+    is_start = all(of_file[name][0] <= _ROUNDINGS * answer.roundings[name] for name in of_file)
+    has_left = any(of_truth[name][0] > _LEFT * answer.roundings[name] for name in of_file)
+    return is_start and has_left
 
 
 def _attitude_undone(

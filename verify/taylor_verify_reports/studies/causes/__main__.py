@@ -20,9 +20,9 @@ def main() -> None:
     asked = parser.parse_args()
     answers = list(measured(asked.seed, asked.count))
     false = [
-        f"- {said.kind}, {said.sort}: {' ## '.join(said.sentences)}"
-        for said in answers
-        if said.outcome == "false"
+        f"- {named.kind}, {named.sort}: {' ## '.join(named.sentences)}"
+        for named in answers
+        if named.outcome == "false"
     ]
     asked.file.write_text("\n".join([table(answers), "", *false]))
 
