@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -296,6 +296,3 @@ def steady_signs(q: Floats) -> Floats:
     signs = np.sign(np.sum(unit[1:] * unit[:-1], axis=1))
     steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
     return np.asarray(unit * steady[:, None])
-
-
-Numbers = Mapping[str, float]

@@ -17,7 +17,6 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.printed import half_units
@@ -132,7 +131,7 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
 def explained(answer: Answer) -> Explained:
     """Return the causes of an answer with their sentences; none at the end of the budget."""
     try:
-        causes = causes_of(answer, ())
+        causes = causes_of(answer)
     except _SILENT:
         return Explained()
     is_motion = bool(causes) and not any(map(_is_convention, causes))
@@ -345,6 +344,3 @@ def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> 
 def _doubles(rows: Any) -> Floats:
     """Return numbers as float64."""
     return np.array([[float(value) for value in row] for row in rows], dtype=float)
-
-
-__all__ = ["NOT_LOOKED_FOR", "Fault", "are_known", "causes_of_file", "equations_of", "with_causes"]

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, Places
+from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
@@ -154,8 +154,3 @@ def from_row(answer: Answer, row: int) -> Answer:
     nu = truth.v @ answer.right.inverse.T if answer.right.has_momenta else truth.v
     start = replace(truth, v=nu)
     return replace(part, start=start, begins=float(answer.times[row]))
-
-
-def rest_of(rows: Places, count: int) -> Places:
-    """Return the rows that are not among these."""
-    return np.setdiff1d(np.arange(count), rows)
