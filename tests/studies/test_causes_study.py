@@ -6,7 +6,7 @@ import pytest
 from builders.turns import by_turns
 
 from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
-from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, table
+from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
 
 
 @pytest.mark.parametrize("kind", by_turns([*KINDS], 7), ids=lambda kind: kind.name)
@@ -21,6 +21,12 @@ def test_sound_methods_are_kinds() -> None:
     silent = {kind.name for kind in KINDS if not kind.words}
     assert {"RK45 at 1e-4", "LSODA at 1e-6", "cubic drag", "growing load"} <= silent
     assert len({kind.name for kind in KINDS}) == len(KINDS)
+
+
+def test_the_page_has_what_is_false() -> None:
+    """Below the table each false sentence stands with its kind and its body."""
+    answers = [Named("a", "free", "right", ("x",)), Named("b", "free", "false", ("y",))]
+    assert page(answers).splitlines()[-1] == "- b, free: y"
 
 
 def test_the_table_counts_every_answer() -> None:

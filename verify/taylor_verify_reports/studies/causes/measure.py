@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
@@ -101,6 +101,16 @@ def _outcome(kind: Kind, sentences: tuple[str, ...]) -> str:
     if kind.name in ("two faults", "a fault and Euler steps") and " and " not in "".join(titles):
         return "half"
     return "right" if all(hits) and not any(rest) else "several"
+
+
+def page(answers: Sequence[Named]) -> str:
+    """Return the confusion table and each false sentence as Markdown."""
+    false = [
+        f"- {named.kind}, {named.sort}: {' | '.join(named.sentences)}"
+        for named in answers
+        if named.outcome == "false"
+    ]
+    return "\n".join([table(answers), "", *false, ""])
 
 
 def table(answers: Iterable[Named]) -> str:
