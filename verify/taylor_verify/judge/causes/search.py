@@ -6,6 +6,7 @@ or readings.py, its broken twin to tests/judge/test_causes.py, and its line to d
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Final
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.flow import Floats
@@ -53,10 +55,11 @@ def causes_of(answer: Answer) -> list[Cause]:
     if moving and _is_attitude_right(answer, by_group) and _contradicts(answer, moving):
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
-    of_motion = _of_motion(answer, moving, "attitude" in left)
-    if not of_motion and not causes:
-        return _in_space(answer)
-    return [*causes, *of_motion]
+    if not causes:
+        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+    with suppress(Spent):
+        causes += _of_motion(answer, moving, "attitude" in left)
+    return causes
 
 
 def _is_attitude_right(answer: Answer, by_group: dict[str, Cause]) -> bool:
@@ -72,6 +75,8 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     """Return the causes in the motion, and in the attitude given the motion."""
     causes: list[Cause] = []
     cause = None
+    if has_wrong_attitude and _turns_too_little(answer):
+        moving = []
     if moving:
         causes = _pieces(answer) or []
         cause = causes[-1] if causes else dynamics(answer)
@@ -88,6 +93,15 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     if cause is None and moving:
         return causes
     return _with_attitude(answer, cause, causes)
+
+
+def _turns_too_little(answer: Answer) -> bool:
+    """Return True if the error of omega, over the whole run, turns less than the attitude is wrong."""
+    if answer.n == 6:
+        return False
+    span = float(np.max(np.abs(answer.times - answer.begins)))
+    turn = answer.worst["omega"] * float(answer.sizes[0]) * span
+    return turn < _CONTRADICTED * answer.worst["attitude"]
 
 
 def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:

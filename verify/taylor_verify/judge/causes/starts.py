@@ -44,11 +44,13 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         any(answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
         and answer.is_from_start
     )
+    if is_off and (cause := _from_a_row(answer, 0)):
+        return cause
     if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
         return None
     first = 1 if len(bad) and bad[0] == 0 else 0
     if len(bad) <= first:
-        return _from_a_row(answer, first, is_off)
+        return _from_a_row(answer, first) if first else None
     begins = [0, *(int(row) + 1 for row in bad)]
     leaves = _leaves(answer, begins, is_off)
     if leaves is None or max(leaves.values()) > _allowed(answer):
@@ -76,7 +78,7 @@ def _is_at_rest(answer: Answer, rows: Floats) -> bool:
     return bool(np.all(np.abs(rows) <= _AT_REST * np.maximum(answer.noise[0], 1e-300)))
 
 
-def _from_a_row(answer: Answer, first: int, is_off: bool) -> Cause | None:
+def _from_a_row(answer: Answer, first: int) -> Cause | None:
     part = answer.begun_at(first)
     motion = whole(part, part.right)
     if motion is None:
