@@ -16,9 +16,9 @@ _SEED: Final = 1
 def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
     """Write the confusion table, and below it each false sentence."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
-    from taylor_verify_reports.studies.causes.measure import measured, page
+    from taylor_verify_reports.studies.causes.measure import Named, measured, page
 
-    finished, answers = progress.counting(len(KINDS)), []
+    finished, answers = progress.counting(len(KINDS)), list[Named]()
     for kind in KINDS:
         answers += measured(_SEED, count, [kind])
         finished(kind.name)
@@ -31,7 +31,7 @@ def _positive(text: str) -> int:
     return int(text)
 
 
-STUDY: Final = Study(
+STUDY: Final[Study[None]] = Study(
     name="causes",
     title="how often likely causes are right, on random bodies with known faults",
     duration="half an hour",
