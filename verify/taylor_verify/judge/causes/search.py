@@ -130,8 +130,12 @@ def _pieces(answer: Answer) -> list[Cause] | None:
     if stopped is not None:
         return [stopped]
     later = starts.from_row(answer, row)
+    # No scene has a fault in a part of its run.
     time = answer.times[row] + answer.right.start
-    return [replace(cause, where=f"right up to t = {time:.6g}, then") for cause in causes_of(later)]
+    return [
+        replace(cause, where=f"right up to t = {time:.6g}, then", changes={})
+        for cause in causes_of(later)
+    ]
 
 
 def _clock_undone(answer: Answer) -> list[Cause]:

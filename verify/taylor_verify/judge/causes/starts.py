@@ -16,6 +16,8 @@ from taylor_verify.judge.causes.proof import whole
 # A defect of so many roundings, and of this part of the largest one, is a jump.
 _JUMP: Final = 40.0
 _PART: Final = 1e-2
+# A simulator has defects of its own: those below this part of the largest one.
+_NOISE: Final = 1e-6
 # Jumps are few: this many, or one in so many rows.
 _FEW: Final = 2
 _ONE_IN: Final = 50
@@ -129,12 +131,16 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
 
 def last_right_row(answer: Answer, defects: Floats) -> int | None:
     """Return the row up to which the motion is right, if it is wrong from there on."""
-    bad = np.flatnonzero(defects > _JUMP)
+    bad = np.flatnonzero(defects > max(_JUMP, _NOISE * float(np.max(defects))))
     if not len(bad) or not bad[0] > max(3, answer.count // _EARLY):
         return None
     rest = answer.count - 1 - bad[0]
-    is_clear = np.median(defects[bad[0] :]) > _STANDS_OUT * np.max(defects[: bad[0]])
-    return int(bad[0]) if is_clear and len(bad) > rest / 2 and rest >= _FEWEST else None
+    if rest < _FEWEST:
+        return None
+    # The row at which a fault begins may have a little of it.
+    after = min(defects[bad[0] + 1], np.median(defects[bad[0] :]))
+    is_clear = after > _STANDS_OUT * np.max(defects[: bad[0]])
+    return int(bad[0]) if is_clear and len(bad) > rest / 2 else None
 
 
 def stopped(answer: Answer, row: int) -> Cause | None:
