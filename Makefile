@@ -71,9 +71,7 @@ reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made 
 	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
 
 causes: $(INSTALLED)  ## Measure how often likely causes are right (COUNT=20 of each kind) to reports/local/causes.md
-	@mkdir -p reports/local
-	@$(BIN)/python -m taylor_verify_reports.studies.causes reports/local/causes.md --count $(or $(COUNT),20)
-	@echo 'reports/local/causes.md'
+	@$(BIN)/taylor-verify publish causes --count $(or $(COUNT),20)
 
 paper: $(INSTALLED)  ## Make the paper and its tables, PDF, LaTeX and CSV, in reports/paper
 	@$(BIN)/taylor-verify publish --paper > /dev/null

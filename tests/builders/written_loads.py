@@ -312,19 +312,19 @@ def end_of(
     with mp.workdps(digits + 15):
         equations = Evaluated(scene)
         start = scene.clock.start
-        begun, end = Fraction(0), start + time
+        elapsed, end = Fraction(0), start + time
         ends = sorted({*switches, *instants(scene, time), end}, reverse=time < 0)
         y, now, error = equations.start(), value(start), mpf(0)
         for stop in ends:
-            equations.take(now, begun, y)
+            equations.take(now, elapsed, y)
             equations.sides.begin_piece()
             equations.clock = (now + value(stop)) / 2
             h = (value(stop) - now) / parts
             for _ in range(parts):
                 y, missed = extrapolated(equations.rates, now, y, h, columns)
                 now, error = now + h, error + missed
-            now, begun = value(stop), stop - start
-        equations.take(now, begun, y)
+            now, elapsed = value(stop), stop - start
+        equations.take(now, elapsed, y)
         if scene.model == "euler":
             y[:3] = equations.omega(now, y)
         return End(y, error, equations.sides.crosses, equations.own(y))

@@ -66,8 +66,8 @@ def test_a_wrong_damping_is_named(scene: str, change: Callable[[Numbers], None],
 @pytest.mark.parametrize("scene", by_turns([RIGID, FLUID], 2))
 def test_damping_of_the_velocity_is_named(scene: str) -> None:
     """A moment -c omega in place of -c I omega, or -c U and -c W in a fluid, has its name, and no other."""
-    said = causes(load(scene), simulated(load(scene), of_velocity(Numbers(load(scene)))))
-    assert set(said) == {"damping of the velocity"}
+    sentences = causes(load(scene), simulated(load(scene), of_velocity(Numbers(load(scene)))))
+    assert set(sentences) == {"damping of the velocity"}
 
 
 @pytest.mark.parametrize("first", [False, True])
@@ -84,8 +84,8 @@ def test_the_factor_of_a_step_is_named(
 ) -> None:
     """A factor once in a step has its law, its place and the step itself in the only sentence."""
     h, scene = 0.1, load(RIGID)
-    said = causes(scene, runge_kutta(scene, h, 10, factor=factor, factor_first=first))
-    (sentence,) = said.values()
+    sentences = causes(scene, runge_kutta(scene, h, 10, factor=factor, factor_first=first))
+    (sentence,) = sentences.values()
     place = "before" if first else "after"
     law = f"{name}: the momentum times {words} {place} the motion of each step, with h = "
     step = sentence.partition(law)[2].split(";")[0].split(" | ")[0]

@@ -78,9 +78,9 @@ def sentences(name: str, scene_name: str, failed: tuple[str, ...]) -> list[str]:
 )
 def test_a_known_fault_is_named(name: str, scene: str, words: list[str]) -> None:
     """A simulator with one fault gets that word and no other, and silence where two faults are mixed."""
-    said = sentences(name, scene, STATES)
-    assert len(said) == len(words)
-    assert all(word in sentence for word, sentence in zip(words, said, strict=True))
+    causes = sentences(name, scene, STATES)
+    assert len(causes) == len(words)
+    assert all(word in sentence for word, sentence in zip(words, causes, strict=True))
 
 
 @pytest.mark.parametrize(

@@ -127,8 +127,8 @@ def test_another_error_is_not_called_a_gyroscopic_one(
 ) -> None:
     """A late clock, a wrong scale and noise have words of their own, and a sound file has none."""
     sound = {name: list(values) for name, values in exact_columns("euler/with-attitude").items()}
-    said = causes(tmp_path, "euler/with-attitude", spoil(sound))
-    assert [cause.split(",")[0].split("(")[0] for cause in said] == words
+    named = causes(tmp_path, "euler/with-attitude", spoil(sound))
+    assert [cause.split(",")[0].split("(")[0] for cause in named] == words
 
 
 def test_the_other_sign_is_named(tmp_path: Path) -> None:

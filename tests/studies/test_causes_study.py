@@ -6,14 +6,14 @@ import pytest
 from builders.turns import by_turns
 
 from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
-from taylor_verify_reports.studies.causes.measure import OUTCOMES, Said, measured, table
+from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
 
 
 @pytest.mark.parametrize("kind", by_turns([*KINDS], 7), ids=lambda kind: kind.name)
 def test_no_word_is_false(kind: Kind) -> None:
     """No sentence on an answer with a known fault names another fault."""
-    (said,) = measured(seed=20, count=1, kinds=[kind])
-    assert said.outcome != "false", said.sentences
+    (named,) = measured(seed=20, count=1, kinds=[kind])
+    assert named.outcome != "false", named.sentences
 
 
 def test_sound_methods_are_kinds() -> None:
@@ -23,8 +23,14 @@ def test_sound_methods_are_kinds() -> None:
     assert len({kind.name for kind in KINDS}) == len(KINDS)
 
 
+def test_the_page_has_what_is_false() -> None:
+    """Below the table each false sentence stands with its kind and its body."""
+    answers = [Named("a", "free", "right", ("x",)), Named("b", "free", "false", ("y",))]
+    assert page(answers).splitlines()[-1] == "- b, free: y"
+
+
 def test_the_table_counts_every_answer() -> None:
     """The last row is the sum of all rows, outcome by outcome."""
-    answers = [Said("a", "free", "right", ()), Said("b", "free", "false", ("x",))]
+    answers = [Named("a", "free", "right", ()), Named("b", "free", "false", ("x",))]
     assert table(answers).splitlines()[0] == f"| answers | {' | '.join(OUTCOMES)} |"
     assert table(answers).splitlines()[-1] == "| all | 1 | 0 | 0 | 0 | 0 | 1 |"

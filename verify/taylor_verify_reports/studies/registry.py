@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from taylor_verify.plotting.picture import Picture
 from taylor_verify_reports.studies.accuracy.study import STUDY as ACCURACY
+from taylor_verify_reports.studies.causes.study import STUDY as CAUSES
 from taylor_verify_reports.studies.claims.study import STUDY as CLAIMS
 from taylor_verify_reports.studies.controls.study import STUDY as CONTROLS
 from taylor_verify_reports.studies.enclosure.study import STUDY as ENCLOSURE
@@ -34,6 +35,7 @@ STUDIES: Final[list[Study[Any]]] = [
     ENCLOSURE,
     PORTRAITS,
     REFERENCE,
+    CAUSES,
     GALLERY,
 ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -37,6 +37,15 @@ class Motion:
     def at(self, rows: Any) -> Motion:
         q, c = (None if part is None else part[rows] for part in (self.q, self.c))
         return Motion(self.v[rows], q, c)
+
+    def before(self, other: Motion) -> Motion:
+        """Return the rows with those of another motion behind them, and its quantities."""
+        v, q, c = (
+            None if part is None or own is None else np.concatenate([own, part])
+            for own, part in ((self.v, other.v), (self.q, other.q), (self.c, other.c))
+        )
+        assert v is not None
+        return Motion(v, q, c)
 
 
 @dataclass(frozen=True)
@@ -189,6 +198,18 @@ class Answer:
         """True if the first row is at the start."""
         return bool(self.times[0] == self.begins)
 
+    def with_start(self, mass: Floats) -> Answer:
+        """Return the answer of a body with this mass matrix, with the start as a row before the first."""
+        if self.is_from_start:
+            return self
+        start = replace(self.start, v=self.first(mass)[None])
+        return replace(
+            self,
+            times=np.concatenate([[self.begins], self.times]),
+            file=start.before(self.file),
+            truth=start.before(self.truth),
+        )
+
     @cached_property
     def keeps_momenta(self) -> bool:
         """True if the first row has the momenta of the scene; else its velocities are the scene's."""
@@ -275,6 +296,3 @@ def steady_signs(q: Floats) -> Floats:
     signs = np.sign(np.sum(unit[1:] * unit[:-1], axis=1))
     steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
     return np.asarray(unit * steady[:, None])
-
-
-Numbers = Mapping[str, float]

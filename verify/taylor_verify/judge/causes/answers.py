@@ -17,7 +17,6 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.printed import half_units
@@ -46,6 +45,10 @@ NOT_LOOKED_FOR: Final = (
     "does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
+# Other bodies that are conventions of a scene's text: judge.conventions.worlds reads a file by them.
+_OTHER_BODIES: Final = frozenset(
+    {"products of inertia with the other sign", "coupling B of the energy transposed"}
+)
 _WITH_TERMS: Final = frozenset({"rotor"})
 _DIGITS: Final = 20
 # R^T R of printed digits is off by less.
@@ -128,15 +131,19 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
 def explained(answer: Answer) -> Explained:
     """Return the causes of an answer with their sentences; none at the end of the budget."""
     try:
-        causes = causes_of(answer, ())
+        causes = causes_of(answer)
     except _SILENT:
         return Explained()
-    is_motion = bool(causes) and not any(cause.kind in _READINGS for cause in causes)
+    is_motion = bool(causes) and not any(map(_is_convention, causes))
     notes: tuple[str, ...] = ()
     if not causes:
         with suppress(*_SILENT):
             notes = tuple(filter(None, (missing_load(answer),)))
     return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
+
+
+def _is_convention(cause: Cause) -> bool:
+    return cause.kind in _READINGS or cause.name in _OTHER_BODIES
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:
@@ -337,6 +344,3 @@ def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> 
 def _doubles(rows: Any) -> Floats:
     """Return numbers as float64."""
     return np.array([[float(value) for value in row] for row in rows], dtype=float)
-
-
-__all__ = ["NOT_LOOKED_FOR", "Fault", "are_known", "causes_of_file", "equations_of", "with_causes"]

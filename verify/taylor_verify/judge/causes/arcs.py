@@ -189,7 +189,7 @@ def telling_arcs(answer: Answer) -> tuple[Arcs, int]:
         starts = np.array(evenly(answer.count - stride, _ARCS))
         arcs = Arcs(answer, starts, starts + stride)
         ratio = np.max(np.abs(arcs.of_right) / (2 * arcs.rounding[:, None]), axis=0)
-        is_clear = np.nanmedian(ratio) >= _CLEAR
+        is_clear = np.median(np.where(np.isfinite(ratio), ratio, np.inf)) >= _CLEAR
         if is_clear or 4 * stride > answer.count or answer.count - stride < _FEWEST:
             return arcs, stride
         stride *= 2

@@ -93,20 +93,6 @@ def _coupling_in_one(mass: Floats) -> Iterator[Fault]:
     yield Fault(name, "Coriolis matrix", {"mass": uncoupled})
 
 
-def faults_of_added_mass(mass: Floats, added: Floats) -> Iterator[Fault]:
-    """Yield faults of the Coriolis terms of the added mass, which is a part of the mass matrix."""
-    for words, factor in (("missing", 0.0), ("with the other sign", -1.0), ("twice", 2.0)):
-        changes = of_coriolis(mass - added + factor * added)
-        yield Fault(f"Coriolis terms of the added mass {words}", "Coriolis matrix", changes)
-        other = mass - added + factor * added
-        if np.all(np.linalg.eigvalsh(other) > 0):
-            yield Fault(f"added mass {words}", "body", of_body(other))
-    name = "Coriolis terms of the rigid body missing"
-    yield Fault(name, "Coriolis matrix", of_coriolis(added))
-    rows = (mass - added)[:3]
-    yield Fault("Munk moment of the added mass missing", "Coriolis matrix", {"munk": rows})
-
-
 # Families.
 
 

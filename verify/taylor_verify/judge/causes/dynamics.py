@@ -20,7 +20,7 @@ from taylor_verify.judge.causes.bodies import (
 )
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.equations import Changes
-from taylor_verify.judge.causes.fault import Fault, Sizes, of_body
+from taylor_verify.judge.causes.fault import Sizes, of_body
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import whole
@@ -75,14 +75,14 @@ class _Proven:
     worst: float
 
 
-def dynamics(answer: Answer, more: Sequence[Fault] = ()) -> Cause | None:
+def dynamics(answer: Answer) -> Cause | None:
     """Return the proven cause of the errors of the moving part, with all others that explain as well."""
-    return _Dynamics(answer, tuple(more)).cause()
+    return _Dynamics(answer).cause()
 
 
 class _Dynamics:
-    def __init__(self, answer: Answer, more: tuple[Fault, ...]) -> None:
-        self.answer, self.more = answer, more
+    def __init__(self, answer: Answer) -> None:
+        self.answer = answer
         self.few = answer.thinned(_FIT_ROWS)
         self.arcs, self.stride = telling_arcs(self.few)
         self.floor = self.arcs.floor
@@ -112,7 +112,7 @@ class _Dynamics:
 
     @property
     def _floor(self) -> float:
-        """What the roundings of the file and of the search leave, as a part of the error."""
+        """The roundings of the file and of the search, as a part of the error."""
         answer = self.answer
         least = min(answer.worst[name] for name in answer.moving)
         return max(ROUNDINGS * answer.floor(answer.moving), _FLOAT64 / least)
@@ -134,7 +134,7 @@ class _Dynamics:
 
     def _faults(self) -> Iterator[Candidate]:
         right = self.answer.right
-        faults = [*faults_of_terms(right), *faults_of_bodies(right), *self.more]
+        faults = [*faults_of_terms(right), *faults_of_bodies(right)]
         every = self.arcs.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))

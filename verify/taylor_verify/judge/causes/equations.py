@@ -12,7 +12,7 @@ then the quaternion and the centre as far as they are asked for; the axes of an 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -227,9 +227,6 @@ class Equations:
         left = [r0, *(-component for component in r)]
         before, after = _number(weights[..., 0])[..., 0], _number(weights[..., 1])[..., 0]
         return [before * a + after * b for a, b in zip(left, right, strict=True)]
-
-
-PARAMETERS: Final = tuple(field.name for field in fields(Equations))
 
 
 def _parts(rows: Floats) -> list[Floats]:

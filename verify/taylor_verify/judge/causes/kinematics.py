@@ -65,6 +65,7 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
 
     A ``method`` of the moving part, with its number of steps, is taken for that part.
     """
+    answer = answer.with_start(right.mass)
     rows = np.array(evenly(answer.count - 1, _ARCS))
     arcs = Arcs(answer, rows, rows + 1)
     assert answer.file.q is not None
@@ -91,7 +92,6 @@ def _settled(answer: Answer, near: list[_Tried]) -> Cause | None:
             continue
         assert answer.start.q is not None
         q = chained(each.maps(answer), answer.start.q[0])
-        q = q if answer.is_from_start else q[1:]
         left = answer.leaves(Motion(answer.truth.v, q)).get("attitude", np.inf)
         allowed = max(_LEAVES, 3 * answer.floor(["attitude"]))
         if left <= min(allowed, _CAPS[min(each.count, 1)]):

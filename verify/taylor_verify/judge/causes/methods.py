@@ -1,4 +1,4 @@
-"""One-step methods, replayed from each row of an answer to the next: no number but that of the steps.
+"""Methods of one step, replayed from each row of an answer to the next: no number but that of the steps.
 
 A rate is a function of time and state; states are arrays (sets, components, arcs), and h has one entry for
 each arc. An attitude's update takes q, the angular velocities at both ends of the step, and h.

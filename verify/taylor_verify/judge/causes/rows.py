@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -149,8 +149,3 @@ _KINDS: Final[dict[str, Callable[[Answer, Places, Floats, Floats], Floats]]] = {
     "cubic interpolation (Hermite)": _cubic,
     "values that are held": _held,
 }
-
-
-def names() -> Iterator[str]:
-    """Yield the names of the kinds of interpolation."""
-    yield from _KINDS

@@ -6,6 +6,7 @@ or readings.py, its broken twin to tests/judge/test_causes.py, and its line to d
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Final
 
@@ -13,11 +14,12 @@ import numpy as np
 
 from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics
-from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
@@ -27,17 +29,22 @@ _CONTRADICTED: Final = 1e-3
 _PROVEN: Final = 0.1
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
+# The truth has left the start if it is so many roundings of the file away.
+_LEFT: Final = 30.0
 
 
-def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
+def causes_of(answer: Answer) -> list[Cause]:
     """Return the proven causes of the failures of an answer."""
     if not answer.failed or answer.count < _FEWEST:
         return []
     whole_answer = wrong_rows(answer) or other_times(answer)
     if whole_answer is not None:
         return [whole_answer]
+    undone = _clock_undone(answer)
+    if undone:
+        return undone
     by_group = readings(answer)
-    undone = _attitude_undone(answer, by_group, more) or _omega_undone(answer, by_group, more)
+    undone = _attitude_undone(answer, by_group) or _omega_undone(answer, by_group)
     if undone:
         return undone
     left = [name for name in answer.failed if name not in by_group]
@@ -48,10 +55,11 @@ def causes_of(answer: Answer, more: tuple[Fault, ...] = ()) -> list[Cause]:
     if moving and _is_attitude_right(answer, by_group) and _contradicts(answer, moving):
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
-    of_motion = _of_motion(answer, moving, "attitude" in left, more)
-    if not of_motion and not causes:
-        return _in_space(answer, more)
-    return [*causes, *of_motion]
+    if not causes:
+        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+    with suppress(Spent):
+        causes += _of_motion(answer, moving, "attitude" in left)
+    return causes
 
 
 def _is_attitude_right(answer: Answer, by_group: dict[str, Cause]) -> bool:
@@ -63,15 +71,15 @@ def _contradicts(answer: Answer, moving: list[str]) -> bool:
     return answer.n == 3 and "omega" in moving and attitude < _CONTRADICTED * answer.worst["omega"]
 
 
-def _of_motion(
-    answer: Answer, moving: list[str], has_wrong_attitude: bool, more: tuple[Fault, ...]
-) -> list[Cause]:
+def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> list[Cause]:
     """Return the causes in the motion, and in the attitude given the motion."""
     causes: list[Cause] = []
     cause = None
+    if has_wrong_attitude and _turns_too_little(answer):
+        moving = []
     if moving:
-        causes = _pieces(answer, more) or []
-        cause = causes[-1] if causes else dynamics(answer, more)
+        causes = _pieces(answer) or []
+        cause = causes[-1] if causes else dynamics(answer)
         causes = causes or ([cause] if cause else [])
     if not has_wrong_attitude:
         return causes
@@ -87,6 +95,15 @@ def _of_motion(
     return _with_attitude(answer, cause, causes)
 
 
+def _turns_too_little(answer: Answer) -> bool:
+    """Return True if the error of omega, over the whole run, turns less than the attitude is wrong."""
+    if answer.n == 6:
+        return False
+    span = float(np.max(np.abs(answer.times - answer.begins)))
+    turn = answer.worst["omega"] * float(answer.sizes[0]) * span
+    return turn < _CONTRADICTED * answer.worst["attitude"]
+
+
 def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
     right = answer.right if cause is None else answer.right.changed(cause.changes)
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
@@ -100,7 +117,7 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
 _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
 
 
-def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
+def _pieces(answer: Answer) -> list[Cause] | None:
     """Return the causes of an answer that is right in pieces, each with the times of its ends."""
     defects = starts.roundings(answer)
     cause = starts.exact_in_pieces(answer, defects)
@@ -113,16 +130,42 @@ def _pieces(answer: Answer, more: tuple[Fault, ...]) -> list[Cause] | None:
     if stopped is not None:
         return [stopped]
     later = starts.from_row(answer, row)
+    # No scene has a fault in a part of its run.
     time = answer.times[row] + answer.right.start
     return [
-        replace(cause, where=f"right up to t = {time:.6g}, then")
-        for cause in causes_of(later, more)
+        replace(cause, where=f"right up to t = {time:.6g}, then", changes={})
+        for cause in causes_of(later)
     ]
 
 
-def _attitude_undone(
-    answer: Answer, by_group: dict[str, Cause], more: tuple[Fault, ...]
-) -> list[Cause]:
+def _clock_undone(answer: Answer) -> list[Cause]:
+    """Return the causes by the clock of a first row that is the start at another time."""
+    late = float(answer.times[0]) - answer.begins
+    if not late or answer.right.acting is not None or not _begins_at_start(answer):
+        return []
+    at_start = replace(answer, times=answer.times - late)
+    truth = whole(replace(at_start, file=answer.truth), answer.right)
+    if truth is None:
+        return []
+    how = f"late by {late:.6g}" if late > 0 else f"early by {-late:.6g}"
+    where = f"with the clock {how}, as the first row shows"
+    causes = causes_of(replace(at_start, truth=truth))
+    return [replace(cause, where=": ".join(filter(None, (where, cause.where)))) for cause in causes]
+
+
+def _begins_at_start(answer: Answer) -> bool:
+    """Return True if the first row is the state of the start, and the truth has left it there."""
+    start = replace(answer.start, v=answer.first(answer.right.mass)[None])
+    of_file, of_truth = (
+        replace(answer.at(np.s_[:1]), file=file.at(np.s_[:1]), truth=start).error
+        for file in (answer.file, answer.truth)
+    )
+    is_start = all(of_file[name][0] <= _ROUNDINGS * answer.roundings[name] for name in of_file)
+    has_left = any(of_truth[name][0] > _LEFT * answer.roundings[name] for name in of_file)
+    return is_start and has_left
+
+
+def _attitude_undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     """Return a convention of the attitude that its first row shows, with the causes of what is left."""
     q, start = answer.file.q, answer.start.q
     if q is None or start is None or "attitude" in by_group or not answer.is_from_start:
@@ -138,7 +181,7 @@ def _attitude_undone(
     ):
         if angles(rows[:1], start)[0] <= allowed:
             read = replace(answer, file=replace(answer.file, q=steady_signs(rows)))
-            return _beside(Cause(f"attitude {name}", "convention", {}), causes_of(read, more))
+            return _beside(Cause(f"attitude {name}", "convention", {}), causes_of(read))
     return []
 
 
@@ -148,9 +191,7 @@ def _beside(convention: Cause, causes: list[Cause]) -> list[Cause]:
     return [convention, *with_that] if causes else []
 
 
-def _omega_undone(
-    answer: Answer, by_group: dict[str, Cause], more: tuple[Fault, ...]
-) -> list[Cause]:
+def _omega_undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     """Return a convention of omega that its first row shows, with the causes of what is left by it."""
     if "omega" not in answer.failed or answer.right.has_momenta or not answer.is_from_start:
         return []
@@ -165,7 +206,7 @@ def _omega_undone(
         apart = np.linalg.norm(rows[0] - answer.truth.v[0, part]) / answer.sizes[part][0]
         if apart <= allowed:
             read = _with_omega(answer, rows)
-            causes = _of_motion(read, list(read.moving), attitude_is_left, more)
+            causes = _of_motion(read, list(read.moving), attitude_is_left)
             first = by_group.get("omega", Cause(f"omega {name}", "convention", {}))
             if both := _beside(first, causes):
                 return both
@@ -178,7 +219,7 @@ def _with_omega(answer: Answer, rows: Floats) -> Answer:
     return replace(answer, file=replace(answer.file, v=v))
 
 
-def _in_space(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
+def _in_space(answer: Answer) -> list[Cause]:
     """Return omega in space axes with the causes that the motion has then, where nothing else is proven."""
     if answer.file.q is None or answer.n == 6 or "omega" not in answer.failed:
         return []
@@ -186,7 +227,7 @@ def _in_space(answer: Answer, more: tuple[Fault, ...]) -> list[Cause]:
     if np.array_equal(rows, answer.file.v):
         return []
     read = _with_omega(answer, rows)
-    causes = _of_motion(read, list(read.moving), "attitude" in answer.failed, more)
+    causes = _of_motion(read, list(read.moving), "attitude" in answer.failed)
     return _beside(Cause(f"omega {name}", "convention", {}), causes)
 
 

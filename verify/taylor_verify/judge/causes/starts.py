@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, Places
+from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
@@ -16,6 +16,8 @@ from taylor_verify.judge.causes.proof import whole
 # A defect of so many roundings, and of this part of the largest one, is a jump.
 _JUMP: Final = 40.0
 _PART: Final = 1e-2
+# A simulator has defects of its own: those below this part of the largest one.
+_NOISE: Final = 1e-6
 # Jumps are few: this many, or one in so many rows.
 _FEW: Final = 2
 _ONE_IN: Final = 50
@@ -44,11 +46,13 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         any(answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
         and answer.is_from_start
     )
+    if is_off and (cause := _from_a_row(answer, 0)):
+        return cause
     if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
         return None
     first = 1 if len(bad) and bad[0] == 0 else 0
     if len(bad) <= first:
-        return _from_a_row(answer, first, is_off)
+        return _from_a_row(answer, first) if first else None
     begins = [0, *(int(row) + 1 for row in bad)]
     leaves = _leaves(answer, begins, is_off)
     if leaves is None or max(leaves.values()) > _allowed(answer):
@@ -76,7 +80,7 @@ def _is_at_rest(answer: Answer, rows: Floats) -> bool:
     return bool(np.all(np.abs(rows) <= _AT_REST * np.maximum(answer.noise[0], 1e-300)))
 
 
-def _from_a_row(answer: Answer, first: int, is_off: bool) -> Cause | None:
+def _from_a_row(answer: Answer, first: int) -> Cause | None:
     part = answer.begun_at(first)
     motion = whole(part, part.right)
     if motion is None:
@@ -127,12 +131,16 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
 
 def last_right_row(answer: Answer, defects: Floats) -> int | None:
     """Return the row up to which the motion is right, if it is wrong from there on."""
-    bad = np.flatnonzero(defects > _JUMP)
+    bad = np.flatnonzero(defects > max(_JUMP, _NOISE * float(np.max(defects))))
     if not len(bad) or not bad[0] > max(3, answer.count // _EARLY):
         return None
     rest = answer.count - 1 - bad[0]
-    is_clear = np.median(defects[bad[0] :]) > _STANDS_OUT * np.max(defects[: bad[0]])
-    return int(bad[0]) if is_clear and len(bad) > rest / 2 and rest >= _FEWEST else None
+    if rest < _FEWEST:
+        return None
+    # The row at which a fault begins may have a little of it.
+    after = min(defects[bad[0] + 1], np.median(defects[bad[0] :]))
+    is_clear = after > _STANDS_OUT * np.max(defects[: bad[0]])
+    return int(bad[0]) if is_clear and len(bad) > rest / 2 else None
 
 
 def stopped(answer: Answer, row: int) -> Cause | None:
@@ -154,8 +162,3 @@ def from_row(answer: Answer, row: int) -> Answer:
     nu = truth.v @ answer.right.inverse.T if answer.right.has_momenta else truth.v
     start = replace(truth, v=nu)
     return replace(part, start=start, begins=float(answer.times[row]))
-
-
-def rest_of(rows: Places, count: int) -> Places:
-    """Return the rows that are not among these."""
-    return np.setdiff1d(np.arange(count), rows)

@@ -53,8 +53,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
 NO_CONVENTIONS: Final = (
-    "conventions and shifts of time are not looked for: under the loads of this scene a motion at another "
-    "time, or in other axes, is another motion"
+    "shifts of time are not looked for, and no convention is corrected: under the loads of this scene a "
+    "motion at another time, or in other axes, is another motion"
 )
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100

@@ -37,7 +37,7 @@ class State:
         return self if self.start is None else self.starting(tuple(map(rung.round, self.start)))
 
     def starting(self, start: Vector) -> Self:
-        """The same state with another start."""
+        """State with another start."""
         changed: Self = replace(cast("Any", self), start=start)
         return changed
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
@@ -31,8 +31,8 @@ _TRIES: Final = 20
 
 
 @dataclass(frozen=True)
-class Said:
-    """One answer: its kind and body, the outcome, and the sentences."""
+class Named:
+    """An answer: its kind and body, the outcome, and the sentences."""
 
     kind: str
     sort: str
@@ -40,13 +40,13 @@ class Said:
     sentences: tuple[str, ...]
 
 
-def measured(seed: int, count: int, kinds: Iterable[Kind] = KINDS) -> Iterator[Said]:
+def measured(seed: int, count: int, kinds: Iterable[Kind] = KINDS) -> Iterator[Named]:
     """Yield what is said of so many answers of each kind."""
     for kind in kinds:
         for number in range(count):
             answer = _answer(kind, seed, number)
             if answer is not None:
-                yield _said(kind, *answer)
+                yield _named(kind, *answer)
 
 
 def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
@@ -61,7 +61,7 @@ def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
     return None
 
 
-def _said(kind: Kind, body: Sample, rows: Rows) -> Said:
+def _named(kind: Kind, body: Sample, rows: Rows) -> Named:
     has_momenta = body.sort == "momenta"
     v, noise = printed(rows.v @ body.mass.T if has_momenta else rows.v, body.digits)
     q, of_q = printed(rows.q, body.digits)
@@ -74,9 +74,9 @@ def _said(kind: Kind, body: Sample, rows: Rows) -> Said:
             given, motion, has_momenta, (noise, 2 * float(np.max(of_q)), 0.0), verdicts, 3
         )
         if answer is None or not answer.failed:
-            return Said(kind.name, body.sort, "passes", ())
+            return Named(kind.name, body.sort, "passes", ())
         sentences = tuple(cause.sentence for cause in explained(answer).causes)
-    return Said(kind.name, body.sort, _outcome(kind, sentences), sentences)
+    return Named(kind.name, body.sort, _outcome(kind, sentences), sentences)
 
 
 def _failure(scene: Scene, quantity: str) -> Verdict:
@@ -90,24 +90,34 @@ def _outcome(kind: Kind, sentences: tuple[str, ...]) -> str:
     """Return how an answer was named; each sentence must have one of the right words."""
     if not sentences:
         return "silent"
-    said = [sentence.partition("; leaves")[0] for sentence in sentences]
-    if all(sentence.startswith("truncation of order") for sentence in said):
+    titles = [sentence.partition("; leaves")[0] for sentence in sentences]
+    if all(sentence.startswith("truncation of order") for sentence in titles):
         return "right"
     rest = [s.partition("not told apart from: ")[2].partition("; as a scene")[0] for s in sentences]
-    hits = [any(word in text for word in kind.words) for text in said]
+    hits = [any(word in text for word in kind.words) for text in titles]
     others = [any(word in text for word in kind.words) for text in rest]
     if not all(hit or other for hit, other in zip(hits, others, strict=True)):
         return "false"
-    if kind.name in ("two faults", "a fault and Euler steps") and " and " not in "".join(said):
+    if kind.name in ("two faults", "a fault and Euler steps") and " and " not in "".join(titles):
         return "half"
     return "right" if all(hits) and not any(rest) else "several"
 
 
-def table(answers: Iterable[Said]) -> str:
+def page(answers: Sequence[Named]) -> str:
+    """Return the confusion table and each false sentence as Markdown."""
+    false = [
+        f"- {named.kind}, {named.sort}: {' | '.join(named.sentences)}"
+        for named in answers
+        if named.outcome == "false"
+    ]
+    return "\n".join([table(answers), "", *false, ""])
+
+
+def table(answers: Iterable[Named]) -> str:
     """Return the confusion table as Markdown, a row for each kind."""
     counts: dict[str, Counter[str]] = {}
-    for said in answers:
-        counts.setdefault(said.kind, Counter())[said.outcome] += 1
+    for named in answers:
+        counts.setdefault(named.kind, Counter())[named.outcome] += 1
     total = sum(counts.values(), Counter[str]())
     head = f"| answers | {' | '.join(OUTCOMES)} |\n|{'---|' * (len(OUTCOMES) + 1)}"
     rows = [

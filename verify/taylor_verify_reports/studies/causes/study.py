@@ -1,0 +1,41 @@
+"""The study of likely causes: answers with known faults on random bodies, and what is said of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from taylor_verify.records.replacement import replace_files
+from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
+
+# The repository does not hold the page.
+_PAGE: Final = "local/causes.md"
+_SEED: Final = 1
+
+
+def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
+    """Write the confusion table, and below it each false sentence."""
+    from taylor_verify_reports.studies.causes.kinds import KINDS
+    from taylor_verify_reports.studies.causes.measure import Named, measured, page
+
+    finished, answers = progress.counting(len(KINDS)), list[Named]()
+    for kind in KINDS:
+        answers += measured(_SEED, count, [kind])
+        finished(kind.name)
+    return Measured(replace_files(folder, {_PAGE: page(answers)}))
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or not int(text):
+        raise ValueError(f"expected a positive integer, got {text!r}")
+    return int(text)
+
+
+STUDY: Final[Study[None]] = Study(
+    name="causes",
+    title="how often likely causes are right, on random bodies with known faults",
+    duration="half an hour",
+    measure=_measure,
+    needs_heyoka=False,
+    options=(Option("count", "make N answers of each kind; default: 20", _positive),),
+)
