@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -69,6 +69,21 @@ def _within(equations: Equations, since: Floats, spans: Floats):  # type: ignore
     return lambda time, z: equations.rates(np.clip(time, low, high), z)
 
 
+def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
+    """Return the fewest steps of an arc whose ends are right to the goal, but at most 32."""
+    steps, before = 1, ends(1)
+    while steps < _STEPS:
+        after = ends(2 * steps)
+        apart = np.abs(after - before) / goal
+        largest = np.max(apart) if np.all(np.isfinite(apart)) else np.inf
+        if largest < 1:
+            return steps
+        steps, before = 2 * steps, after
+        if largest < _ORDER:
+            return steps
+    return steps
+
+
 @dataclass(frozen=True)
 class Arcs:
     """Arcs of an answer from the rows ``first`` to the rows ``last``."""
@@ -112,18 +127,10 @@ class Arcs:
         return min(self.steps, self._steps(np.full((self.answer.n, 1), _COARSE)))
 
     def _steps(self, goal: Floats) -> int:
-        equations, steps = self.answer.right, 1
-        before = self.ends(equations, 1)
-        while steps < _STEPS:
-            after = self.ends(equations, 2 * steps)
-            apart = np.abs(after - before)[0, : self.answer.n] / self.answer.sizes[:, None] / goal
-            largest = np.max(apart) if np.all(np.isfinite(apart)) else np.inf
-            if largest < 1:
-                return steps
-            steps, before = 2 * steps, after
-            if largest < _ORDER:
-                return steps
-        return steps
+        n, right = self.answer.n, self.answer.right
+        return enough_steps(
+            lambda steps: self.ends(right, steps)[0, :n] / self.answer.sizes[:, None], goal
+        )
 
     def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:
         """Return the ends of the arcs by the equations, with at least the components they depend on."""

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import moved
+from taylor_verify.judge.causes.arcs import enough_steps, moved
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.scenes.instants import evenly
@@ -89,18 +89,13 @@ def _enough_steps(
     """Return the steps of an arc whose error is below a tenth of the file's rounding."""
     some = np.array(evenly(len(spans), _SOME))
     goal = np.maximum(0.1 * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
-    begin, steps = rows[:-1][some].T[None], 1
-    before = moved(answer, equations, begin, since[some], spans[some], steps)
-    while steps < 32:
-        after = moved(answer, equations, begin, since[some], spans[some], 2 * steps)
-        apart = np.abs(after - before)[0, : answer.n] / goal
-        largest = np.max(apart) if np.all(np.isfinite(apart)) else np.inf
-        if largest < 1:
-            return steps
-        steps, before = 2 * steps, after
-        if largest < 2.0**8:
-            return steps
-    return steps
+    begin = rows[:-1][some].T[None]
+    return enough_steps(
+        lambda steps: moved(answer, equations, begin, since[some], spans[some], steps)[
+            0, : answer.n
+        ],
+        goal,
+    )
 
 
 def _shoot(rows: Floats, go: Stepper, scale: Floats) -> bool:
