@@ -22,9 +22,7 @@ from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
-from taylor_verify.models.rounding import NotRepresentable as NotRepresentable
-from taylor_verify.models.rounding import Rounding
-from taylor_verify.models.times import are_distinct, rounded_times
+from taylor_verify.models.rounding import NotRepresentable, Rounding, distinct_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
 from taylor_verify.numbers import tensors
@@ -162,7 +160,7 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     Raises NotRepresentable if the rounded data are no valid body or sample times coincide.
     """
     units = natural_units(scene)
-    times = _rounded_times(scene.clock, units, rung)
+    times = distinct_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda k: start + times[k] * unit))
     data = _rounded_data(scene, units, Rounding(rung))
@@ -268,16 +266,6 @@ def in_piece(problem: Problem, piece: Piece) -> Problem:
         parameters=tuple(numbers[name] for name in form.parameters),
         replaced=tuple((n, v) for n, v in numbers.items() if n not in form.parameters),
     )
-
-
-def _rounded_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
-    try:
-        times = rounded_times(clock, units.time, rung)
-    except OverflowError as error:
-        raise NotRepresentable(str(error)) from error
-    if not are_distinct(times):
-        raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
-    return times
 
 
 def pose_as_stored(scene: Scene, rung: Rung) -> Problem:

@@ -1,14 +1,16 @@
-"""Numbers, vectors and matrices rounded onto one rung."""
+"""Numbers, vectors, matrices and times rounded onto one rung."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import Rung, floor_log2
 from taylor_verify.scenes.manufactured import Manufactured, Wave
-from taylor_verify.scenes.motion import IDENTITY, Quaternion
+from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
 
 
@@ -55,3 +57,14 @@ class Rounding:
         return tuple(
             Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
         )
+
+
+def distinct_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
+    """Return the sample times rounded once each. Raises NotRepresentable where two become one."""
+    try:
+        times = rounded_times(clock, units.time, rung)
+    except OverflowError as error:
+        raise NotRepresentable(str(error)) from error
+    if not are_distinct(times):
+        raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
+    return times

@@ -26,7 +26,6 @@ _ACTING: Final = {
     "rotor": "wheels",
     "moment": "a moment",
     "manufactured": "a moment that changes with time",
-    "loads": "loads that a scene writes down",
 }
 
 

@@ -156,9 +156,12 @@ class Outside(Solver):
 
     def unsuited(self, problem: Problem) -> str:
         about = self.engine.script.about
+        taken = _TAKEN[about.loads]
+        if "loads" not in taken and (reason := super().unsuited(problem)):
+            return reason
         if problem.given.model not in about.models:
             return f"{self.name} is made for {' and '.join(about.models)} alone"
-        return made_without(self.name, problem.given.body, _TAKEN[about.loads])
+        return made_without(self.name, problem.given.body, taken)
 
     def problem(self, scene: Scene, rung: Rung) -> Problem:
         # The truth starts from the same numbers as the engine.
