@@ -22,7 +22,8 @@ from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of
 from taylor_verify.models.registry import mechanics, natural_units
-from taylor_verify.models.rounding import NotRepresentable, Rounding, distinct_times
+from taylor_verify.models.rounding import NotRepresentable as NotRepresentable
+from taylor_verify.models.rounding import Rounding, distinct_times
 from taylor_verify.models.units import Units
 from taylor_verify.models.written import Written
 from taylor_verify.numbers import tensors
