@@ -131,3 +131,12 @@ def test_matrices_that_are_no_rotations_are_said() -> None:
         "no cause is proven; the rows follow if from t = 0 to 20 a moment acts"
     )
     assert judged.causes == ()
+
+
+def test_a_convention_explains_what_it_reads() -> None:
+    """Where omega is right in space axes and the attitude alone is wrong, no missing moment is said."""
+    judged = taylor_verify.check(
+        str(CASES / "link.toml"), str(CASES / "openhrp3-120.csv"), tolerance=1e-6
+    )
+    assert any("w1 w2 w3 are in space axes" in str(finding) for finding in judged.conventions)
+    assert not any("moment acts" in note for note in judged.notes)

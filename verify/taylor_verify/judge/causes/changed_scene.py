@@ -111,8 +111,5 @@ def _text(terms: Sequence[tuple[float, str]], largest: float) -> str:
     large = [(value, word) for value, word in terms if abs(value) > _NOTHING * largest]
     if not any(word for _, word in large):
         return number(large[0][0]) if large else "0.0"
-    return (
-        '"'
-        + " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in large)
-        + '"'
-    )
+    written = " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in large)
+    return '"' + written.replace("+ -", "- ") + '"'
