@@ -30,7 +30,9 @@ def spoil(folder: Path, index: int, **changed: Any) -> None:
     file = folder / "data" / "verdicts.json"
     stored = json.loads(file.read_text(encoding="utf-8"))
     if changed:
+        digest = stored["scenes"][stored["verdicts"][index]["scene"]]
         stored["verdicts"][index] |= changed
+        stored["scenes"].setdefault(stored["verdicts"][index]["scene"], digest)
     else:
         del stored["verdicts"][index]
     file.write_text(json.dumps(stored), encoding="utf-8")
