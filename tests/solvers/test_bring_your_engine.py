@@ -219,7 +219,7 @@ def judged(scene: Scene | str, command: str, parts: int = 10) -> Judgement:
     """Return the judgement of a template on a scene, in steps of a part of the scene's unit of time."""
     asked = load(scene) if isinstance(scene, str) else scene
     step = float(natural_units(asked).time) / parts
-    return run(asked, f"process:{command} {step!r}", tolerance=TOLERANCE)
+    return run(asked, f"process:{command} {step!r}", tolerance=TOLERANCE, causes=False)
 
 
 # A constant moment, a start other than 0, a motion backwards in time; all else is in LOADED.
