@@ -69,7 +69,7 @@ def fixed_step(
 
 
 def step(rates: Callable[[Any, list[Any]], list[Any]], t: Any, y: list[Any], h: Any) -> list[Any]:
-    """One step of the classical Runge-Kutta method, in whatever numbers."""
+    """The classical Runge-Kutta method goes one step, in whatever numbers."""
 
     def moved(slope: list[Any], share: Any) -> list[Any]:
         return [a + share * s for a, s in zip(y, slope, strict=True)]

@@ -1,4 +1,4 @@
-"""What written loads conserve: found as a polynomial that is zero, and seen along independent motions."""
+"""Conserved quantities of written loads: a polynomial that is zero, and seen along independent motions."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_what_is_found_has_no_rate_along_the_equations_as_written(name: str) -> 
 
 
 def test_the_sensitivity_of_the_energy_is_its_derivative() -> None:
-    """By turns of the frame and by shifts of the centre, T + V changes as its gradients say."""
+    """T + V changes as its gradients say, by turns of the frame and by shifts of the centre."""
     scene, _ = FOUND["heavy"]
     (energy,) = (each for each in invariants(scene) if each.name == "T+V")
     with mp.workdps(40):

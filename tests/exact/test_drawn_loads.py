@@ -68,7 +68,7 @@ def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
     ("seed", "count"), [(1, 100), pytest.param(2, 2000, marks=pytest.mark.slow)]
 )
 def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
-    """At most a fiftieth of all of them is given up, each with its reason."""
+    """The enclosure gives up at most a fiftieth of all of them, each with its reason."""
     reasons = answers(seed, count)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
 

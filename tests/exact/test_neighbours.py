@@ -123,7 +123,7 @@ def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
 
 @pytest.mark.parametrize(("size", "is_close"), [("1e-12", True), ("1e-3", False)])
 def test_under_written_loads_a_derivative_leads_there(size: str, is_close: bool) -> None:
-    """What is off by little is led by the derivative to where its own arc comes; more is refused."""
+    """The derivative leads what is off by little to where its own arc comes; more is refused."""
     with mp.workdps(DIGITS + 20):
         states = beside(LOADED, Fraction(size))
         motion = asked(LOADED, states, 15)

@@ -196,7 +196,7 @@ def test_a_switch_and_an_instant_on_one_time_go_with_the_later_piece() -> None:
 
 
 def test_a_value_exactly_on_its_jump_is_that_of_the_number() -> None:
-    """At rest sign(w) is 0 and step(w) is 1."""
+    """sign(w) is 0 at rest, and step(w) is 1."""
     states = 'm = { every = 9, value = ["sign(w1)", "step(w1)", "1 if w1 > 0 else 2"] }'
     got = motion(about_axes(states, 'moment = ["m1", 0, 0]'), "1")
     assert list(got["m"][0]) == [0, 1, 2]
@@ -290,7 +290,7 @@ def test_satellites_are_where_another_integrator_leads(name: str) -> None:
 
 
 def test_arcs_begin_with_own_states_of_their_own() -> None:
-    """From the middle of a motion they lead to its end, with values held as they were there."""
+    """Arcs lead from the middle of a motion to its end, with values held as they were there."""
     for name in ("sampled", "wheel of a text"):
         scene = satellite(name)
         whole = solution(scene).motion([Fraction(3, 4), Fraction(1)], DIGITS)

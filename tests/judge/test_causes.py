@@ -207,7 +207,7 @@ def test_the_sentence_has_the_number() -> None:
 
 
 def test_the_entries_that_agree_are_said_together() -> None:
-    """Of a body that was fitted, an entry that changed is said, and how well the others agree."""
+    """The sentence on a fitted body has the entry that changed, and how well the others agree."""
     labels, right, fitted = ("M_11", "M_22", "M_33"), (1.0, 2.0, 4.0), (1.01, 2.0, 4.0 + 4e-9)
     words = "mass matrix: M_11 = 1.01 for 1 (+1 %), the other entries agree to 1e-09"
     assert with_numbers("mass matrix", labels, right, fitted) == words
@@ -346,7 +346,7 @@ def test_one_row_off_is_named(
 
 
 def test_an_early_clock_is_named(tmp_path: Path) -> None:
-    """One shift of time for all quantities is named, with its number."""
+    """The shift of time that all quantities share is named, with its number."""
     scene = load(FREE)
     columns = columns_at(scene, [t + Fraction(1, 100) for t in scene.clock.instants])
     columns["t"] = [float(t) for t in scene.clock.instants]

@@ -141,7 +141,7 @@ def test_matrices_that_are_no_rotations_are_said() -> None:
 
 
 def test_a_convention_explains_what_it_reads() -> None:
-    """Where omega is right in space axes and the attitude alone is wrong, no missing moment is said."""
+    """No missing moment is said where omega is right in space axes and the attitude alone is wrong."""
     judged = taylor_verify.check(
         str(CASES / "link.toml"), str(CASES / "openhrp3-120.csv"), tolerance=1e-6
     )

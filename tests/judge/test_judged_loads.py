@@ -188,7 +188,7 @@ def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path
 
 @pytest.mark.parametrize("twin", by_turns([*TWINS], of=2))
 def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
-    """What passes with the right load fails the state, and the work or the conserved energy."""
+    """A file that passes with the right load fails the state, and the work or the conserved energy."""
     scene, rates, named = TWINS[twin]
     scene = with_rows(scene)
     right = written(tmp_path / "right.csv", scene, by_steps(scene, of_text(scene)))
