@@ -21,7 +21,7 @@ from taylor_verify.exact.enclosure.operations import Bilinear
 from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
 from taylor_verify.exact.enclosure.tape import Graph, Sum
 from taylor_verify.numbers.irrational import PI
-from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.loads.steps import Step, needed
 
 _ONE: Final = Sum(Fraction(1))
 _HALF: Final = Fraction(1, 2)
@@ -36,11 +36,10 @@ class Lowering:
 
     def expressions(self, steps: Sequence[Step], places: Sequence[int]) -> list[Sum]:
         """The expressions of the steps at some places, and of no step that these do not need."""
-        needed = _reached(steps, places)
         made: dict[int, Sum] = {}
-        for place, step in enumerate(steps):
-            if place in needed:
-                made[place] = self._expression(step, [made[k] for k in step.operands])
+        for place in needed(steps, places):
+            step = steps[place]
+            made[place] = self._expression(step, [made[k] for k in step.operands])
         return [made[place] for place in places]
 
     def _expression(self, step: Step, operands: list[Sum]) -> Sum:
@@ -140,14 +139,3 @@ class Lowering:
         one = Fraction(1)
         divisor = graph.place(Bilinear(Fraction(0), ((one, x, x), (one, y, y))))
         return graph.node(Angle(y, x, divisor))
-
-
-def _reached(steps: Sequence[Step], places: Sequence[int]) -> set[int]:
-    """The places and all that these need."""
-    reached, waiting = set[int](), list(places)
-    while waiting:
-        place = waiting.pop()
-        if place not in reached:
-            reached.add(place)
-            waiting += steps[place].operands
-    return reached
