@@ -13,13 +13,14 @@ from typing import Self
 from flint import arb
 
 from taylor_verify.exact.enclosure.operations import ONE, ZERO, OfOne, Operation
+from taylor_verify.scenes.loads.steps import JUMPS
 
 
 class OnJump(ArithmeticError):
     """A box that may lie on both sides of a jump."""
 
 
-def is_positive(value: arb | Fraction) -> bool:
+def is_at_least_zero(value: arb | Fraction) -> bool:
     """True for a value that is not negative. Raises OnJump where that is not known."""
     if value >= 0:
         return True
@@ -36,11 +37,7 @@ class Jump(OfOne):
 
     def of(self, value: Fraction) -> Fraction:
         """The value at a rational number."""
-        if self.name == "floor":
-            return Fraction(value // 1)
-        if self.name == "step":
-            return Fraction(int(value >= 0))
-        return Fraction((value > 0) - (value < 0))
+        return JUMPS[self.name](value)
 
     def decided(self, value: arb) -> arb:
         """The one value over a ball. Raises OnJump where there are two."""
@@ -50,7 +47,7 @@ class Jump(OfOne):
                 raise OnJump
             return arb(whole)
         if self.name == "step":
-            return ONE if is_positive(value) else ZERO
+            return ONE if is_at_least_zero(value) else ZERO
         if value.is_zero():
             return ZERO
         if value > 0 or value < 0:
@@ -60,7 +57,7 @@ class Jump(OfOne):
 
 @dataclass(frozen=True)
 class Choice(Operation):
-    """The node ``first`` where ``condition`` is not negative, else ``second``."""
+    """The node ``first_choice`` where ``condition`` is not negative, else ``second_choice``."""
 
     condition: int
     first_choice: int
@@ -80,4 +77,4 @@ class Choice(Operation):
 
     def chosen(self, condition: arb | Fraction) -> int:
         """The node that is chosen over a condition. Raises OnJump for a ball over which both may be."""
-        return self.first_choice if is_positive(condition) else self.second_choice
+        return self.first_choice if is_at_least_zero(condition) else self.second_choice

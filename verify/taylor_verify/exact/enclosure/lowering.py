@@ -21,7 +21,7 @@ from taylor_verify.exact.enclosure.operations import Bilinear
 from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
 from taylor_verify.exact.enclosure.tape import Graph, Sum
 from taylor_verify.numbers.irrational import PI
-from taylor_verify.scenes.loads.steps import Step, needed
+from taylor_verify.scenes.loads.steps import JUMPS, Step, needed
 
 _ONE: Final = Sum(Fraction(1))
 _HALF: Final = Fraction(1, 2)
@@ -80,7 +80,7 @@ class Lowering:
             "max": lambda a, b: (a + b + self.absolute(a - b)).times(_HALF),
             "norm": lambda *parts: graph.node(Norm(tuple(map(graph.whole, parts)))),
             "choose": lambda *parts: graph.node(Choice(*map(graph.whole, parts))),
-            **{name: partial(self._jump, name) for name in ("sign", "step", "floor")},
+            **{name: partial(self._jump, name) for name in JUMPS},
         }
 
     def quotient(self, above: Sum, below: Sum) -> Sum:

@@ -15,7 +15,7 @@ from fractions import Fraction
 from operator import ge, gt, le, lt
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.scenes.loads.steps import FUNCTIONS, NoStep, Steps
+from taylor_verify.scenes.loads.steps import FUNCTIONS, JUMPS, NoStep, Steps
 
 MOST_CHARACTERS: Final = 4000
 MOST_DEPTH: Final = 100
@@ -29,14 +29,9 @@ _NOT_ALLOWED: Final = re.compile(r"[^\w \t.,+\-*/^()<>=]|[^\x00-\x7f]")
 _OPERATIONS: Final[dict[type[ast.operator], str]] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
 }  # fmt: skip
-_OTHERS: Final = {"atan2": 2, "pow": 2, "clip": 3, "step": 1, "sign": 1, "floor": 1}
+_OTHERS: Final = {"atan2": 2, "pow": 2, "clip": 3, **dict.fromkeys(JUMPS, 1)}
 _OF_SEVERAL: Final = ("min", "max", "norm")
 ALL_FUNCTIONS: Final = (*FUNCTIONS, *_OTHERS, *_OF_SEVERAL)
-_JUMPS: Final[dict[str, Callable[[Fraction], Fraction]]] = {
-    "step": lambda value: Fraction(int(value >= 0)),
-    "sign": lambda value: Fraction((value > 0) - (value < 0)),
-    "floor": lambda value: Fraction(value // 1),
-}
 _COMPARISONS: Final[dict[type[ast.cmpop], Callable[[Any, Any], bool]]] = {
     ast.Lt: lt, ast.LtE: le, ast.Gt: gt, ast.GtE: ge,
 }  # fmt: skip
@@ -219,7 +214,7 @@ class Grammar:
         """step, sign or floor: of a number, by the time alone, or else a step of its own."""
         value, line = self.steps.value(place), self.steps.line(place)
         if value is not None:
-            return self.steps.number(_JUMPS[name](value))
+            return self.steps.number(JUMPS[name](value))
         if line is None:
             return self._by_state(name, (place,))
         if name == "floor":

@@ -24,6 +24,12 @@ FUNCTIONS: Final[Mapping[str, int | None]] = {
     "sqrt": 0, "exp": 1, "log": None, "sin": 0, "cos": 1, "tan": 0, "asin": 0, "acos": None,
     "atan": 0, "sinh": 0, "cosh": 1, "tanh": 0, "abs": 0,
 }  # fmt: skip
+# Operations that jump with their one operand, at rational numbers.
+JUMPS: Final[Mapping[str, Callable[[Fraction], Fraction]]] = {
+    "step": lambda a: Fraction(int(a >= 0)),
+    "sign": lambda a: Fraction((a > 0) - (a < 0)),
+    "floor": lambda a: Fraction(a // 1),
+}
 _ARITHMETIC: Final[Mapping[str, Callable[[Fraction, Fraction], Fraction]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
