@@ -19,18 +19,11 @@ from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box
-from taylor_verify.exact.enclosure.functions import Angle
 from taylor_verify.exact.enclosure.jumps import Choice, Jump, OnJump
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm, sign_of
-from taylor_verify.exact.enclosure.operations import (
-    ONE,
-    ZERO,
-    Domain,
-    Factors,
-    Operation,
-    State,
-)
+from taylor_verify.exact.enclosure.operations import ONE, ZERO, Domain, Operation, State
 from taylor_verify.exact.enclosure.rationals import rational_values
+from taylor_verify.exact.enclosure.series import Nodes
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 
@@ -45,25 +38,8 @@ class Functions(NamedTuple):
     slopes: arb_mat
 
 
-class _Values:
-    """Balls of the nodes at one time, as operations ask for the order 0 of a series."""
-
-    length = ZERO
-
-    def __init__(self, tape: Tape, time: Fraction) -> None:
-        self.begin, self._factors = time, tape.factors()
-        self.forward: list[list[arb]] = []
-
-    def factors(self, i: int) -> Factors:
-        factors = self._factors[i]
-        assert factors is not None
-        return factors
-
-    def positive(self, a: int, function: str) -> arb:
-        value = self.forward[a][0]
-        if not value > 0:
-            raise Domain(f"the argument of {function} may not be positive")
-        return value
+class _Values(Nodes):
+    """Balls of the nodes at one time: the order 0 of a series alone."""
 
     def product(self, a: int, b: int, k: int) -> arb:
         return self.forward[a][k] * self.forward[b][k]
@@ -177,8 +153,6 @@ class Image:
         if not self._tape.moves[i]:
             return value, {}
         with ctx.workprec(BOUND_BITS):
-            if isinstance(operation, Angle):
-                self._require_one_side(operation)
             self._hull.forward.append([operation.first(i, self._hull)])
             bounds: Any = self
             rule = operation.differential(i, bounds)
@@ -200,11 +174,6 @@ class Image:
             return value
         # The partner of a pair, which comes next.
         return self._tape.operations[node].first(node, self._hull)
-
-    def _require_one_side(self, angle: Angle) -> None:
-        y, x = self._hull.forward[angle.y][0], self._hull.forward[angle.x][0]
-        if not (x > 0 or y > 0 or y < 0):
-            raise Domain("atan2 may be on its branch cut")
 
     # What differentials ask.
 

@@ -25,7 +25,28 @@ def convolved(forward: Sequence[arb], backward: Sequence[arb]) -> arb:
     return sum(map(mul, forward, backward), ZERO)
 
 
-class Series:
+class Nodes:
+    """The base class: coefficients of the nodes of a tape from a time on, as operations ask for them."""
+
+    def __init__(self, tape: Tape, begin: Fraction) -> None:
+        self.tape, self.begin = tape, begin
+        self.forward: list[list[arb]] = []
+        self._factors = tape.factors()
+
+    def factors(self, i: int) -> Factors:
+        factors = self._factors[i]
+        assert factors is not None
+        return factors
+
+    def positive(self, a: int, function: str) -> arb:
+        """The value of a node at the point. Raises Domain unless it is positive."""
+        value = self.forward[a][0]
+        if not value > 0:
+            raise Domain(f"the argument of {function} may not be positive")
+        return value
+
+
+class Series(Nodes):
     """The coefficients from an exact point at the time ``begin``, for a step of a length h.
 
     ``flat`` are kinks whose polynomial is 0 in this step; ``sign`` and ``valuation`` are what the others
@@ -41,14 +62,14 @@ class Series:
         order: int,
         flat: frozenset[int] = frozenset(),
     ) -> None:
-        self.tape, self.begin, self.step, self.order = tape, begin, step, order
+        super().__init__(tape, begin)
+        self.step, self.order = step, order
         self.length, self.flat, self.bits = ball(step), flat, ctx.prec
         self.sign: dict[int, int] = {}
         self.valuation: dict[int, int] = {}
         self.single: dict[int, int] = {}
-        self.forward: list[list[arb]] = [[] for _ in tape.operations]
+        self.forward = [[] for _ in tape.operations]
         self.backward: list[list[arb]] = [[] for _ in tape.operations]
-        self._factors = tape.factors()
         self._slopes: dict[int, list[arb]] = {}
         with ctx.workprec(ctx.prec):
             for component, place in enumerate(tape.states):
@@ -119,18 +140,6 @@ class Series:
         self.step, self.length = step, ball(step)
 
     # What operations ask.
-
-    def factors(self, i: int) -> Factors:
-        factors = self._factors[i]
-        assert factors is not None
-        return factors
-
-    def positive(self, a: int, function: str) -> arb:
-        """The value of a node at the point. Raises Domain unless it is positive."""
-        value = self.forward[a][0]
-        if not value > 0:
-            raise Domain(f"the argument of {function} may not be positive")
-        return value
 
     def product(self, a: int, b: int, k: int) -> arb:
         """The coefficient of order k of the product of two nodes, whose orders up to k are there."""
