@@ -17,9 +17,10 @@ from typing import Final, NamedTuple, final
 import numpy as np
 from flint import arb, arb_mat
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import balls, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
+from taylor_verify.exact.conditioning.path_times import golden_shares
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Image
@@ -27,7 +28,7 @@ from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
+from taylor_verify.exact.rotation import product, rotation_matrix, rotation_rows
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
 from taylor_verify.exact.taylor import Enclosing, Times
@@ -38,7 +39,6 @@ from taylor_verify.scenes.scene import Scene
 
 # As many times between the samples as this, which share no rhythm with them.
 _POINTS: Final = 400
-_GOLDEN: Final = Fraction(0.6180339887498949)
 # Up to this many samples the motion and its derivative come from one run.
 _MOST_SAMPLES: Final = 2000
 # Digits where the derivative alone is wanted.
@@ -59,15 +59,13 @@ def times_of_run(scene: Scene) -> list[Fraction]:
     Samples and instants are all there unless they are many.
     """
     elapsed, loads = scene.clock.elapsed, scene.body.loads
-    shares = ((k + k * _GOLDEN % 1) / _POINTS for k in range(_POINTS))
     taken = [] if loads is None else [i.time for i in loads.instants(elapsed[-1])]
     asked = (
         times if len(times) <= _MOST_SAMPLES else chosen(times, _POINTS)
         for times in (elapsed, taken)
     )
-    return sorted(
-        {Fraction(0), *chain(*asked), *(elapsed[-1] * share for share in shares)}, key=abs
-    )
+    between = (elapsed[-1] * share for share in golden_shares(_POINTS))
+    return sorted({Fraction(0), *chain(*asked), *between}, key=abs)
 
 
 def truth(scene: Scene, digits: int) -> Solution:
@@ -205,12 +203,8 @@ class _Run(Enclosing):
         d, has_centre = len(initial.moving), "centre" in track
         if not track or row.turn:
             return row
-        start, turned = rotation_matrix(initial.attitude), rotation_rows(row.state[d : d + 4])
-        turn = [
-            sum((ball(start[i][k]) * turned[k][j] for k in range(3)), arb(0))
-            for i in range(3)
-            for j in range(3)
-        ]
+        start = arb_mat([*map(balls, rotation_matrix(initial.attitude))])
+        turn = (start * arb_mat(rotation_rows(row.state[d : d + 4]))).entries()
         centre = row.state[d + 4 : d + 7] if has_centre else None
         # The centre is the block behind the turn.
         largest = (*row.largest[:-1], row.largest[d // 3 + 1])
@@ -307,5 +301,4 @@ def _unit(rows: Floats) -> Fraction:
 
 def _right(e: Floats) -> Floats:
     """Return the matrix of the product with e on the right: p e = right(e) p."""
-    a, b, c, d = e
-    return np.array([[a, -b, -c, -d], [b, a, d, -c], [c, -d, a, b], [d, c, -b, a]])
+    return np.array([product(unit, e.tolist()) for unit in np.eye(4).tolist()]).T

@@ -27,13 +27,13 @@ def few(elapsed: Sequence[Fraction]) -> list[Fraction]:
     """
     samples = [Fraction(0), *chosen(elapsed, _FEW)]
     parts = max(_BETWEEN, _FEW - len(elapsed))
-    between = [elapsed[-1] * share for share in _golden_shares(parts)]
+    between = [elapsed[-1] * share for share in golden_shares(parts)]
     first = next((t for t in samples if t), Fraction(0))
     return sorted({*samples, *between, first * _GOLDEN**2, first * _GOLDEN}, key=abs)
 
 
 @lru_cache(maxsize=8)
-def _golden_shares(parts: int) -> tuple[Fraction, ...]:
+def golden_shares(parts: int) -> tuple[Fraction, ...]:
     """Return a number in each of so many equal parts between 0 and 1."""
     return tuple((k + k * _GOLDEN % 1) / parts for k in range(parts))
 
