@@ -56,12 +56,14 @@ class Scene:
     @property
     def known_groups(self) -> Mapping[str, Group]:
         """All columns that a file may have, by their group; all states of the scene's own among them."""
-        loads = self.body.loads
-        states = () if loads is None else loads.states
-        return {**GROUPS, **{s.name: own_state(s.name, s.components)[1] for s in states}}
+        return {**GROUPS, **{group.name: group for _, group in self._every_own}}
 
     @property
     def _own(self) -> list[tuple[Quantity, Group]]:
+        return [each for each in self._every_own if each[1].name in self.states]
+
+    @property
+    def _every_own(self) -> list[tuple[Quantity, Group]]:
+        """All states of the scene's own, whether it tracks them or not."""
         loads = self.body.loads
-        states = () if loads is None else loads.states
-        return [own_state(s.name, s.components) for s in states if s.name in self.states]
+        return [own_state(s.name, s.components) for s in (loads.states if loads else ())]
