@@ -84,7 +84,7 @@ def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, .
     unit = "degrees" if degrees else "radians"
     text = ", ".join(map(float_text, angles))
     remarks = [
-        f"The tensor was turned by {name} = ({text}) {unit}: their quaternion is formed with 400 bits, "
+        f"The tensor was turned by {name} = ({text}) {unit}: their quaternion is formed with {_BITS} bits, "
         f"its largest component made 1, and rounded to {DECIMALS} decimals (quarter turns in degrees are "
         "exact). The turn by it is exact, so that the principal moments are those of the file."
     ]
