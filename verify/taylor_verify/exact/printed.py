@@ -127,10 +127,8 @@ def _printed(values: Array, errors: Array, digits: int, peak: mpf | None = None)
         entries = list(zip(sizes, errors.flat, counts, strict=True))
         hidden = _norm([size + error for size, error, n in entries if not n])
         rounding = [size * mpf(10) ** (1 - n) / 2 + error for size, error, n in entries if n]
-        least = _norm([size - error for size, error, n in entries if n])
-        radius = _norm([*rounding, hidden]) / least if least else mpf(0)
-        if peak:
-            radius = _norm([*rounding, hidden]) / peak
+        scale = peak or _norm([size - error for size, error, n in entries if n])
+        radius = _norm([*rounding, hidden]) / scale if scale else mpf(0)
         text = np.array(texts, dtype=object).reshape(values.shape).tolist()
         return _Printed(text, radius, hidden)
 

@@ -92,10 +92,10 @@ class Stepper:
         not be crossed, and Domain where a function has no value.
         """
         piece = self.system.pieces(now, left > 0)
-        tape, end, _ = piece
-        if end is not None and abs(end - now) < abs(left):
-            left = end - now
-        series, frame = self._fitted(tape, box, now, guess, left, self._enough(reach, guess, left))
+        if piece.end is not None and abs(piece.end - now) < abs(left):
+            left = piece.end - now
+        order = self._enough(reach, guess, left)
+        series, frame = self._fitted(piece.tape, box, now, guess, left, order)
         for _ in range(_HALVINGS):
             with ctx.workprec(BOUND_BITS):
                 bounds = Bounds(series)
@@ -126,10 +126,8 @@ class Stepper:
     def _reach(self, series: Series) -> float | None:
         """log2 of the radius of convergence; None where the series has ended."""
         factor = self._root_test_of(series.rows)
-        return None if factor == float("inf") else self._radius(series, factor)
-
-    @staticmethod
-    def _radius(series: Series, factor: float) -> float:
+        if factor == float("inf"):
+            return None
         return factor + ctx.prec / series.order + _log2(series.step)
 
     def _excess(self, series: Series, around: Tube) -> float:

@@ -105,7 +105,7 @@ class Walk:
         self._guess = self._usual = self._last
         self._reach: float | None = None
         self._flat = 0
-        self._largest = self._sizes(self._box)
+        self._largest = self._sizes()
         self._peaks = dict.fromkeys(self._system.own, arb(0))
         self._since = _Since(self._system.size) if course.differentiates else None
         self._instants = self._coming()
@@ -126,9 +126,12 @@ class Walk:
             instants = system.instants(origin + self._last)
         except ValueError as fault:
             raise Unreached(str(fault), self._pending[-1]) from None
-        first = Fraction(0) if not self._course.has_values else None
-        left = [i for i in instants if i.time > origin or i.time - origin == first]
-        return [i._replace(time=i.time - origin) for i in reversed(left)]
+        takes_first = not self._course.has_values
+        return [
+            instant._replace(time=instant.time - origin)
+            for instant in reversed(instants)
+            if instant.time > origin or (takes_first and instant.time == origin)
+        ]
 
     def first_row(self) -> Row:
         """The start itself, after the values that are taken there."""
@@ -285,10 +288,10 @@ class Walk:
 
     # Sizes.
 
-    def _sizes(self, box: Box) -> tuple[float, ...]:
+    def _sizes(self) -> tuple[float, ...]:
         """log2 of the size of each block, and of the centre."""
         centre = [] if self._place is None or self._place.centre is None else self._place.centre
-        sizes = [size_of(box.point, span) for span in self._system.spans]
+        sizes = [size_of(self._box.point, span) for span in self._system.spans]
         return (*sizes, size_of(centre, range(len(centre))))
 
     def _terms(self, step: Step) -> tuple[float, ...]:
@@ -298,7 +301,7 @@ class Walk:
         return (*(size_of(added, span) for span in self._system.spans), float("-inf"))
 
     def _grow(self) -> None:
-        self._largest = _larger(self._largest, self._sizes(self._box))
+        self._largest = _larger(self._largest, self._sizes())
         self._raise_peaks(self._box.balls())
 
     def _raise_peaks(self, state: Sequence[arb]) -> None:

@@ -34,8 +34,6 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
-_UNIT: Final = tensors.diagonal((Fraction(1),) * 3)
-
 
 class TopRegime(StrEnum):
     """The kind of motion of a body whose weight hangs on its axis."""
@@ -161,7 +159,9 @@ def _weight(loads: Loads) -> tuple[Vector, Vector]:
 def _of_revolution(inertia: Matrix, omega: Vector, w: Vector, x: Vector) -> tuple[Clebsch, Axes]:
     """Return the six coefficients of a top or a pendulum, and axes about w; else raises NoClosedForm."""
     K = tensors.inverse(inertia)
-    symmetric = clebsch_about(ImmersedBody(linear=_UNIT, coupling=ZERO_MATRIX, angular=K))
+    symmetric = clebsch_about(
+        ImmersedBody(linear=tensors.identity(3), coupling=ZERO_MATRIX, angular=K)
+    )
     if symmetric is not None:
         six, axes = symmetric
         if six.r == six.r_prime:
