@@ -51,9 +51,8 @@ track = ["attitude", {track}]
 [body]
 inertia = [1.2, 0.9, 1.6]
 {body}
-[define]
-u1 = "0"
-{tables}
+[states]
+{states}
 [initial]
 omega = [0.3, -0.5, 0.4]
 attitude = [0.5, 0.6, -0.4, 0.45]
@@ -87,19 +86,21 @@ SATELLITES = {
 }
 
 
+def named(states: str) -> str:
+    """The names of states, one a line, as an array has them."""
+    return ", ".join(f'"{line.split(" ")[0]}"' for line in states.splitlines())
+
+
 def about_axes(states: str, body: str, omega: str = "[0, 0, 0]", end: str = "4") -> Scene:
     """A ball with omega for its momentum, whose states are all tracked."""
-    names = ", ".join(f'"{line.split(" ")[0]}"' for line in states.splitlines())
-    text = ABOUT_AXES.format(track=names, states=states, body=body, omega=omega, end=end)
+    text = ABOUT_AXES.format(track=named(states), states=states, body=body, omega=omega, end=end)
     return read(text, "about-axes")
 
 
 def satellite(name: str, end: str = "1") -> Scene:
     body, states = SATELLITES[name]
-    names = ", ".join(f'"{line.split(" ")[0]}"' for line in states.splitlines())
-    tables = f"[states]\n{states}"
-    text = SATELLITE.format(track=names, body=body, tables=tables, end=end)
-    return read(text.replace('[define]\nu1 = "0"\n', ""), "satellite")
+    text = SATELLITE.format(track=named(states), states=states, body=body, end=end)
+    return read(text, "satellite")
 
 
 def motion(scene: Scene, *times: str, digits: int = DIGITS) -> Motion:
