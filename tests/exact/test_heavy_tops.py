@@ -21,7 +21,6 @@ from taylor_verify.solvers.taylor.driver import Taylor
 
 DIGITS = 25
 TIMES = ("1/3", "2", "-3/2")
-OBLIQUE = "[[5, 1, -1], [1, 5, -1], [-1, -1, 5]]"
 
 
 def heavy(
@@ -37,67 +36,45 @@ def heavy(
     )
 
 
-# The word of each motion beside it.
-TOPS: dict[str, tuple[str, Scene]] = {
-    "axis 3": ("nutating-top", heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 3]")),
-    "axis 1, oblate": ("nutating-top", heavy("[3, 2, 2]", "[0.4, 0, 0]", "[-2, 0.5, 0.1]")),
-    "below the point": ("nutating-top", heavy("[2, 2, 1]", "[0, 0, -0.5]", "[0.4, -0.3, 1]")),
-    "an oblique axis": ("nutating-top", heavy(OBLIQUE, "[0.2, 0.2, -0.2]", "[0.5, 1, -0.6]")),
-    "no spin": ("nutating-top", heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 0]")),
-    "a sphere": ("nutating-top", heavy("[2, 2, 2]", "[0.1, -0.3, 0.2]", "[0.4, -0.3, 1]")),
-    "buoyancy too": (
-        "nutating-top",
-        heavy(
-            "[2, 2, 1]",
-            "",
-            "[0.4, -0.3, 2]",
-            weight="weight = { force = [1, 2, -2], at = [0, 0, 0.5] }\n"
-            "buoyancy = { force = [-0.5, -1, 1], at = [0, 0, 0.2] }",
-        ),
+# Lagrange's top and a pendulum: moments of inertia, and the point at which the weight hangs.
+ERECT = ("[2, 2, 1]", "[0, 0, 0.5]")
+PENDULUM = ("[3, 2, 1]", "[0, 0, -0.5]")
+BELOW = ("[2, 2, 1]", "[0, 0, -0.5]")
+OBLIQUE = ("[[5, 1, -1], [1, 5, -1], [-1, -1, 5]]", "[0.2, 0.2, -0.2]")
+UPRIGHT, TILTED = "[1, 0, 0, 0]", "[1, 0.3, 0, 0]"
+NUTATING = {
+    "axis 3": heavy(*ERECT, "[0.4, -0.3, 3]"),
+    "axis 1, oblate": heavy("[3, 2, 2]", "[0.4, 0, 0]", "[-2, 0.5, 0.1]"),
+    "below the point": heavy(*BELOW, "[0.4, -0.3, 1]"),
+    "an oblique axis": heavy(*OBLIQUE, "[0.5, 1, -0.6]"),
+    "no spin": heavy(*ERECT, "[0.4, -0.3, 0]"),
+    "a sphere": heavy("[2, 2, 2]", "[0.1, -0.3, 0.2]", "[0.4, -0.3, 1]"),
+    "buoyancy too": heavy(
+        "[2, 2, 1]",
+        "",
+        "[0.4, -0.3, 2]",
+        weight="weight = { force = [1, 2, -2], at = [0, 0, 0.5] }\n"
+        "buoyancy = { force = [-0.5, -1, 1], at = [0, 0, 0.2] }",
     ),
-    "a wheel": (
-        "nutating-top",
-        heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]", body="rotor = [0, 0, 2]"),
-    ),
-    "a wheel on an oblique axis": (
-        "nutating-top",
-        heavy(OBLIQUE, "[0.2, 0.2, -0.2]", "[0.5, 1, -0.6]", body="rotor = [-1, -1, 1]"),
-    ),
-    "from rest": ("nutating-top", heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0, 0, 0]")),
-    "through the vertical": (
-        "nutating-top",
-        heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 2]", "[1, 0, 0, 0]"),
-    ),
-    "a pendulum that swings": (
-        "nutating-top",
-        heavy("[3, 2, 1]", "[0, 0, -0.5]", "[0.4, 0, 0]", "[1, 0.3, 0, 0]"),
-    ),
-    "a pendulum that goes round": (
-        "nutating-top",
-        heavy("[3, 2, 1]", "[0, 0, -0.5]", "[3, 0, 0]", "[1, 0.3, 0, 0]"),
-    ),
-    "a pendulum from rest": (
-        "nutating-top",
-        heavy("[3, 2, 1]", "[0, 0.1, -0.5]", "[0, 0, 0]", "[1, 0.3, 0, 0]"),
-    ),
-    "a steady precession": (
-        # With the axis level g turns at the rate W of H: I3 w3 W = m g l.
-        "steady-top",
-        heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0, 0.5, 2]", "[1, 1, 0, 0]"),
-    ),
-    "hanging": ("sleeping-top", heavy("[2, 2, 1]", "[0, 0, -0.5]", "[0, 0, 1]", "[1, 0, 0, 0]")),
-    "sleeping": ("sleeping-top", heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0, 0, 3]", "[1, 0, 0, 0]")),
-    "falling": (
-        # T and y3 of the vertical spin, from a tilt of cosine 3/5.
-        "falling-top",
-        heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.6, 0.2, 2.4]", "[2, 0, -1, 0]"),
-    ),
-    "about to fall": (
-        "unstable-top",
-        heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0, 0, 2]", "[1, 0, 0, 0]"),
-    ),
+    "a wheel": heavy(*ERECT, "[0.4, -0.3, 1]", body="rotor = [0, 0, 2]"),
+    "a wheel on an oblique axis": heavy(*OBLIQUE, "[0.5, 1, -0.6]", body="rotor = [-1, -1, 1]"),
+    "from rest": heavy(*ERECT, "[0, 0, 0]"),
+    "through the vertical": heavy(*ERECT, "[0.4, -0.3, 2]", UPRIGHT),
+    "a pendulum that swings": heavy(*PENDULUM, "[0.4, 0, 0]", TILTED),
+    "a pendulum that goes round": heavy(*PENDULUM, "[3, 0, 0]", TILTED),
+    "a pendulum from rest": heavy("[3, 2, 1]", "[0, 0.1, -0.5]", "[0, 0, 0]", TILTED),
 }
-IN_BALLS_ALONE = {name for name, (word, _) in TOPS.items() if word != "nutating-top"}
+# Motions with closed forms in balls alone, the word of each beside it.
+OTHERS = {
+    # With the axis level g turns at the rate W of H: I3 w3 W = m g l.
+    "a steady precession": ("steady-top", heavy(*ERECT, "[0, 0.5, 2]", "[1, 1, 0, 0]")),
+    "hanging": ("sleeping-top", heavy(*BELOW, "[0, 0, 1]", UPRIGHT)),
+    "sleeping": ("sleeping-top", heavy(*ERECT, "[0, 0, 3]", UPRIGHT)),
+    # T and y3 of the vertical spin, from a tilt of cosine 3/5.
+    "falling": ("falling-top", heavy(*ERECT, "[0.6, 0.2, 2.4]", "[2, 0, -1, 0]")),
+    "about to fall": ("unstable-top", heavy(*ERECT, "[0, 0, 2]", UPRIGHT)),
+}
+TOPS = {name: ("nutating-top", scene) for name, scene in NUTATING.items()} | OTHERS
 by_top = pytest.mark.parametrize("name", TOPS)
 
 
@@ -141,7 +118,7 @@ def test_the_closed_form_lies_inside_the_enclosure(name: str) -> None:
 def test_both_closed_forms_agree(name: str) -> None:
     """Jacobi's functions in mpmath give what Weierstrass's in balls do, or say which routes there are."""
     _, scene = TOPS[name]
-    if name in IN_BALLS_ALONE:
+    if name in OTHERS:
         with pytest.raises(NoClosedForm, match="its routes are arb and taylor"):
             solution(scene, "mpmath")
     else:
@@ -179,26 +156,20 @@ def test_drawn_tops_agree_by_all_three_routes(seed: int) -> None:
 @pytest.mark.parametrize("spin", [Fraction(k, 4) for k in (8, 10, 11, 12, 13, 16)])
 def test_a_top_sleeps_where_the_textbook_says(spin: Fraction) -> None:
     """The spin on the vertical is stable exactly for (I3 w3)^2 >= 4 I1 m g l, here w3^2 >= 8."""
-    scene = heavy("[2, 2, 1]", "[0, 0, 0.5]", f'[0, 0, "{spin}"]', "[1, 0, 0, 0]")
+    scene = heavy(*ERECT, f'[0, 0, "{spin}"]', UPRIGHT)
     assert solution(scene).regime == ("sleeping-top" if spin**2 >= 8 else "unstable-top")
 
 
 NO_TOPS = {
     "no body of revolution": heavy("[3, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]"),
     "its weight beside the axis": heavy("[2, 2, 1]", "[0.1, 0, 0.5]", "[0.4, -0.3, 1]"),
-    "a wheel beside the axis": heavy(
-        "[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]", body="rotor = [0.1, 0, 0]"
-    ),
+    "a wheel beside the axis": heavy(*ERECT, "[0.4, -0.3, 1]", body="rotor = [0.1, 0, 0]"),
     "a text beside the weight": heavy(
-        "[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]", body='moment = ["0.1*sin(t)", 0, 0]'
+        *ERECT, "[0.4, -0.3, 1]", body='moment = ["0.1*sin(t)", 0, 0]'
     ),
-    "a constant moment too": heavy(
-        "[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]", body="moment = [0, 0, 0.1]"
-    ),
-    "a pendulum on its way to the top": heavy(
-        "[4, 3, 2]", "[0, 0, -0.5]", "[1, 0, 0]", "[1, 0, 0, 0]"
-    ),
-    "damping too": heavy("[2, 2, 1]", "[0, 0, 0.5]", "[0.4, -0.3, 1]", body="damping = 0.1"),
+    "a constant moment too": heavy(*ERECT, "[0.4, -0.3, 1]", body="moment = [0, 0, 0.1]"),
+    "a pendulum on its way to the top": heavy("[4, 3, 2]", "[0, 0, -0.5]", "[1, 0, 0]", UPRIGHT),
+    "damping too": heavy(*ERECT, "[0.4, -0.3, 1]", body="damping = 0.1"),
     "two directions": heavy(
         "[2, 2, 1]",
         "",
