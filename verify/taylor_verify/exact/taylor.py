@@ -213,12 +213,19 @@ class Enclosing(Solution):
         track = self.scene.track
         frame = ["attitude"] * bool(track) + ["centre"] * ("centre" in track)
         names = [*kind_of(self.scene.body).moving, *frame, *self._own]
-        stacked = {n: np.array([row.values[n] for row in rows], dtype=object) for n in names}
-        errors = {n: np.array([row.errors[n] for row in rows], dtype=object) for n in names}
-        radii = {n: np.array([row.radii[n] for row in rows], dtype=object) for n in names}
         widest = np.array([max(row.radii.values()) for row in rows], dtype=object)
-        peaks = {n: np.array([row.peaks[n] for row in rows], dtype=object) for n in self._own}
-        return Motion(stacked, widest, radii, errors, peaks)
+        return Motion(
+            _stacked([row.values for row in rows], names),
+            widest,
+            _stacked([row.radii for row in rows], names),
+            _stacked([row.errors for row in rows], names),
+            _stacked([row.peaks for row in rows], self._own),
+        )
+
+
+def _stacked(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> dict[str, Any]:
+    """The entries of rows by name, each as one array of objects."""
+    return {name: np.array([row[name] for row in rows], dtype=object) for name in names}
 
 
 @final

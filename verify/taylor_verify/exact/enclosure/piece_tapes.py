@@ -48,12 +48,16 @@ class PieceTapes:
     def _velocities(self) -> tuple[list[Sum], list[Sum]]:
         body = self._scene.body
         if self._wheels:
-            carried = [z - h for z, h in zip(self._z, self._wheels, strict=True)]
-            spin = formed(self._kind.state_matrix(body), carried)
+            spin = formed(self._kind.state_matrix(body), self._without_wheels)
             # Each is one node, which all uses of it share.
             return [self._shared(component) for component in spin], []
         equations = self._kind.equations(body)
         return formed(equations.spin, self._z), formed(equations.velocity, self._z)
+
+    @cached_property
+    def _without_wheels(self) -> list[Sum]:
+        """The momentum H - h of the body without its wheels."""
+        return [z - h for z, h in zip(self._z, self._wheels, strict=True)]
 
     def _shared(self, value: Sum) -> Sum:
         return Sum(terms={self._graph.whole(value): _ONE}) if value.terms else value
@@ -75,8 +79,7 @@ class PieceTapes:
         """H' = H x omega + M, and what the body's own equations add that is linear in H - h."""
         product, H, w = self._graph.product, self._z, self._spin
         equations = self._kind.momentum_equations(self._scene.body)
-        carried = [z - h for z, h in zip(H, self._wheels, strict=True)]
-        rest = formed(equations.linear, carried)
+        rest = formed(equations.linear, self._without_wheels)
         return [
             product(H[j], w[k]) - product(H[k], w[j]) + loads[i] + rest[i] + Sum(constant)
             for (i, j, k), constant in zip(_CYCLES, equations.constant, strict=True)
