@@ -78,7 +78,7 @@ class Path:
     @cached_property
     def blocks(self) -> tuple[str, ...]:
         """The blocks of the state: of three components each, but for states of the scene's own."""
-        moved = self.scene.track | frame(self.scene)
+        moved = frame(self.scene)
         tracked = (name for name in ("attitude", "centre") if name in moved)
         return (*self.flow.momenta, *tracked, *self.carried.own)
 

@@ -46,11 +46,11 @@ DIGITS: Final = 15
 
 
 def frame(scene: Scene) -> frozenset[str]:
-    """Return attitude and centre as far as a written load depends on them."""
+    """Return attitude and centre as far as the scene tracks them or a written load depends on them."""
     loads = scene.body.loads
     if loads is None or not loads.reads_attitude:
-        return frozenset()
-    return frozenset(("attitude", "centre") if loads.reads_centre else ("attitude",))
+        return scene.track
+    return scene.track.union(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
 def times_of_run(scene: Scene) -> list[Fraction]:
@@ -176,7 +176,7 @@ class _Run(Enclosing):
     def _system(self) -> System:
         scene = self.scene
         assert scene.body.loads is not None
-        return LoadedBody(scene, scene.body.loads, scene.track | frame(scene)).system()
+        return LoadedBody(scene, scene.body.loads, frame(scene)).system()
 
     def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
         start = self._system.start_balls()
@@ -231,7 +231,7 @@ class _Frame:
 
     def __init__(self, scene: Scene, flow: Flow, own: Mapping[str, range], states: Floats) -> None:
         body, kind = scene.body, kind_of(scene.body)
-        moved = scene.track | frame(scene)
+        moved = frame(scene)
         self._turns, self._travels = bool(moved), "centre" in moved
         self._units = np.array([float(unit) for unit in flow.components])
         self._length = float(flow.length)

@@ -191,11 +191,7 @@ def _numbers(scene: Scene) -> list[Place]:
 
     _changed(scene, note)
     start = scene.initial
-    unasked = {part.name for part in start.PARTS} - {
-        *start.MOVING,
-        *scene.track,
-        *frame(scene),
-    }
+    unasked = {part.name for part in start.PARTS} - {*start.MOVING, *frame(scene)}
     asked = [place for place in places if place[0] not in unasked]
     # The attitude comes last.
     return sorted(asked, key=lambda place: place[0] == "attitude")
