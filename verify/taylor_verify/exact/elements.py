@@ -40,17 +40,13 @@ def elements(scene: Scene, digits: int = 15) -> Elements:
     exact.solution.Unsettled if the digits cannot be reached.
     """
     scene = as_written(scene)
-    if scene.body.loads is not None:
-        top: Elements = function_at("taylor_verify.exact.euler.heavy_elements:elements")(
-            scene, digits
-        )
-        return top
-    if scene.body.damping:
+    if scene.body.damping and scene.body.loads is None:
         return _damped(scene, digits)
+    module = f"{kind_of(scene.body).room}.elements"
+    if scene.body.loads is not None:
+        module = "taylor_verify.exact.euler.heavy_elements"
     try:
-        result: Elements = function_at(f"{kind_of(scene.body).room}.elements:elements")(
-            scene, digits
-        )
+        result: Elements = function_at(f"{module}:elements")(scene, digits)
     except Undecided as doubt:
         return Elements(NO_CLOSED_FORM, (), (f"The kind of motion is not decided: {doubt}.",))
     return result
