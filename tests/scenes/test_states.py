@@ -14,28 +14,25 @@ from taylor_verify.scenes.scene import Scene
 
 SCENE = """
 title = "States"
-model = "{model}"
+model = "euler"
 {top}
 [body]
 {body}
 {tables}
 [initial]
-{initial}
+omega = [1, 2, 3]
 [time]
 {time}
 """
 RIGID = "inertia = [1, 2, 3]"
-SOLID = "clebsch = { p = 1, p_prime = 2, q = 0, q_prime = 0, r = 1, r_prime = 2 }"
 
 
 def scene(tables: str = "", *, body: str = "", top: str = "", time: str = "") -> Scene:
     """A rigid body with these tables."""
     text = SCENE.format(
-        model="euler",
         top=top,
         body=body if "inertia" in body else f"{RIGID}\n{body}",
         tables=tables,
-        initial="omega = [1, 2, 3]",
         time=time or "end = 2\nsamples = 3",
     )
     return read(text, "states")

@@ -25,7 +25,6 @@ from taylor_verify.scenes.loads.vocabulary import (
     VECTORS,
     Entries,
     Entry,
-    names,
 )
 
 _NO_JUMP: Final = "a rotor that does not jump: no `step`, `sign`, `floor`, `if` or hold table"
@@ -234,5 +233,4 @@ __all__ = [
     "Hung",
     "Loads",
     "Piece",
-    "names",
 ]
