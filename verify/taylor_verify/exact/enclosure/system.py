@@ -1,8 +1,8 @@
 """The equations of a scene as tapes, one for each piece of time between two switches of its loads.
 
-The state is z = omega, or z = (x, y). The body's spin Omega = W z and, for a solid in a fluid, the
-velocity of its origin U = Y z are linear in z. All of it is exact; numbers become balls at the precision of
-a course.
+The state is z = omega, or z = (x, y), and what written loads add (`loaded`). The body's spin Omega = W z
+and, for a solid in a fluid, the velocity of its origin U = Y z are linear in z, but for a body with a rotor
+of texts. All of it is exact; numbers become balls at the precision of a course.
 """
 
 from __future__ import annotations

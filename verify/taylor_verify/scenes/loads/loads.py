@@ -49,8 +49,7 @@ class Loads:
 
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
     With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
-    follow from rounded numbers. The stairs
-    of floor are known as far as the time ``reach``.
+    follow from rounded numbers. The stairs of floor are known as far as the time ``reach``.
     """
 
     model: str

@@ -26,8 +26,8 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.measured import columns
 from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral, quantity
 
-HANGING: Final = ("weight", "buoyancy")
-NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_HANGING: Final = ("weight", "buoyancy")
+_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _WORD: Final = re.compile(r"[^\W\d_]+|[%°]")
 _UNITS: Final = frozenset(
     ("deg", "rad", "rpm", "rev", "s", "ms", "min", "h", "m", "mm", "cm", "km", "g", "kg", "N", "mN", "kN",
@@ -52,9 +52,17 @@ def _has_unit(text: str) -> bool:
     return parts is not None and set(_WORD.findall(parts[1])) <= _UNITS
 
 
-def hanging(table: Table) -> tuple[Hung, ...] | None:
+def is_name(table: Table, name: str) -> bool:
+    """Return True if a key of a table may be a name in texts; else the reason is a fault."""
+    if _NAME.fullmatch(name):
+        return True
+    table.fault("a name of letters, digits and _", f"`{name[:40]}`", name[:40])
+    return False
+
+
+def _hanging(table: Table) -> tuple[Hung, ...] | None:
     """Return the forces that are constant in space; None after a fault."""
-    return complete([_hung(table, name) for name in HANGING if table.has(name)])
+    return complete([_hung(table, name) for name in _HANGING if table.has(name)])
 
 
 def _hung(table: Table, name: str) -> Hung | None:
@@ -85,8 +93,7 @@ class Vocabulary:
             return ()
         pairs = [(name, read(table, name)) for name in table.left()]
         for name, _ in pairs:
-            if not NAME.fullmatch(name):
-                table.fault("a name of letters, digits and _", f"`{name[:40]}`", name[:40])
+            is_name(table, name)
         known = tuple((name, value) for name, value in pairs if value is not None)
         self.is_complete &= len(known) == len(pairs)
         return known
@@ -168,7 +175,7 @@ def rigid_loads(table: Table) -> Loads | None:
     """Return what acts on a rigid body, numbers and texts alike; None after a fault."""
     moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
     rotor = table.vector("rotor", default=ZERO_VECTOR, number=entry)
-    hung = hanging(table)
+    hung = _hanging(table)
     if moment is None or rotor is None or hung is None:
         return None
     return Loads("euler", (("moment", moment),), hung, rotor=rotor)
@@ -178,7 +185,7 @@ def immersed_loads(table: Table) -> Loads | None:
     """Return what acts on a solid in a fluid, numbers and texts alike; None after a fault."""
     force = table.vector("force", default=ZERO_VECTOR, number=entry)
     couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
-    hung = hanging(table)
+    hung = _hanging(table)
     current = table.vector("current", default=ZERO_VECTOR)
     if force is None or couple is None or hung is None or current is None:
         return None

@@ -10,7 +10,7 @@ from taylor_verify.records.faults import shown
 from taylor_verify.records.quantities import RESERVED
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 from taylor_verify.scenes.reading.hints import hints
-from taylor_verify.scenes.reading.loads import NAME, entry
+from taylor_verify.scenes.reading.loads import entry, is_name
 from taylor_verify.scenes.reading.table import Table, complete, exact_number
 
 MOST_COMPONENTS: Final = 100
@@ -24,9 +24,7 @@ def own_states(top: Table) -> tuple[frozenset[str], tuple[State, ...] | None]:
         return frozenset(), None
     names = table.left()
     for name in names:
-        if not NAME.fullmatch(name):
-            table.fault("a name of letters, digits and _", f"`{name[:40]}`", name[:40])
-        elif name in RESERVED:
+        if is_name(table, name) and name in RESERVED:
             table.fault("a name that is no quantity of the motion", f"`{name}`", name)
     return frozenset(names), complete([_state(table, name) for name in names])
 
