@@ -67,6 +67,24 @@ def test_they_may_have_other_names(theirs: tuple[str, str], tmp_path: Path) -> N
         read(file, (("m1", "missing"), ("m2", "v")), scene())
 
 
+@pytest.mark.parametrize("place", [0, 9])
+def test_a_column_that_is_asked_for_comes_before_one_of_our_name(
+    place: int, tmp_path: Path
+) -> None:
+    """Wherever the other one stands, it is ignored, as among the columns of a body."""
+    names = [*NAMES[:8], "u", "m2"]
+    names.insert(place, "m1")
+    groups = read(csv(tmp_path, tuple(names)), (("m1", "u"),), scene()).groups
+    expected = NUMBERS[:, [names.index("u"), names.index("m2")]]
+    np.testing.assert_array_equal(groups["m"].doubles(), expected)
+
+
+def test_a_name_that_is_asked_for_twice_is_a_fault(tmp_path: Path) -> None:
+    file = csv(tmp_path, (*NAMES[:8], "u", "v", "h"))
+    with pytest.raises(Refused, match="expected every name once, got m1 again"):
+        read(file, (("m1", "u"), ("m1", "v"), ("m2", "v")), scene())
+
+
 def test_a_part_of_a_vector_is_a_fault(tmp_path: Path) -> None:
     with pytest.raises(Refused, match="expected the columns m1 m2, got no m2"):
         read(csv(tmp_path, NAMES[:9]), (), scene())
