@@ -11,6 +11,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.registry import natural_units
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.registry import solver_named
@@ -124,6 +125,18 @@ def test_a_rotor_may_be_any_text_in_time_and_states() -> None:
         ]
         rows = in_space(problem, quantities, h)
         assert max(abs(a - b) for row in rows for a, b in zip(row, rows[0], strict=True)) < 1e-13
+
+
+def test_the_unit_of_time_is_the_same_in_every_unit_of_mass() -> None:
+    """Wheels a thousand times as heavy turn a body as fast that is a thousand times as heavy."""
+    units = []
+    for m in (1, 1024):
+        text = WHEELS.replace("[[1.2, 0.1, 0], [0.1, 0.9, 0], [0, 0, 1.6]]", f"[{m}, {m}, {m}]")
+        text = text.replace("[0.1, 0, -0.05]", f"[{8 * m}, 0, 0]").replace("END", "2")
+        text = text.replace("ROTOR", '["h1", 0, 0]').replace("RATE", "[0, 0, 0]")
+        units.append(natural_units(read(text, "wheels")))
+    assert units[0].time == units[1].time
+    assert units[1].momentum == 1024 * units[0].momentum
 
 
 @pytest.mark.parametrize("solver", SOLVERS[1:])

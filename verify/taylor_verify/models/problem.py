@@ -239,8 +239,8 @@ def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
             H = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
             numbers[f"H{i}"] = H
             moving.append(H * units.momentum - h)
-        inverse_inertia = tensors.inverse(data.body.energy_matrix)
-        initial = initial.with_moving(tensors.apply(inverse_inertia, tuple(moving)))
+        change = mechanics(data.body).change(data.body)
+        initial = initial.with_moving(change.moving(tuple(moving)))
     return replace(
         data,
         states=(*data.states, *names),
