@@ -14,11 +14,10 @@ import numpy as np
 from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.functions import FLOATS, functions_of
-from taylor_verify.models.written import needed
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
-from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.loads.steps import Step, needed
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, Any]

@@ -12,10 +12,11 @@ from typing import Any, Final
 from mpmath import mp
 
 from taylor_verify.models.functions import functions_of
-from taylor_verify.models.written import needed, value
+from taylor_verify.models.written import value
 from taylor_verify.numbers.precision import exact_value, held_exactly
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads, Piece
+from taylor_verify.scenes.loads.steps import needed
 
 _MORE_BITS: Final = 64
 

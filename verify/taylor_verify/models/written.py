@@ -30,7 +30,7 @@ from taylor_verify.models.symbol import Symbol
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
-from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.loads.steps import Step, needed
 
 # The letters of the loads and of the momenta, by the number of the loads.
 _LETTERS: Final = {3: ("M",), 6: ("X", "L")}
@@ -124,17 +124,6 @@ def _alone(n: Named, wheels: Sequence[Any]) -> dict[str, Any]:
     if not wheels:
         return {}
     return labelled("H", [minus(H, h) for H, h in zip(n.vector("H"), wheels, strict=True)])
-
-
-def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
-    """Return the places of the steps that those at some places are made of, in order."""
-    left, reached = list(places), set[int]()
-    while left:
-        place = left.pop()
-        if place not in reached:
-            reached.add(place)
-            left += steps[place].operands
-    return sorted(reached)
 
 
 class Inputs:

@@ -20,9 +20,9 @@ from taylor_verify.exact.rows import applied
 from taylor_verify.judge.errors.state import Errors, Floats, in_doubles, norms, or_one
 from taylor_verify.judge.floor.loads import Along
 from taylor_verify.models.evaluated import evaluated
-from taylor_verify.models.written import needed
 from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, ROTATION, Loads
 from taylor_verify.scenes.loads.states import Held
+from taylor_verify.scenes.loads.steps import needed
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import motion_of

@@ -9,7 +9,7 @@ from typing import Any, Final
 from flint import arb, ctx, fmpq
 
 from taylor_verify.numbers.precision import Rung, power_of_two
-from taylor_verify.scenes.loads.steps import NoStep, Step
+from taylor_verify.scenes.loads.steps import NoStep, Step, needed
 
 # A constant such as sqrt(2) is rounded to a rung from so many bits more than the rung has.
 _SPARE_BITS: Final = 64
@@ -27,24 +27,13 @@ def finished(
     """
     if rung is not None:
         steps = _on_rung(steps, rung)
-    needed = _needed(steps, outputs)
-    places = {old: new for new, old in enumerate(needed)}
+    order = needed(steps, outputs)
+    places = {old: new for new, old in enumerate(order)}
     left = [
         Step(s.operation, tuple(places[i] for i in s.operands), s.number, s.name)
-        for s in (steps[old] for old in needed)
+        for s in (steps[old] for old in order)
     ]
     return left, [places[output] for output in outputs]
-
-
-def _needed(steps: Sequence[Step], outputs: Sequence[int]) -> list[int]:
-    needed: set[int] = set()
-    waiting = list(outputs)
-    while waiting:
-        place = waiting.pop()
-        if place not in needed:
-            needed.add(place)
-            waiting += steps[place].operands
-    return sorted(needed)
 
 
 def _on_rung(steps: Sequence[Step], rung: Rung) -> list[Step]:

@@ -6,7 +6,7 @@ such as sqrt(2), stays a step.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -53,6 +53,17 @@ class Step:
     operands: tuple[int, ...] = ()
     number: Fraction | None = None
     name: str = ""
+
+
+def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
+    """Return the places of the steps that those at some places are made of, in order."""
+    left, reached = list(places), set[int]()
+    while left:
+        place = left.pop()
+        if place not in reached:
+            reached.add(place)
+            left += steps[place].operands
+    return sorted(reached)
 
 
 class Steps:
