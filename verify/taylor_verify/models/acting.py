@@ -58,7 +58,9 @@ class Acting:
     def taken(self, instant: Instant, state: Any, held: Any) -> Floats:
         """Return the held components after an instant, from those before it."""
         after = np.array(held, dtype=float)
-        values = self._at("values", float(instant.time), np.asarray(state, dtype=float), after)
+        # A value that is taken on a switch is that of the later piece.
+        time = _not_before(instant.time)
+        values = self._at("values", time, np.asarray(state, dtype=float), after)
         after[list(instant.places)] = values[list(instant.places)]
         return after
 
@@ -137,10 +139,10 @@ class Acting:
         return inputs
 
 
-def _not_before(switch: Fraction) -> float:
-    """Return the first double that is not before a switch."""
-    near = float(switch)
-    return near if Fraction(near) >= switch else nextafter(near, inf)
+def _not_before(time: Fraction) -> float:
+    """Return the first double that is not before a time."""
+    near = float(time)
+    return near if Fraction(near) >= time else nextafter(near, inf)
 
 
 class _Code(NamedTuple):
