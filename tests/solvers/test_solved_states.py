@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
+from taylor_verify.models import evaluated, own
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import natural_units
@@ -127,6 +128,15 @@ def test_a_rotor_may_be_any_text_in_time_and_states() -> None:
         assert max(abs(a - b) for row in rows for a, b in zip(row, rows[0], strict=True)) < 1e-13
 
 
+def test_the_momentum_of_wheels_is_known_before_numbers_are_rounded() -> None:
+    """Units are chosen by it, of numbers such as 1/20, which no rung has."""
+    loads = wheels('["h1/10", 0.05, 0]').scene.body.loads
+    assert loads is not None
+    turning = evaluated.wheels(loads, Fraction(0), own.starts(loads), 53)
+    for value, expected in zip(turning, (Fraction(1, 100), Fraction(1, 20), 0), strict=True):
+        assert abs(value - expected) < Fraction(1, 2**100)
+
+
 def test_the_unit_of_time_is_the_same_in_every_unit_of_mass() -> None:
     """Wheels a thousand times as heavy turn a body as fast that is a thousand times as heavy."""
     units = []
@@ -195,6 +205,16 @@ def test_taken_together_they_read_what_was_before() -> None:
     np.testing.assert_array_equal(after, [-0.75, 0.25, 7])
     after = problem.taken(4, [1, 0, 0], after)
     np.testing.assert_array_equal(after, [-0.5, 0.25, 8])
+
+
+@pytest.mark.parametrize("name", ["f64", "mp237"])
+def test_a_value_on_a_switch_is_that_behind_it(name: str) -> None:
+    """An instant that is no double is not taken for one before the switch."""
+    text = SAMPLED.replace('"1/4", value = "LAW"', '"1/3", value = "1 if t < 1/3 else 2"')
+    problem = pose(read(text, "sampled"), rung(name))
+    (switch,) = problem.switches
+    after = problem.taken(problem.instants.index(switch), [1.5, 0, 0], [0, 0, 0])
+    np.testing.assert_array_equal(after, [2, 0, 0])
 
 
 def by_hand(problem: Problem) -> np.ndarray[Any, Any]:
