@@ -1,6 +1,11 @@
 """A scene under all that an engine may be given: loads, damping, wheels, and states of its own."""
 
-ACTED = """
+from __future__ import annotations
+
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+
+_TEXT = """
 title = "A sampled controller and wheels of its own"
 model = "euler"
 track = ["attitude", "m", "h"]
@@ -17,6 +22,10 @@ omega = [0.25, -0.5, 0.375]
 attitude = [0.5, 0.5, -0.5, 0.5]
 [time]
 start = 1
-end = END
+end = 5
 samples = 9
 """
+
+
+def acted() -> Scene:
+    return read(_TEXT, "acted")

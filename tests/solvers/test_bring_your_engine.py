@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.acted import ACTED
+from builders.acted import acted
 from builders.worked import DOCS
 
 from taylor_verify.judge.judgement import Judgement
@@ -256,7 +256,7 @@ def test_a_template_evaluates_loads(command: str, end: int) -> None:
 
 def test_a_template_has_states_of_ones_own(command: str) -> None:
     """Wheels that a text drives, and a sampled controller, beside the engine and in its answer."""
-    problem = pose(read(ACTED.replace("END", "5"), "acted"), rung("f64"))
+    problem = pose(acted(), rung("f64"))
     answered = solver_named(f"process:{command} 0.02").solve(problem)
     exact = solver_named("taylor").solve(problem)
     assert answered.outcome is Outcome.FINISHED, answered.detail

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.acted import ACTED
+from builders.acted import acted
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose
@@ -223,7 +223,7 @@ def test_an_engine_is_given_loads_and_states(
 ) -> None:
     """Its state and the scene's own go on side by side, and its answer has the tracked ones."""
     engine = twin(tmp_path, 'data = "tensor"', monkeypatch, PUSHED)
-    asked = read(ACTED.replace("END", "5"), "acted")
+    asked = acted()
     answered = engine.solve(engine.problem(asked, rung("f64")))
     exact = solver_named("taylor").solve(pose(asked, rung("f64")))
     assert answered.outcome is Outcome.FINISHED, answered.detail

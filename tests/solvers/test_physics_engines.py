@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.acted import ACTED
+from builders.acted import acted
 from builders.oblique import oblique
 from builders.other_equations import WITHOUT_GYROSCOPIC_TERM, has_other_equations
 from builders.processes import PATIENCE
@@ -21,7 +21,7 @@ from taylor_verify.records.quantities import INITIAL, STATES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import SCRIPTS, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.process import protocol
@@ -105,7 +105,7 @@ def test_an_engine_is_given_loads_and_states(name: str, monkeypatch: pytest.Monk
         prepare(f"outside:{name}")
     except NotMade as reason:
         pytest.skip(str(reason))
-    asked, errors = read(ACTED.replace("END", "5"), "acted"), []
+    asked, errors = acted(), []
     for step in (STEP, STEP / 2):
         solver = solver_named(f"outside:{name}?step={step}")
         on = next(rung(on) for on in ("f64", "f32") if not solver.unavailable(rung(on)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Mapping
 from fractions import Fraction
 
@@ -268,6 +269,13 @@ def test_times_around_a_switch_that_is_no_double_are_each_on_their_side(part: in
     later = [Fraction(t) - Fraction(1, 4) >= Fraction(1, part) for t in near + 0.25]
     assert 0 < sum(later) < len(later)
     np.testing.assert_array_equal(moments[:, 0], later)
+
+
+def test_a_problem_that_was_asked_for_loads_can_be_pickled() -> None:
+    """The code of its loads stays behind, and is made again."""
+    problem, state = pose(SMOOTH["gradient"], rung("f64")), np.full(7, 0.5)
+    moment = problem.loads(1, state)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(problem)).loads(1, state), moment)
 
 
 def test_loads_ask_for_what_they_read() -> None:

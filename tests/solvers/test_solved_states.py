@@ -11,8 +11,10 @@ import pytest
 from builders.integrators import step
 from mpmath import mp, mpf
 
+from taylor_verify.models import evaluated, own
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
+from taylor_verify.models.registry import natural_units
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.solvers.registry import solver_named
@@ -128,6 +130,27 @@ def test_a_rotor_may_be_any_text_in_time_and_states() -> None:
         assert max(abs(a - b) for row in rows for a, b in zip(row, rows[0], strict=True)) < 1e-13
 
 
+def test_the_momentum_of_wheels_is_known_before_numbers_are_rounded() -> None:
+    """Units are chosen by it, of numbers such as 1/20, which no rung has."""
+    loads = wheels('["h1/10", 0.05, 0]').scene.body.loads
+    assert loads is not None
+    turning = evaluated.wheels(loads, Fraction(0), own.starts(loads), 53)
+    for value, expected in zip(turning, (Fraction(1, 100), Fraction(1, 20), 0), strict=True):
+        assert abs(value - expected) < Fraction(1, 2**100)
+
+
+def test_the_unit_of_time_is_the_same_in_every_unit_of_mass() -> None:
+    """Wheels a thousand times as heavy turn a body as fast that is a thousand times as heavy."""
+    units = []
+    for m in (1, 1024):
+        text = WHEELS.replace("[[1.2, 0.1, 0], [0.1, 0.9, 0], [0, 0, 1.6]]", f"[{m}, {m}, {m}]")
+        text = text.replace("[0.1, 0, -0.05]", f"[{8 * m}, 0, 0]").replace("END", "2")
+        text = text.replace("ROTOR", '["h1", 0, 0]').replace("RATE", "[0, 0, 0]")
+        units.append(natural_units(read(text, "wheels")))
+    assert units[0].time == units[1].time
+    assert units[1].momentum == 1024 * units[0].momentum
+
+
 @pytest.mark.parametrize("solver", SOLVERS[1:])
 def test_solvers_agree_on_wheels(solver: str) -> None:
     first, second = solved(wheels()), solved(wheels(), solver)
@@ -184,6 +207,16 @@ def test_taken_together_they_read_what_was_before() -> None:
     np.testing.assert_array_equal(after, [-0.75, 0.25, 7])
     after = problem.taken(4, [1, 0, 0], after)
     np.testing.assert_array_equal(after, [-0.5, 0.25, 8])
+
+
+@pytest.mark.parametrize("name", ["f64", "mp237"])
+def test_a_value_on_a_switch_is_that_behind_it(name: str) -> None:
+    """An instant that is no double is not taken for one before the switch."""
+    text = SAMPLED.replace('"1/4", value = "LAW"', '"1/3", value = "1 if t < 1/3 else 2"')
+    problem = pose(read(text, "sampled"), rung(name))
+    (switch,) = problem.switches
+    after = problem.taken(problem.instants.index(switch), [1.5, 0, 0], [0, 0, 0])
+    np.testing.assert_array_equal(after, [2, 0, 0])
 
 
 def by_hand(problem: Problem) -> np.ndarray[Any, Any]:

@@ -13,9 +13,9 @@ import numpy as np
 
 from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
-from taylor_verify.models.functions import FLOATS, Functions, functions_of
+from taylor_verify.models.functions import FLOATS, functions_of
 from taylor_verify.numbers.precision import exact_value
-from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import Step, needed
 from taylor_verify.scenes.scene import Scene
@@ -33,9 +33,14 @@ class Acting:
     """
 
     def __init__(self, scene: Scene, loads: Loads) -> None:
-        self._loads, self._start = loads, scene.clock.start
+        self._scene, self._loads, self._start = scene, loads, scene.clock.start
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
+        self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Code that was made here is made again there.
+        return Acting, (self._scene, self._loads)
 
     def loads(self, t: Any, state: Any, held: Any = None) -> Floats | tuple[Floats, Floats]:
         """Return the moment, or force and couple."""
@@ -53,7 +58,9 @@ class Acting:
     def taken(self, instant: Instant, state: Any, held: Any) -> Floats:
         """Return the held components after an instant, from those before it."""
         after = np.array(held, dtype=float)
-        values = self._at("values", float(instant.time), np.asarray(state, dtype=float), after)
+        # A value that is taken on a switch is that of the later piece.
+        time = _not_before(instant.time)
+        values = self._at("values", time, np.asarray(state, dtype=float), after)
         after[list(instant.places)] = values[list(instant.places)]
         return after
 
@@ -84,18 +91,24 @@ class Acting:
         columns = state.tolist() if is_one else list(state.T)
         first = elapsed if is_one else elapsed[0]
         piece = self._loads.piece(exact_value(first))
-        places: tuple[int, ...] = getattr(piece, which)
-        code = _compiled(piece.steps, places, is_one and not _chooses(piece.steps))
+        code = self._code(which, piece, is_one)
         inputs = self._inputs(elapsed, columns) | self._held(held, is_one)
         if missing := code.names - inputs.keys():
             raise ValueError(f"expected the held values {', '.join(sorted(missing))}, got none")
-        with np.errstate(all="ignore") if _chooses(piece.steps) else nullcontext():
+        with np.errstate(all="ignore") if code.chooses else nullcontext():
             values = code.function(**{name: inputs[name] for name in code.names})
         return (
             np.array(values, dtype=float)
             if is_one
             else np.array([v + 0 * elapsed for v in values]).T
         )
+
+    def _code(self, which: str, piece: Piece, is_one: bool) -> _Code:
+        # Steps take long to hash, as compiled code is looked up by them.
+        key = which, piece.begin, is_one
+        if key not in self._codes:
+            self._codes[key] = _compiled(piece.steps, getattr(piece, which), is_one)
+        return self._codes[key]
 
     def _held(self, held: Floats | None, is_one: bool) -> dict[str, Any]:
         if held is None:
@@ -126,33 +139,29 @@ class Acting:
         return inputs
 
 
-def _not_before(switch: Fraction) -> float:
-    """Return the first double that is not before a switch."""
-    near = float(switch)
-    return near if Fraction(near) >= switch else nextafter(near, inf)
-
-
-def _arrays() -> Functions:
-    return functions_of(np.empty(0))
+def _not_before(time: Fraction) -> float:
+    """Return the first double that is not before a time."""
+    near = float(time)
+    return near if Fraction(near) >= time else nextafter(near, inf)
 
 
 class _Code(NamedTuple):
-    """A function from inputs by name to values, and the names that it reads."""
+    """A function from inputs by name to values, and the names that it reads.
+
+    One that ``chooses`` has a step that takes one of two values, of which the other need not exist.
+    """
 
     function: Callable[..., list[Any]]
     names: frozenset[str]
+    chooses: bool
 
 
 @lru_cache(maxsize=256)
-def _chooses(steps: tuple[Step, ...]) -> bool:
-    """Return True if a step chooses between two, of which the other need not have a value."""
-    return any(step.operation == "choose" for step in steps)
-
-
-@lru_cache(maxsize=256)
-def _compiled(steps: tuple[Step, ...], outputs: tuple[int, ...], is_float: bool) -> _Code:
-    """Return the function from the inputs, by name, to the values at some places."""
-    known: dict[str, Any] = dict(FLOATS if is_float else _arrays())
+def _compiled(steps: tuple[Step, ...], outputs: tuple[int, ...], is_one: bool) -> _Code:
+    """Return the function from the inputs of one state, or of many, to the values at some places."""
+    chooses = any(step.operation == "choose" for step in steps)
+    # Floats would raise an error for the value that is not chosen.
+    known: dict[str, Any] = dict(FLOATS if is_one and not chooses else functions_of(np.empty(0)))
     names = set[str]()
     lines: list[str] = []
     for place in needed(steps, outputs):
@@ -176,4 +185,4 @@ def _compiled(steps: tuple[Step, ...], outputs: tuple[int, ...], is_float: bool)
     head = ["def loads(**inputs):", *(f" in_{name} = inputs['{name}']" for name in sorted(names))]
     # The text is made of the names of the scene and the grammar, of k0, e0, ... and of + - * / alone.
     exec("\n".join([*head, *lines, f" return [{results}]"]), known)
-    return _Code(known["loads"], frozenset(names))
+    return _Code(known["loads"], frozenset(names), chooses)

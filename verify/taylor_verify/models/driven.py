@@ -61,7 +61,7 @@ def _wheeled(units: Units, scene: Scene, loads: Loads) -> Units:
     h = wheels(loads, Fraction(0), own.starts(loads), 53)
     if not any(h):
         return units
-    rate = size(tensors.apply(scene.body.energy_matrix, h))
+    rate = size(tensors.apply(tensors.inverse(scene.body.energy_matrix), h))
     momentum = max(units.momentum, size(h))
     return replace(units, momentum=momentum, time=min(units.time, 1 / binary(rate)))
 

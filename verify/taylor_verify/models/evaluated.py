@@ -13,18 +13,19 @@ from mpmath import mp
 
 from taylor_verify.models.functions import functions_of
 from taylor_verify.models.written import value
-from taylor_verify.numbers.precision import exact_value, held_exactly
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.steps import needed
 
-_MORE_BITS: Final = 64
+# Beside the bits of a rung.
+MORE_BITS: Final = 64
 
 
 def wheels(loads: Loads, elapsed: Fraction, own: Vector, bits: int) -> Vector:
     """Return the momentum of wheels that a text writes, at a time and the scene's continuous states."""
-    with mp.workprec(bits + _MORE_BITS):
-        inputs = dict(zip(loads.continuous, map(_mpf, own), strict=True)) | {"t": _mpf(elapsed)}
+    with mp.workprec(bits + MORE_BITS):
+        inputs = dict(zip(("t", *loads.continuous), map(mp.convert, (elapsed, *own)), strict=True))
         piece = loads.piece(elapsed)
         return tuple(map(exact_value, evaluated(piece, piece.rotor, inputs)))
 
@@ -39,8 +40,7 @@ def evaluated(piece: Piece, places: Sequence[int], inputs: Mapping[str, Any]) ->
         step = piece.steps[place]
         try:
             if step.operation == "number":
-                assert step.number is not None
-                values[place] = held_exactly(step.number)
+                values[place] = mp.convert(step.number)
             elif step.operation == "choose":
                 condition, first, second = step.operands
                 values[place] = values[first if _real(values[condition]) >= 0 else second]
@@ -51,10 +51,6 @@ def evaluated(piece: Piece, places: Sequence[int], inputs: Mapping[str, Any]) ->
         except (ArithmeticError, ValueError) as error:
             values[place] = error
     return [_real(values[place]) for place in places]
-
-
-def _mpf(value: Fraction) -> Any:
-    return mp.mpf(value.numerator) / value.denominator
 
 
 def _real(value: Any) -> Any:

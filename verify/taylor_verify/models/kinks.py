@@ -12,7 +12,7 @@ from typing import Any
 
 from taylor_verify.models.form import Form, Named
 from taylor_verify.models.own import HELD
-from taylor_verify.models.written import Written
+from taylor_verify.models.written import Growing, Written
 from taylor_verify.scenes.loads.steps import Step
 
 
@@ -38,10 +38,8 @@ def smooth(form: Form) -> tuple[Form, tuple[Kink, ...]]:
     if not isinstance(equations, Written) or not any(map(_is_kinked, equations.steps)):
         return form, ()
     made = _Smoothing()
-    for step in equations.steps:
-        made.take(step)
+    turned = equations.anew(made, made.turned)
     names = tuple(name for kink in made.kinks for name in kink.names)
-    turned = equations.moved(made.steps, made.places)
     return replace(form, equations=turned, parameters=form.parameters + names), tuple(made.kinks)
 
 
@@ -68,33 +66,28 @@ def _is_kinked(step: Step) -> bool:
     return step.operation in ("abs", "min", "max")
 
 
-class _Smoothing:
-    """Steps that grow, with a choice in place of each kink."""
+class _Smoothing(Growing):
+    """Steps with a choice in place of each kink."""
 
     def __init__(self) -> None:
-        self.steps: list[Step] = []
-        self.places: list[int] = []
+        super().__init__()
         self.kinks: list[Kink] = []
 
-    def take(self, step: Step) -> None:
-        operands = tuple(self.places[k] for k in step.operands)
-        moved = replace(step, operands=operands)
-        self.places.append(self._chosen(moved) if _is_kinked(step) else self._add(moved))
+    def turned(self, step: Step) -> int:
+        """Return the place of what a step becomes."""
+        return self._chosen(step) if _is_kinked(step) else self.moved(step)
 
     def _chosen(self, step: Step) -> int:
         k = len(self.kinks) + 1
+        operands = tuple(self.places[place] for place in step.operands)
         names: tuple[str, ...] = (f"s{k}",)
-        difference = step.operands[0]
+        difference = operands[0]
         if step.operation != "abs":
             names = (f"s{k}", f"z{k}")
-            difference = self._add(Step("-", step.operands))
+            difference = self.add(Step("-", operands))
         self.kinks.append(Kink(difference, step.operation, names))
         parts = [
-            self._add(Step("*", (self._add(Step("number", name=name)), operand)))
-            for name, operand in zip(names, step.operands, strict=True)
+            self.add(Step("*", (self.add(Step("number", name=name)), operand)))
+            for name, operand in zip(names, operands, strict=True)
         ]
-        return parts[0] if len(parts) == 1 else self._add(Step("+", tuple(parts)))
-
-    def _add(self, step: Step) -> int:
-        self.steps.append(step)
-        return len(self.steps) - 1
+        return parts[0] if len(parts) == 1 else self.add(Step("+", tuple(parts)))

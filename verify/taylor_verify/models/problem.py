@@ -239,8 +239,8 @@ def _with_own(data: _Data, loads: Loads, units: Units, rung: Rung) -> _Data:
             H = Rounding(rung)(numbers[f"H{i}"] + h / units.momentum)
             numbers[f"H{i}"] = H
             moving.append(H * units.momentum - h)
-        inverse_inertia = tensors.inverse(data.body.energy_matrix)
-        initial = initial.with_moving(tensors.apply(inverse_inertia, tuple(moving)))
+        change = mechanics(data.body).change(data.body)
+        initial = initial.with_moving(change.moving(tuple(moving)))
     return replace(
         data,
         states=(*data.states, *names),
@@ -279,7 +279,7 @@ def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
     NotRepresentable if the rounded data are no valid body.
     """
     posed = pose(scene, rung)
-    body, initial = _stored(scene, Rounding(rung))
+    body, initial = _stored(scene, Rounding(rung), posed.given.body.loads)
     return replace(posed, given=replace(posed.given, body=body, initial=initial))
 
 
@@ -302,14 +302,13 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
     )
 
 
-def _stored(scene: Scene, rounded: Rounding) -> tuple[Body, State]:
-    """Return body and initial state, with each number of the scene rounded once."""
+def _stored(scene: Scene, rounded: Rounding, loads: Loads | None) -> tuple[Body, State]:
+    """Return body and initial state, with each number rounded once; those of the loads are already."""
     motion = scene.body.manufactured
     start = scene.initial.changed(rounded.part)
     if motion is not None:
         motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
         start = start.with_moving(motion.start)
-    loads = _rounded_loads(scene, rounded.rung)
     body = scene.body.changed(rounded.part).with_motion(motion).with_loads(loads)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from taylor_verify.models.form import Form
-from taylor_verify.models.written import Written
+from taylor_verify.models.written import Growing, Written
 from taylor_verify.scenes.loads.steps import Step
 
 # The operations "*" or "/", and the place of a number.
@@ -62,7 +62,7 @@ def unsquared(form: Form, zeros: Collection[int] = ()) -> Form:
     if not isinstance(equations, Written):
         return form
     made = _Unsquaring(equations.steps, frozenset(zeros))
-    return replace(form, equations=equations.moved(made.steps, made.places))
+    return replace(form, equations=equations.anew(made, made.turned))
 
 
 def _length(steps: Sequence[Step], step: Step) -> Length | None:
@@ -104,35 +104,30 @@ def _squared(
             yield None
 
 
-class _Unsquaring:
-    """Steps that grow, with |u| in place of each length of one part."""
+class _Unsquaring(Growing):
+    """Steps with |u| in place of each length of one part."""
 
     def __init__(self, steps: Sequence[Step], zeros: frozenset[int]) -> None:
-        self.steps: list[Step] = []
-        self.places: list[int] = []
-        for step in steps:
-            length = _length(steps, step)
-            parts = () if length is None else enumerate(length.parts)
-            left = [k for k, part in parts if part not in zeros]
-            if length is None or len(left) > 1 or length.power.denominator != 1:
-                operands = tuple(self.places[k] for k in step.operands)
-                self.places.append(self._add(replace(step, operands=operands)))
-            else:
-                self.places.append(self._absolute(length, left[0] if left else 0))
+        super().__init__()
+        self._before, self._zeros = steps, zeros
+
+    def turned(self, step: Step) -> int:
+        """Return the place of what a step becomes."""
+        length = _length(self._before, step)
+        if length is None or length.power.denominator != 1:
+            return self.moved(step)
+        left = [k for k, part in enumerate(length.parts) if part not in self._zeros]
+        return self.moved(step) if len(left) > 1 else self._absolute(length, left[0] if left else 0)
 
     def _absolute(self, length: Length, k: int) -> int:
         """The place of the length of one part u alone: of |u| and the roots of its factors."""
         place = self._powered(
-            self._add(Step("abs", (self.places[length.parts[k]],))), length.powers[k]
+            self.add(Step("abs", (self.places[length.parts[k]],))), length.powers[k]
         )
         for operation, factor in length.factors[k]:
-            root = self._add(Step("sqrt", (self.places[factor],)))
-            place = self._add(Step(operation, (place, root)))
+            root = self.add(Step("sqrt", (self.places[factor],)))
+            place = self.add(Step(operation, (place, root)))
         return self._powered(place, length.power)
 
     def _powered(self, place: int, exponent: Fraction | int) -> int:
-        return place if exponent == 1 else self._add(Step("power", (place,), Fraction(exponent)))
-
-    def _add(self, step: Step) -> int:
-        self.steps.append(step)
-        return len(self.steps) - 1
+        return place if exponent == 1 else self.add(Step("power", (place,), Fraction(exponent)))

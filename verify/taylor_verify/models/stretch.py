@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any
 
 from mpmath import mp
 
 from taylor_verify.models import own, written
-from taylor_verify.models.evaluated import evaluated
+from taylor_verify.models.evaluated import MORE_BITS, evaluated
 from taylor_verify.models.form import Named
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.written import Written
@@ -17,8 +17,6 @@ from taylor_verify.numbers.precision import exact_value, held_exactly
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.loads import CENTRE, Loads
 from taylor_verify.scenes.loads.states import Instant
-
-_MORE_BITS: Final = 64
 
 
 def holding(problem: Problem, held: Vector) -> Problem:
@@ -40,7 +38,7 @@ def taking(problem: Problem, instant: Instant, state: Vector) -> Vector:
     loads = problem.given.body.loads
     assert loads is not None
     piece, after = loads.piece(instant.time), list(problem.held)
-    with mp.workprec(problem.rung.bits + _MORE_BITS):
+    with mp.workprec(problem.rung.bits + MORE_BITS):
         inputs = _InScene(problem, loads, state, instant.time)
         values = evaluated(piece, [piece.values[k] for k in instant.places], inputs)
         for k, value in zip(instant.places, values, strict=True):

@@ -15,7 +15,7 @@ power of two.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -56,11 +56,13 @@ class Written:
     def __call__(self, n: Named) -> dict[str, Any]:
         return self._all_rates(n, self.values(n))
 
-    def moved(self, steps: Sequence[Step], places: Sequence[int]) -> Written:
-        """Return the same equations by other steps; ``places`` are where the present ones went."""
+    def anew(self, made: Growing, turned: Callable[[Step], int]) -> Written:
+        """Return the same equations by the steps in ``made``, where ``turned`` puts each present one."""
+        for place, step in enumerate(self.steps):
+            made.places[place] = turned(step)
         groups = (self.outputs, self.rates, self.rotor)
-        outputs, rates, rotor = (tuple(places[k] for k in group) for group in groups)
-        return replace(self, steps=tuple(steps), outputs=outputs, rates=rates, rotor=rotor)
+        outputs, rates, rotor = (tuple(made.places[k] for k in group) for group in groups)
+        return replace(self, steps=tuple(made.steps), outputs=outputs, rates=rates, rotor=rotor)
 
     def _all_rates(self, n: Named, values: Any) -> dict[str, Any]:
         """Return the rates of all states, by the values of the steps at their places."""
@@ -124,6 +126,23 @@ def _alone(n: Named, wheels: Sequence[Any]) -> dict[str, Any]:
     if not wheels:
         return {}
     return labelled("H", [minus(H, h) for H, h in zip(n.vector("H"), wheels, strict=True)])
+
+
+class Growing:
+    """Steps that grow in place of others; ``places`` are where those went."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self.places: dict[int, int] = {}
+
+    def add(self, step: Step) -> int:
+        """Return the place of one step more."""
+        self.steps.append(step)
+        return len(self.steps) - 1
+
+    def moved(self, step: Step) -> int:
+        """Return the place of a step that stays as it is, on the new places of its operands."""
+        return self.add(replace(step, operands=tuple(self.places[k] for k in step.operands)))
 
 
 class Inputs:
@@ -190,7 +209,6 @@ def counted(
     ``centre`` is where the body starts: the states have the way from there.
     """
     made = _Counting()
-    places: dict[int, int] = {}
     for k in needed(piece.steps, (*piece.outputs, *piece.rates, *piece.rotor)):
         step = piece.steps[k]
         if step.operation == "input":
@@ -204,12 +222,12 @@ def counted(
         elif step.operation == "number":
             place = made.number(step.number or Fraction(0))
         else:
-            place = made.add(replace(step, operands=tuple(places[k] for k in step.operands)))
-        places[k] = place
+            place = made.moved(step)
+        made.places[k] = place
 
     def outputs(group: Sequence[int], factors: Sequence[Fraction]) -> tuple[int, ...]:
         pairs = zip(group, factors, strict=True)
-        return tuple(made.scaled(places[place], factor) for place, factor in pairs)
+        return tuple(made.scaled(made.places[place], factor) for place, factor in pairs)
 
     momenta = (units.impulse,) * (len(piece.outputs) - 3) + (units.momentum,) * 3
     written = Written(
@@ -223,16 +241,12 @@ def counted(
     return replace(written, steps=tuple(made.steps)), made.numbers
 
 
-class _Counting:
-    """Steps that grow; every number becomes a parameter."""
+class _Counting(Growing):
+    """Steps of which every number becomes a parameter."""
 
     def __init__(self) -> None:
-        self.steps: list[Step] = []
+        super().__init__()
         self.numbers: dict[str, Fraction] = {}
-
-    def add(self, step: Step) -> int:
-        self.steps.append(step)
-        return len(self.steps) - 1
 
     def number(self, value: Fraction) -> int:
         name = f"g{len(self.numbers) + 1}"

@@ -27,11 +27,11 @@ def finished(
     """
     if rung is not None:
         steps = _on_rung(steps, rung)
-    kept = needed(steps, outputs)
-    places = {old: new for new, old in enumerate(kept)}
+    order = needed(steps, outputs)
+    places = {old: new for new, old in enumerate(order)}
     left = [
         Step(s.operation, tuple(places[i] for i in s.operands), s.number, s.name)
-        for s in (steps[old] for old in kept)
+        for s in (steps[old] for old in order)
     ]
     return left, [places[output] for output in outputs]
 

@@ -168,18 +168,29 @@ def _apart(
 ) -> tuple[list[Taken], list[Column], Request]:
     """Return the columns of states of the scene's own, the others, and what is asked of those."""
     names = {name for group in own.values() for name in group}
-    ours_of = {column.name: column.name for column in columns}
-    numbered = {str(k): column.name for k, column in enumerate(columns, start=1)}
-    for ours, theirs in wanted:
-        if ours not in names:
-            continue
-        if (written := theirs if theirs in ours_of else numbered.get(theirs)) is None:
-            faults.add(f"a column of the file for {ours}", f"`{cut(theirs)}`", place)
-        else:
-            ours_of[written] = ours
-    apart = [Taken(ours_of[c.name], c) for c in columns if ours_of[c.name] in names]
-    left = [column for column in columns if ours_of[column.name] not in names]
+    asked = _asked([pair for pair in wanted if pair[0] in names], columns, place, faults)
+    ours_of = {name: name for name in names - asked.keys()}
+    ours_of |= {theirs: ours for ours, theirs in asked.items()}
+    apart = [Taken(ours_of[column.name], column) for column in columns if column.name in ours_of]
+    left = [column for column in columns if column.name not in ours_of]
     return apart, left, tuple(pair for pair in wanted if pair[0] not in names)
+
+
+def _asked(
+    wanted: Request, columns: Sequence[Column], place: str, faults: Faults
+) -> dict[str, str]:
+    """Return the file's name, which may be asked for by its number, for each of ours."""
+    by_text = {str(k): column.name for k, column in enumerate(columns, start=1)}
+    by_text |= {column.name: column.name for column in columns}
+    asked: dict[str, str] = {}
+    for ours, theirs in wanted:
+        if theirs not in by_text:
+            faults.add(f"a column of the file for {ours}", f"`{cut(theirs)}`", place)
+        elif ours in asked:
+            faults.add("every name once", f"{ours} again", place)
+        else:
+            asked[ours] = by_text[theirs]
+    return asked
 
 
 def _whole(

@@ -135,7 +135,7 @@ class FixedStep(Solver):
         run = _Run(self)
         began = perf_counter()
         try:
-            rows = run.rows(problem, counts)
+            rows = run.rows(problem, spans, counts)
         except (Unsolved, Unreached) as error:
             return run.ended(Outcome.INTERRUPTED, began, str(error))
         except (ArithmeticError, ValueError):
@@ -162,8 +162,10 @@ class _Run:
             seconds=perf_counter() - began,
         )
 
-    def rows(self, problem: Problem, counts: Sequence[int]) -> list[list[float]]:
-        """Return H and, where it is tracked, q at the samples, so many steps after one another."""
+    def rows(
+        self, problem: Problem, spans: Sequence[Fraction], counts: Sequence[int]
+    ) -> list[list[float]]:
+        """Return H and, where it is tracked, q at the samples, so many steps in each span."""
         body = Body.of(problem)
         start = [float(value) for value in problem.initial_momenta]
         H: Vector = (start[0], start[1], start[2])
@@ -175,7 +177,6 @@ class _Run:
         rows = []
         kicks = None if problem.given.body.loads is None else Kicks(problem, body.K, axes)
         begin = float(problem.begin)
-        spans = _spans(problem.begin, problem.times)
         for span, count, end in zip(spans, counts, problem.times, strict=True):
             if count:
                 h = float(span / count)

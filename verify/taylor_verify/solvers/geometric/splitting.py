@@ -41,7 +41,8 @@ class Splitting(FixedStep):
     def unsuited(self, problem: Problem) -> str:
         loads = problem.given.body.loads
         if loads is not None and (loads.states or loads.rotor):
-            return f"{self.name} is made for bodies without states of the scene's own"
+            without = "states of the scene's own, and wheels that a text writes"
+            return f"{self.name} is made for bodies without {without}"
         return super().unsuited(problem)
 
     def stepping(self, body: Body, H: Vector, h: float) -> Step:

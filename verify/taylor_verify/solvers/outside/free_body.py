@@ -141,13 +141,13 @@ class FreeBody(Body):
 
     def begin(self) -> None:
         """Go back to the start with what acts."""
-        if self.push is not None:
-            self.push.begin()
+        assert self.push is not None
+        self.push.begin()
 
     def goes_on(self, steps: int, step: float) -> None:
         """Go on with what acts, after so many steps of the engine; its row was read."""
-        if self.push is not None:
-            self.push.acting.move_to(self.question.sign * steps * step)
+        assert self.push is not None
+        self.push.acting.move_to(self.question.sign * steps * step)
 
     def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
         """Return the engine; where anything acts, that goes on after each step."""
@@ -313,8 +313,16 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
 
 def pushed_once(body: FreeBody) -> str:
     """Return the remark of an engine that is pushed once a step; the body's own where nothing acts."""
-    push = "what acts is held over each step" if body.is_pushed else ""
-    return "; ".join(filter(None, (body.remark, push)))
+    return _pushed(body, "what acts is held over each step")
+
+
+def pushed_in_stages(body: FreeBody) -> str:
+    """Return the remark of an engine that is pushed in each stage; the body's own where nothing acts."""
+    return _pushed(body, "what acts is asked for in each stage of a step")
+
+
+def _pushed(body: FreeBody, how: str) -> str:
+    return "; ".join(filter(None, (body.remark, how if body.is_pushed else "")))
 
 
 def repeated(step: Callable[[], Any]) -> Callable[[int], None]:
@@ -325,6 +333,24 @@ def repeated(step: Callable[[], Any]) -> Callable[[int], None]:
             step()
 
     return advance
+
+
+def in_space(
+    body: FreeBody,
+    step: Callable[[], Any],
+    state: Callable[[], tuple[Vector, Quaternion]],
+    push: Callable[[Vector], Any],
+) -> Engine:
+    """Return an engine in space axes that makes one step at a time, under a torque that it holds.
+
+    ``state()`` is omega in space axes and the attitude, and ``push(moment)`` sets the torque of one step.
+    """
+
+    def pushed_step() -> None:
+        push(body.moment_in_space(*state()))
+        step()
+
+    return repeated(pushed_step if body.is_pushed else step), lambda: body.row_from_space(*state())
 
 
 # Axes.

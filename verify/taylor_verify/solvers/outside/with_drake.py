@@ -44,6 +44,7 @@ from free_body import (
     Solved,
     answer,
     pushed_body,
+    pushed_in_stages,
     pushed_once,
     stepped,
     to_body,
@@ -97,8 +98,8 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, row
 
-    in_stages = "what acts is asked for in each stage of a step" if body.is_pushed else ""
-    return stepped(body, settings.step, start, pushed_once(body) if is_discrete else in_stages)
+    remark = pushed_once(body) if is_discrete else pushed_in_stages(body)
+    return stepped(body, settings.step, start, remark)
 
 
 def pushed(builder: Any, plant: Any, body: FreeBody) -> None:

@@ -35,7 +35,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from free_body import FreeBody, Settings, Solved, answer, pushed_body
+from free_body import FreeBody, Settings, Solved, answer, pushed_body, pushed_in_stages
 from question import Unsuited, twice
 
 IMPLICIT = ("GeneralizedAlpha", "TrapezoidalIndex2")
@@ -70,7 +70,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
             evaluations=0,
             seconds=seconds,
             compile_seconds=more,
-            remark="what acts is asked for in each stage of a step",
+            remark=pushed_in_stages(body),
         )
     _, seconds, more = twice(lambda: system.SolveDynamic(asked, solverType=solver))
     omegas, matrices = (system.GetSensorStoredData(sensor) for sensor in sensors)

@@ -36,6 +36,7 @@ from free_body import (
     answer,
     principal,
     pushed_body,
+    pushed_in_stages,
     stepped,
 )
 
@@ -116,8 +117,8 @@ def remark(body: FreeBody, compiled: list[list[float]]) -> str:
     given = [entry for row in body.inertia for entry in row]
     has = [entry for row in compiled for entry in row]
     error = max(abs(a - b) for a, b in zip(given, has, strict=True)) / max(map(abs, given))
-    push = "; what acts is asked for in each stage of a step" if body.is_pushed else ""
-    return f"the compiled inertia is off by {error:.1e} of its largest entry{push}"
+    compiling = f"the compiled inertia is off by {error:.1e} of its largest entry"
+    return "; ".join(filter(None, (compiling, pushed_in_stages(body))))
 
 
 if __name__ == "__main__":

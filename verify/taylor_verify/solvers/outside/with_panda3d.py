@@ -31,9 +31,9 @@ from free_body import (
     Settings,
     Solved,
     answer,
+    in_space,
     pushed_body,
     pushed_once,
-    repeated,
     stepped,
 )
 
@@ -63,16 +63,13 @@ def ode(body: FreeBody, settings: Settings) -> Engine:
         made.set_auto_disable_flag(False)
     go_on = getattr(world, METHODS[settings.method])
 
-    def step() -> None:
-        if body.is_pushed:
-            state = made.get_angular_vel(), made.get_quaternion()
-            made.add_torque(core.Vec3(*body.moment_in_space(*state)))
-        go_on(settings.step)
+    def state() -> Any:
+        return made.get_angular_vel(), made.get_quaternion()
 
-    def row() -> Any:
-        return body.row_from_space(made.get_angular_vel(), made.get_quaternion())
+    def push(moment: Any) -> None:
+        made.add_torque(core.Vec3(*moment))
 
-    return repeated(step), row
+    return in_space(body, lambda: go_on(settings.step), state, push)
 
 
 def bullet(turned: FreeBody, settings: Settings) -> Engine:
@@ -89,17 +86,14 @@ def bullet(turned: FreeBody, settings: Settings) -> Engine:
         made.set_angular_damping(0.0)
         made.set_deactivation_enabled(False)
 
-    def row() -> Any:
-        return turned.row_from_space(made.get_angular_velocity(), made.get_transform().get_quat())
+    def state() -> Any:
+        return made.get_angular_velocity(), made.get_transform().get_quat()
 
-    def step() -> None:
-        if turned.is_pushed:
-            state = made.get_angular_velocity(), made.get_transform().get_quat()
-            made.apply_torque(core.Vec3(*turned.moment_in_space(*state)))
-        # No substeps: the step is that of the engine.
-        world.do_physics(settings.step, 0)
+    def push(moment: Any) -> None:
+        made.apply_torque(core.Vec3(*moment))
 
-    return repeated(step), row
+    # No substeps: the step is that of the engine.
+    return in_space(turned, lambda: world.do_physics(settings.step, 0), state, push)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, pushed_body, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_in_stages,
+    stepped,
+)
 
 
 def solve(body: FreeBody, settings: Settings) -> Solved:
@@ -58,11 +67,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, lambda: body.row(velocity[3:], (place[6], *place[3:6]))
 
-    return stepped(body, settings.step, start, asked_in_stages(body))
-
-
-def asked_in_stages(body: FreeBody) -> str:
-    return "what acts is asked for in each stage of a step" if body.is_pushed else ""
+    return stepped(body, settings.step, start, pushed_in_stages(body))
 
 
 def model_of(body: FreeBody) -> Any:

@@ -33,9 +33,9 @@ from free_body import (
     Settings,
     Solved,
     answer,
+    in_space,
     pushed_body,
     pushed_once,
-    repeated,
     stepped,
 )
 
@@ -52,20 +52,15 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         pybullet.setTimeStep(settings.step)
         made = body_of(turned, settings)
 
-        def row() -> Any:
+        def state() -> Any:
             _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(made)
             _, omega = pybullet.getBaseVelocity(made)
-            return turned.row_from_space(omega, (w, x, y, z))
+            return omega, (w, x, y, z)
 
-        def step() -> None:
-            if turned.is_pushed:
-                _, (x, y, z, w) = pybullet.getBasePositionAndOrientation(made)
-                _, omega = pybullet.getBaseVelocity(made)
-                moment = list(turned.moment_in_space(omega, (w, x, y, z)))
-                pybullet.applyExternalTorque(made, -1, moment, pybullet.WORLD_FRAME)
-            pybullet.stepSimulation()
+        def push(moment: Any) -> None:
+            pybullet.applyExternalTorque(made, -1, list(moment), pybullet.WORLD_FRAME)
 
-        return repeated(step), row
+        return in_space(turned, pybullet.stepSimulation, state, push)
 
     pybullet.connect(pybullet.DIRECT)
     return stepped(turned, settings.step, start, pushed_once(turned))

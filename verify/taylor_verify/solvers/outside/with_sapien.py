@@ -33,9 +33,9 @@ from free_body import (
     Settings,
     Solved,
     answer,
+    in_space,
     pushed_body,
     pushed_once,
-    repeated,
     stepped,
 )
 
@@ -51,16 +51,13 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         # The scene keeps its system going.
         scene, made = scene_of(turned, settings)
 
-        def row() -> Any:
-            return turned.row_from_space(made.angular_velocity, made.entity.pose.q)
+        def state() -> Any:
+            return made.angular_velocity, made.entity.pose.q
 
-        def step() -> None:
-            if turned.is_pushed:
-                moment = turned.moment_in_space(made.angular_velocity, made.entity.pose.q)
-                made.add_force_torque(numpy.zeros(3), numpy.array(moment))
-            scene.physx_system.step()
+        def push(moment: Any) -> None:
+            made.add_force_torque(numpy.zeros(3), numpy.array(moment))
 
-        return repeated(step), row
+        return in_space(turned, lambda: scene.physx_system.step(), state, push)
 
     return stepped(turned, settings.step, start, pushed_once(turned))
 
