@@ -189,6 +189,12 @@ class Arcs:
         return float(noise) / self.size if self.size > 0 else np.inf
 
 
+def row_to_row(answer: Answer) -> Arcs:
+    """Return the arcs from each row of an answer to the next."""
+    rows = np.arange(answer.count - 1)
+    return Arcs(answer, rows, rows + 1)
+
+
 def telling_arcs(answer: Answer) -> tuple[Arcs, int]:
     """Return arcs whose defects stand out of the rounding: over as many rows as needed, and that number."""
     stride = 1

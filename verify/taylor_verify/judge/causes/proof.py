@@ -124,10 +124,15 @@ def _attitudes(
 ) -> Floats:
     """Return the attitudes of a motion; they are linear in the first one, given the moving part."""
     assert answer.start.q is not None
-    v = np.broadcast_to(rows[:-1].T, (4, rows.shape[1], len(spans)))
-    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, len(spans)))
-    ends = moved(answer, equations, np.concatenate([v, unit], axis=1), since, spans, steps)
+    ends = moved(answer, equations, with_units(rows[:-1].T), since, spans, steps)
     return chained(ends[:, rows.shape[1] :].transpose(2, 1, 0), answer.start.q[0])
+
+
+def with_units(v: Floats) -> Floats:
+    """Return v (n, arcs) with each of the four unit quaternions, (4, n + 4, arcs)."""
+    n, arcs = v.shape
+    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, arcs))
+    return np.concatenate([np.broadcast_to(v, (4, n, arcs)), unit], axis=1)
 
 
 def chained(maps: Floats, first: Floats) -> Floats:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import whole
@@ -32,8 +32,7 @@ _AT_REST: Final = 4.0
 
 def roundings(answer: Answer) -> Floats:
     """Return the largest defect of each arc from row to row, in roundings of the file."""
-    rows = np.arange(answer.count - 1)
-    arcs = Arcs(answer, rows, rows + 1)
+    arcs = row_to_row(answer)
     ends = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
     defects = np.abs(arcs.end - ends) / answer.sizes[:, None]
     return np.asarray(np.max(defects / answer.rounding[:, None], axis=0))
