@@ -353,6 +353,18 @@ def test_an_early_clock_is_named(tmp_path: Path) -> None:
     assert names(tmp_path, FREE, columns) == {"the clock is early by 0.01"}
 
 
+def test_a_body_that_drifts_is_not_at_rest() -> None:
+    """Rows that no longer turn but still move are the same, and not said to have no velocity."""
+    scene = load(FLUID)
+    columns = simulated(scene)
+    half = len(columns["t"]) // 2
+    for name in (*VECTORS["x"], *VECTORS["y"], *QUATERNION):
+        last = {"x": 0.1, "y": 0.0}.get(name[0], columns[name][half])
+        columns[name] = [*columns[name][:half], *[last] * (len(columns["t"]) - half)]
+    (sentence,) = causes(scene, columns).values()
+    assert "all rows have the same numbers from there on" in sentence
+
+
 # Answers that have no cause.
 
 
@@ -439,7 +451,7 @@ def without_gyroscopic_term(problem: Any) -> Array:
     return np.array([states] * len(problem.times))
 
 
-def test_a_callable_is_given_its_cause(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_callable_is_given_its_cause() -> None:
     """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
     judgement = taylor_verify.check("euler/generic", without_gyroscopic_term)
     (cause,) = judgement.causes

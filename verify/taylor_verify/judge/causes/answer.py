@@ -189,7 +189,7 @@ class Answer:
         part = self.at(np.s_[row:])
         nu = part.file.v[:1]
         nu = nu @ self.right.inverse.T if self.right.has_momenta else nu
-        q = self.attitudes[row : row + 1] if self.file.q is None else part.file.q[:1]  # type: ignore[index]
+        q = self.attitudes[row : row + 1]
         c = part.start.c if part.file.c is None else part.file.c[:1]
         return replace(part, start=Motion(nu, q, c), begins=float(self.times[row]))
 

@@ -46,15 +46,12 @@ def other_times(answer: Answer) -> Cause | None:
 
 def _offsets(answer: Answer) -> tuple[Floats, Floats]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
-    right, truth, _n = answer.right, answer.truth, answer.n
-    has_q = answer.file.q is not None and truth.q is not None
-    z, rows = truth.v.T, answer.file.v.T
+    right, truth, file = answer.right, answer.truth, answer.file
+    z, rows = truth.v.T, file.v.T
     scale = answer.sizes[:, None]
-    if has_q:
-        assert answer.file.q is not None
-        assert truth.q is not None
-        signs = np.sign(np.sum(answer.file.q * truth.q, axis=1))
-        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, answer.file.q.T * signs])
+    if file.q is not None and truth.q is not None:
+        signs = np.sign(np.sum(file.q * truth.q, axis=1))
+        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, file.q.T * signs])
         scale = np.vstack([scale, np.ones((4, 1))])
     spacing = float(np.median(np.abs(np.diff(answer.times))))
     late, at = np.zeros(answer.count), z[None]

@@ -76,7 +76,12 @@ def _allowed(answer: Answer) -> float:
 
 
 def _is_at_rest(answer: Answer, rows: Floats) -> bool:
-    return bool(np.all(np.abs(rows) <= _AT_REST * np.maximum(answer.noise[0], 1e-300)))
+    return bool(np.all(np.abs(rows) <= _nothing(answer)))
+
+
+def _nothing(answer: Answer) -> Floats:
+    """Return the largest size of each component of v that is no motion."""
+    return np.asarray(_AT_REST * np.maximum(answer.noise[0], 1e-300))
 
 
 def _from_a_row(answer: Answer, first: int) -> Cause | None:
@@ -144,11 +149,11 @@ def last_right_row(answer: Answer, defects: Floats) -> int | None:
 
 def stopped(answer: Answer, row: int) -> Cause | None:
     """Return the cause of rows that are all the same after a row that is right."""
-    rest, limit = answer.file.v[row + 1 :], _AT_REST * np.maximum(answer.noise[0], 1e-300)
-    if np.any(np.ptp(rest, axis=0) > limit):
+    rest = answer.file.v[row + 1 :]
+    if np.any(np.ptp(rest, axis=0) > _nothing(answer)):
         return None
-    is_at_rest = bool(np.all(np.abs(rest[-1, -3:]) <= limit[-3:]))
     time = answer.times[row + 1] + answer.right.start
+    is_at_rest = _is_at_rest(answer, rest[-1])
     what = "all velocities are 0" if is_at_rest else "all rows have the same numbers"
     leaves = dict.fromkeys(answer.failed, 0.0)
     return Cause(f"right before t = {time:.6g}, and {what} from there on", "at rest", leaves)
