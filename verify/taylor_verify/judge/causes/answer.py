@@ -193,6 +193,20 @@ class Answer:
         c = part.start.c if part.file.c is None else part.file.c[:1]
         return replace(part, start=Motion(nu, q, c), begins=float(self.times[row]))
 
+    def states(self, count: int, rows: Any = np.s_[:]) -> Floats:
+        """Return some of the file's rows with so many components, (rows, components).
+
+        Components that the file has not are its own attitudes (see ``attitudes``) and the true centre.
+        """
+        parts = [self.file.v[rows]]
+        if count > self.n:
+            parts.append(self.attitudes[rows])
+        if count > self.n + 4:
+            centres = self.truth.c if self.file.c is None else self.file.c
+            assert centres is not None
+            parts.append(centres[rows])
+        return np.hstack(parts)
+
     @property
     def is_from_start(self) -> bool:
         """True if the first row is at the start."""

@@ -16,18 +16,15 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.methods import UPDATES
-from taylor_verify.judge.causes.proof import chained, with_units
+from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
 _ARCS: Final = 48
 _CLEAR: Final = 20.0
-# What is left of the defects, and of the error on the whole answer.
-_LEAVES: Final = 1e-3
+# What a hypothesis without numbers leaves of the defects.
 _REPLAYED: Final = 1e-2
-_CAPS: Final = (0.1, 0.01)
-_BETTER: Final = 10.0
 _MOST: Final = 256
 
 # The weights (b, a) of q' = (b W q + a q W) / 2.
@@ -80,7 +77,7 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     near = [
         each
         for each in tried
-        if each.left < max(_LEAVES if each.count else _REPLAYED, 30 * floor / size)
+        if each.left < max(LEAVES if each.count else _REPLAYED, 30 * floor / size)
     ]
     return _settled(answer, sorted(near, key=lambda each: (each.count, each.left)))
 
@@ -89,13 +86,12 @@ def _settled(answer: Answer, near: list[_Tried]) -> Cause | None:
     every = row_to_row(answer)
     for each in near:
         simpler = [other for other in near if other.count < each.count]
-        if any(other.left < _BETTER * each.left for other in simpler):
+        if any(other.left < BETTER * each.left for other in simpler):
             continue
         assert answer.start.q is not None
         q = chained(each.maps(every), answer.start.q[0])
         left = answer.leaves(Motion(answer.truth.v, q)).get("attitude", np.inf)
-        allowed = max(_LEAVES, 3 * answer.floor(["attitude"]))
-        if left <= min(allowed, _CAPS[min(each.count, 1)]):
+        if left <= may_leave(answer, ["attitude"], each.count):
             same = [other for other in near if other.count == each.count and other is not each]
             alike = tuple(other.text for other in same if other.left < 3 * each.left)
             return Cause(each.name, each.kind, {"attitude": left}, each.text, alike)

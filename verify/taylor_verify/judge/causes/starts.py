@@ -11,7 +11,7 @@ from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.proof import CAPS, may_leave, whole
 
 # A defect of so many roundings, and of this part of the largest one, is a jump.
 _JUMP: Final = 40.0
@@ -22,8 +22,6 @@ _NOISE: Final = 1e-6
 _FEW: Final = 2
 _ONE_IN: Final = 50
 _OFF: Final = 10.0
-LEAVES: Final = 1e-3
-_ROUNDINGS: Final = 3.0
 _FEWEST: Final = 12
 _EARLY: Final = 20
 _STANDS_OUT: Final = 30.0
@@ -54,7 +52,7 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         return _from_a_row(answer, first) if first else None
     begins = [0, *(int(row) + 1 for row in bad)]
     leaves = _leaves(answer, begins, is_off)
-    if leaves is None or max(leaves.values()) > _allowed(answer):
+    if leaves is None or max(leaves.values()) > may_leave(answer, answer.moving):
         return None
     last = answer.file.v[bad[-1] + 1 :]
     times = ", ".join(f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad[:4])
@@ -69,10 +67,6 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         "first row"
     )
     return Cause(name, "jump", leaves)
-
-
-def _allowed(answer: Answer) -> float:
-    return max(LEAVES, min(0.1, _ROUNDINGS * answer.floor(answer.moving)))
 
 
 def _is_at_rest(answer: Answer, rows: Floats) -> bool:
@@ -95,9 +89,9 @@ def _from_a_row(answer: Answer, first: int) -> Cause | None:
         for name in answer.failed
         if name in errors
     }
-    if max(leaves[name] for name in answer.moving) > _allowed(answer):
+    if max(leaves[name] for name in answer.moving) > may_leave(answer, answer.moving):
         return None
-    if leaves.get("attitude", 0.0) > 0.1:
+    if leaves.get("attitude", 0.0) > CAPS[0]:
         del leaves["attitude"]
     if first:
         begin, end = answer.times[0] + answer.right.start, answer.times[1] + answer.right.start
