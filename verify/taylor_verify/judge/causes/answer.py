@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact import rotation as rotations
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
@@ -275,9 +276,7 @@ def angles(q: Floats, other: Floats) -> Floats:
 
 def product(p: Floats, q: Floats) -> Floats:
     """Return the quaternion products of rows."""
-    a, v, b, w = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
-    scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
-    return np.concatenate([scalar, a * w + b * v + np.cross(v, w)], axis=-1)
+    return np.stack(rotations.product(list(p.T), list(q.T)), axis=-1)
 
 
 def conjugate(q: Floats) -> Floats:
