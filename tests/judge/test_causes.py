@@ -345,6 +345,19 @@ def test_one_row_off_is_named(
     assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
 
 
+@pytest.mark.parametrize(("count", "shift"), [(1601, 2), (1601, 4), (401, 1)])
+@pytest.mark.parametrize("sign", by_turns([1, -1], 2))
+def test_rows_are_counted_in_the_file(sign: int, count: int, shift: int, tmp_path: Path) -> None:
+    """A file of which every second row is examined, or that ends at its start, is off by its own rows."""
+    every = [sign * Fraction(k, 200) for k in range(count + shift)]
+    exact = columns_at(load(FREE), every)
+    columns = {k: v[:count] if k == "t" else v[shift:] for k, v in exact.items()}
+    if sign < 0:
+        columns = {name: values[::-1] for name, values in columns.items()}
+    (cause,) = judged(tmp_path, FREE, columns).causes
+    assert f"row k holds the state of row k{sign * shift:+d};" in cause.sentence
+
+
 def test_an_early_clock_is_named(tmp_path: Path) -> None:
     """The shift of time that all quantities share is named, with its number."""
     scene = load(FREE)

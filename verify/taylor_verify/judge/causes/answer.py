@@ -55,7 +55,8 @@ class Answer:
 
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
-    ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file.
+    ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
+    ``places`` are the rows of the file, from 0, that these are.
     """
 
     right: Equations
@@ -66,6 +67,7 @@ class Answer:
     noise: tuple[Floats, float, float]
     quantities: tuple[str, ...]
     budget: Budget
+    places: Places
     decimals: int | None = None
     own_attitudes: Floats | None = None
     begins: float = 0.0
@@ -77,6 +79,11 @@ class Answer:
     @property
     def count(self) -> int:
         return len(self.times)
+
+    @property
+    def stride(self) -> int:
+        """Rows of the file from one row to the next; negative if the file begins at its end."""
+        return int(self.places[1] - self.places[0])
 
     @cached_property
     def sizes(self) -> Floats:
@@ -176,6 +183,7 @@ class Answer:
         return replace(
             self,
             times=self.times[rows],
+            places=self.places[rows],
             file=self.file.at(rows),
             truth=self.truth.at(rows),
             own_attitudes=None if own is None else own[rows],
@@ -221,6 +229,7 @@ class Answer:
         return replace(
             self,
             times=np.concatenate([[self.begins], self.times]),
+            places=np.concatenate([[self.places[0] - self.stride], self.places]),
             file=start.before(self.file),
             truth=start.before(self.truth),
         )

@@ -86,10 +86,11 @@ def causes_of_file(
     if judged is None:
         return Explained()
     count = len(file.times)
-    first = file.at(range(0, count, -(-count // _MOST_ROWS)))
+    every = max(1, -(-count // _MOST_ROWS))
+    first = file.at(range(0, count, every))
     facts = _no_rotation(first)
     with np.errstate(all="ignore"), suppress(*_SILENT):
-        answer = material_of_file(first, rung, conventions, judged.verdicts)
+        answer = material_of_file(first, rung, conventions, judged.verdicts, every)
         if answer is not None:
             known = explained(answer)
             # A convention reaches the rounding of what it reads: no load is missing there.
@@ -194,8 +195,12 @@ def material(
     noise: tuple[Floats, float, float],
     verdicts: Iterable[Verdict],
     decimals: int | None = None,
+    every: int = 1,
 ) -> Answer | None:
-    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable."""
+    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable.
+
+    ``every`` counts the rows of a file from one given row to the next.
+    """
     failed = tuple(v.quantity for v in verdicts if v.verdict is Status.FAIL)
     right = equations_of(given, has_momenta)
     elapsed = np.array([float(t) for t in given.clock.elapsed])
@@ -220,6 +225,7 @@ def material(
         (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
         Budget(_BUDGET * right.size if has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
+        every * np.array(rows),
         decimals,
     )
 
@@ -252,9 +258,16 @@ def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
 
 
 def material_of_file(
-    file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
+    file: TrajectoryFile,
+    rung: Rung,
+    conventions: Conventions,
+    verdicts: Iterable[Verdict],
+    every: int = 1,
 ) -> Answer | None:
-    """Return a file as material; None if its body is unknown or its moving part is not whole."""
+    """Return a file as material; None if its body is unknown or its moving part is not whole.
+
+    ``every`` counts the rows of the whole file from one row to the next.
+    """
     given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
     if not are_known(given.body):
         return None
@@ -275,7 +288,8 @@ def material_of_file(
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
     motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
-    return material(given, motion, has_momenta, noises, verdicts, _decimals(file.times))
+    decimals = _decimals(file.times)
+    return material(given, motion, has_momenta, noises, verdicts, decimals, every)
 
 
 def _frame_of(file: TrajectoryFile) -> str:

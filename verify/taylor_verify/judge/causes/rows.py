@@ -37,7 +37,7 @@ def _repeated(answer: Answer, wrong: Places) -> Cause | None:
     is_repeated = all(
         row > 0 and all(np.array_equal(part[row], part[row - 1]) for part in parts) for row in wrong
     )
-    if not is_repeated or len(wrong) > answer.count // 2:
+    if not is_repeated or len(wrong) > answer.count // 2 or answer.stride != 1:
         return None
     count = "one row repeats" if len(wrong) == 1 else f"{len(wrong)} rows repeat"
     return _of_some(answer, wrong, f"{count} the row before")
@@ -59,7 +59,8 @@ def _single(answer: Answer, wrong: Places, good: Floats) -> Cause | None:
 def _of_some(answer: Answer, wrong: Places, what: str) -> Cause:
     """Return the cause of an answer whose other rows are right."""
     first = answer.times[wrong[0]] + answer.right.start
-    name = f"{what} (first at t = {first:.6g}); all others of {answer.count} rows are right"
+    some = f"{answer.count} rows" if abs(answer.stride) == 1 else f"{answer.count} examined rows"
+    name = f"{what} (first at t = {first:.6g}); all others of {some} are right"
     return Cause(name, "rows", dict.fromkeys(answer.failed, 0.0))
 
 
@@ -78,7 +79,7 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
             motion = Motion(v, q)
             leaves = _leaves_between(answer, motion, int(nodes[-1]))
             if leaves and max(leaves.values()) <= _allowed(answer, leaves):
-                words = f"{name} between exact rows: every {every} rows one is exact"
+                words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
                 return Cause(words, "interpolation", leaves)
     return None
 
