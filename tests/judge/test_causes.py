@@ -345,12 +345,37 @@ def test_one_row_off_is_named(
     assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
 
 
+@pytest.mark.parametrize(("count", "shift"), [(1601, 2), (1601, 4), (401, 1)])
+@pytest.mark.parametrize("sign", by_turns([1, -1], 2))
+def test_rows_are_counted_in_the_file(sign: int, count: int, shift: int, tmp_path: Path) -> None:
+    """A file of which every second row is examined, or that ends at its start, is off by its own rows."""
+    every = [sign * Fraction(k, 200) for k in range(count + shift)]
+    exact = columns_at(load(FREE), every)
+    columns = {k: v[:count] if k == "t" else v[shift:] for k, v in exact.items()}
+    if sign < 0:
+        columns = {name: values[::-1] for name, values in columns.items()}
+    (cause,) = judged(tmp_path, FREE, columns).causes
+    assert f"row k holds the state of row k{sign * shift:+d};" in cause.sentence
+
+
 def test_an_early_clock_is_named(tmp_path: Path) -> None:
     """The shift of time that all quantities share is named, with its number."""
     scene = load(FREE)
     columns = columns_at(scene, [t + Fraction(1, 100) for t in scene.clock.instants])
     columns["t"] = [float(t) for t in scene.clock.instants]
     assert names(tmp_path, FREE, columns) == {"the clock is early by 0.01"}
+
+
+def test_a_body_that_drifts_is_not_at_rest() -> None:
+    """Rows that no longer turn but still move are the same, and not said to have no velocity."""
+    scene = load(FLUID)
+    columns = simulated(scene)
+    half = len(columns["t"]) // 2
+    for name in columns.keys() - {"t"}:
+        last = {"x": 0.1, "y": 0.0}.get(name[0], columns[name][half])
+        columns[name] = [*columns[name][:half], *[last] * (len(columns["t"]) - half)]
+    (sentence,) = causes(scene, columns).values()
+    assert "all rows have the same numbers from there on" in sentence
 
 
 # Answers that have no cause.
@@ -439,7 +464,7 @@ def without_gyroscopic_term(problem: Any) -> Array:
     return np.array([states] * len(problem.times))
 
 
-def test_a_callable_is_given_its_cause(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_callable_is_given_its_cause() -> None:
     """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
     judgement = taylor_verify.check("euler/generic", without_gyroscopic_term)
     (cause,) = judgement.causes

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact import rotation as rotations
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
@@ -54,7 +55,8 @@ class Answer:
 
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
-    ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file.
+    ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
+    ``places`` are the rows of the file, from 0, that these are.
     """
 
     right: Equations
@@ -65,6 +67,7 @@ class Answer:
     noise: tuple[Floats, float, float]
     quantities: tuple[str, ...]
     budget: Budget
+    places: Places
     decimals: int | None = None
     own_attitudes: Floats | None = None
     begins: float = 0.0
@@ -76,6 +79,11 @@ class Answer:
     @property
     def count(self) -> int:
         return len(self.times)
+
+    @property
+    def stride(self) -> int:
+        """Rows of the file from one row to the next; negative if the file begins at its end."""
+        return int(self.places[1] - self.places[0])
 
     @cached_property
     def sizes(self) -> Floats:
@@ -175,6 +183,7 @@ class Answer:
         return replace(
             self,
             times=self.times[rows],
+            places=self.places[rows],
             file=self.file.at(rows),
             truth=self.truth.at(rows),
             own_attitudes=None if own is None else own[rows],
@@ -189,9 +198,23 @@ class Answer:
         part = self.at(np.s_[row:])
         nu = part.file.v[:1]
         nu = nu @ self.right.inverse.T if self.right.has_momenta else nu
-        q = self.attitudes[row : row + 1] if self.file.q is None else part.file.q[:1]  # type: ignore[index]
+        q = self.attitudes[row : row + 1]
         c = part.start.c if part.file.c is None else part.file.c[:1]
         return replace(part, start=Motion(nu, q, c), begins=float(self.times[row]))
+
+    def states(self, count: int, rows: Any = np.s_[:]) -> Floats:
+        """Return some of the file's rows with so many components, (rows, components).
+
+        Components that the file has not are its own attitudes (see ``attitudes``) and the true centre.
+        """
+        parts = [self.file.v[rows]]
+        if count > self.n:
+            parts.append(self.attitudes[rows])
+        if count > self.n + 4:
+            centres = self.truth.c if self.file.c is None else self.file.c
+            assert centres is not None
+            parts.append(centres[rows])
+        return np.hstack(parts)
 
     @property
     def is_from_start(self) -> bool:
@@ -206,6 +229,7 @@ class Answer:
         return replace(
             self,
             times=np.concatenate([[self.begins], self.times]),
+            places=np.concatenate([[self.places[0] - self.stride], self.places]),
             file=start.before(self.file),
             truth=start.before(self.truth),
         )
@@ -261,9 +285,7 @@ def angles(q: Floats, other: Floats) -> Floats:
 
 def product(p: Floats, q: Floats) -> Floats:
     """Return the quaternion products of rows."""
-    a, v, b, w = p[..., :1], p[..., 1:], q[..., :1], q[..., 1:]
-    scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
-    return np.concatenate([scalar, a * w + b * v + np.cross(v, w)], axis=-1)
+    return np.stack(rotations.product(list(p.T), list(q.T)), axis=-1)
 
 
 def conjugate(q: Floats) -> Floats:

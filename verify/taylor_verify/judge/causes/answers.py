@@ -86,10 +86,11 @@ def causes_of_file(
     if judged is None:
         return Explained()
     count = len(file.times)
-    first = file.at(range(0, count, -(-count // _MOST_ROWS)))
+    every = max(1, -(-count // _MOST_ROWS))
+    first = file.at(range(0, count, every))
     facts = _no_rotation(first)
     with np.errstate(all="ignore"), suppress(*_SILENT):
-        answer = material_of_file(first, rung, conventions, judged.verdicts)
+        answer = material_of_file(first, rung, conventions, judged.verdicts, every)
         if answer is not None:
             known = explained(answer)
             # A convention reaches the rounding of what it reads: no load is missing there.
@@ -194,8 +195,12 @@ def material(
     noise: tuple[Floats, float, float],
     verdicts: Iterable[Verdict],
     decimals: int | None = None,
+    every: int = 1,
 ) -> Answer | None:
-    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable."""
+    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable.
+
+    ``every`` counts the rows of a file from one given row to the next.
+    """
     failed = tuple(v.quantity for v in verdicts if v.verdict is Status.FAIL)
     right = equations_of(given, has_momenta)
     elapsed = np.array([float(t) for t in given.clock.elapsed])
@@ -203,16 +208,15 @@ def material(
     if len(rows) < 2 or not failed:
         return None
     needs_centre = file.c is not None or right.reads > 4
-    track = {"attitude"} | ({"centre"} if needs_centre else set())
-    tracked = replace(given, track=frozenset(track))
-    exact = solution(tracked)
+    track = {"attitude", *["centre"] * needs_centre}
+    exact = solution(replace(given, track=frozenset(track)))
     instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
     motion = exact.evaluate(instants, _DIGITS)
     truth = _truth(given, motion, has_momenta).at(np.s_[1:])
     start = _truth(given, motion, has_momenta=False).at(np.s_[:1])
-    closed = exact.route != "taylor"
+    has_closed_form = exact.route != "taylor"
     compared = file.at(rows)
-    answer = Answer(
+    return Answer(
         right,
         start,
         elapsed[rows],
@@ -220,10 +224,10 @@ def material(
         truth,
         (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
-        Budget(_BUDGET * right.size if closed else _BUDGET_WITHOUT_CLOSED_FORM),
+        Budget(_BUDGET * right.size if has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
+        every * np.array(rows),
         decimals,
     )
-    return answer
 
 
 def _noise(noise: Floats, v: Floats, truth: Floats) -> Floats:
@@ -254,9 +258,16 @@ def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
 
 
 def material_of_file(
-    file: TrajectoryFile, rung: Rung, conventions: Conventions, verdicts: Iterable[Verdict]
+    file: TrajectoryFile,
+    rung: Rung,
+    conventions: Conventions,
+    verdicts: Iterable[Verdict],
+    every: int = 1,
 ) -> Answer | None:
-    """Return a file as material; None if its body is unknown or its moving part is not whole."""
+    """Return a file as material; None if its body is unknown or its moving part is not whole.
+
+    ``every`` counts the rows of the whole file from one row to the next.
+    """
     given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
     if not are_known(given.body):
         return None
@@ -270,18 +281,20 @@ def material_of_file(
         rows = _read(file, name, conventions, attitudes)
         v.append(rows)
         noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
-    has_frame = not {"quaternion", "attitude"}.isdisjoint(file.groups)
-    q = None if attitudes is None or not has_frame else steady_signs(quaternion_columns(attitudes))
-    frame = next((name for name in ("quaternion", "attitude") if name in file.groups), "")
-    c = file.groups["centre"].doubles() if "centre" in file.groups else None
-    if c is not None:
+    frame, q, c = _frame_of(file), None, None
+    if attitudes is not None and frame:
+        q = steady_signs(quaternion_columns(attitudes))
+    if "centre" in file.groups:
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
+    motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
     decimals = _decimals(file.times)
-    motion = Motion(np.hstack(v), q, c)
-    return material(
-        given, motion, has_momenta, (np.concatenate(noise), of_frame, of_centre), verdicts, decimals
-    )
+    return material(given, motion, has_momenta, noises, verdicts, decimals, every)
+
+
+def _frame_of(file: TrajectoryFile) -> str:
+    """Return the group that has the file's attitudes; empty if none has."""
+    return next((name for name in ("quaternion", "attitude") if name in file.groups), "")
 
 
 def _ratio(rows: Floats, columns: Floats) -> float:
@@ -306,9 +319,9 @@ def _of_trajectory(
     names = MOMENTA[given.model]
     if not rows or not set(names) <= set(rows):
         return None
-    v = np.hstack([_doubles(rows[name]) for name in names])
-    q = steady_signs(_doubles(rows["quaternion"])) if "quaternion" in rows else None
-    c = _doubles(rows["centre"]) if "centre" in rows else None
+    v = np.hstack([rows[name].astype(float) for name in names])
+    q = steady_signs(rows["quaternion"].astype(float)) if "quaternion" in rows else None
+    c = rows["centre"].astype(float) if "centre" in rows else None
     unit = 8 * float(problem.rung.unit_roundoff)
     noise = (
         unit * np.max(np.abs(v), axis=0),
@@ -331,11 +344,10 @@ def _read(
 
 def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> Floats | None:
     """Return the file's attitudes; the exact ones if it has none and its omega is in space axes."""
-    for group in ("quaternion", "attitude"):
-        if group in file.groups:
-            reading = conventions.readings.get(group, readings(group)[0])
-            read = reading.read(file.groups[group].doubles(), np.empty(0))
-            return rotations(read) if group == "quaternion" else read
+    if group := _frame_of(file):
+        reading = conventions.readings.get(group, readings(group)[0])
+        read = reading.read(file.groups[group].doubles(), np.empty(0))
+        return rotations(read) if group == "quaternion" else read
     if not conventions.readings:
         return None
     tracked = replace(given, track=frozenset({"attitude"}))
@@ -343,8 +355,3 @@ def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> 
         solution(tracked).evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)
     )
     return exact
-
-
-def _doubles(rows: Any) -> Floats:
-    """Return numbers as float64."""
-    return np.array([[float(value) for value in row] for row in rows], dtype=float)

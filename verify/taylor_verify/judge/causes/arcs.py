@@ -12,7 +12,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Places
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.judge.causes.flow import Floats, Rates, flow
 from taylor_verify.scenes.instants import evenly
 
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
@@ -62,7 +62,7 @@ def _parted(since: Floats, spans: Floats, switches: Floats) -> list[tuple[Floats
     return [(a, b - a) for a, b in itertools.pairwise(edges)]
 
 
-def _within(equations: Equations, since: Floats, spans: Floats):  # type: ignore[no-untyped-def]
+def _within(equations: Equations, since: Floats, spans: Floats) -> Rates:
     """Return the rates at times on the inner side of the ends, where a load may jump."""
     low = np.minimum(since, since + spans)
     high = np.maximum(low, np.nextafter(np.maximum(since, since + spans), -np.inf))
@@ -86,11 +86,15 @@ def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
 
 @dataclass(frozen=True)
 class Arcs:
-    """Arcs of an answer from the rows ``first`` to the rows ``last``."""
+    """Arcs of an answer from the rows ``first`` to the rows ``last``.
+
+    With ``steps_given`` each arc has so many steps, for whatever it is computed.
+    """
 
     answer: Answer
     first: Places
     last: Places
+    steps_given: int = 0
 
     @property
     def since(self) -> Floats:
@@ -106,25 +110,19 @@ class Arcs:
 
     def begin(self, count: int) -> Floats:
         """Return the first rows with so many components, (1, components, arcs)."""
-        answer, n = self.answer, self.answer.n
-        parts = [answer.file.v[self.first]]
-        if count > n:
-            parts.append(answer.attitudes[self.first])
-        if count > n + 4:
-            rows = answer.file.c if answer.file.c is not None else answer.truth.c
-            assert rows is not None
-            parts.append(rows[self.first])
-        return np.hstack(parts).T[None]
+        return self.answer.states(count, self.first).T[None]
 
     @cached_property
     def steps(self) -> int:
         """The fewest steps of an arc whose error is below a tenth of the rounding of the file."""
-        return self._steps(np.maximum(0.1 * self.answer.rounding, _FINEST)[:, None])
+        goal = np.maximum(0.1 * self.answer.rounding, _FINEST)[:, None]
+        return self.steps_given or self._steps(goal)
 
     @cached_property
     def few_steps(self) -> int:
         """The steps of an arc for derivatives."""
-        return min(self.steps, self._steps(np.full((self.answer.n, 1), _COARSE)))
+        goal = np.full((self.answer.n, 1), _COARSE)
+        return self.steps_given or min(self.steps, self._steps(goal))
 
     def _steps(self, goal: Floats) -> int:
         n, right = self.answer.n, self.answer.right
@@ -187,6 +185,12 @@ class Arcs:
         """The rounding of the file as a part of the defects."""
         noise = np.linalg.norm(np.broadcast_to(self.rounding[:, None], self.of_right.shape))
         return float(noise) / self.size if self.size > 0 else np.inf
+
+
+def row_to_row(answer: Answer) -> Arcs:
+    """Return the arcs from each row of an answer to the next."""
+    rows = np.arange(answer.count - 1)
+    return Arcs(answer, rows, rows + 1)
 
 
 def telling_arcs(answer: Answer) -> tuple[Arcs, int]:

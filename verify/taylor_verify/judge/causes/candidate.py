@@ -24,11 +24,15 @@ class Candidate:
     kind: str
     defects: float
     prove: Callable[[], Motion | None]
-    count: int = 0
     numbers: Floats | None = None
     changes: Changes = field(default_factory=dict)
     family: Family | None = None
     method: Any = None
+
+    @property
+    def count(self) -> int:
+        """Number of the numbers that were fitted."""
+        return 0 if self.numbers is None else len(self.numbers)
 
     @property
     def text(self) -> str:

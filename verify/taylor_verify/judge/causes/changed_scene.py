@@ -52,12 +52,11 @@ def _loads(other: Equations) -> list[str]:
     """Return each component of the loads: a number, or the text of an expression in quotes."""
     constant = other.load if other.weights is None else other.load * other.weights
     in_space = float(other.in_space)
-    texts, quadratic = list[list[tuple[float, str]]](), _quadratic(other)
+    texts, quadratic, names = list[list[tuple[float, str]]](), _quadratic(other), _names(other.size)
     for i in range(other.size):
         terms = [(float(constant[i]) * (1 - in_space), "")]
         terms += _of_space(i, in_space * constant if other.space is None else other.space)
-        terms += [] if other.arm is None else _of_arm(i, other)
-        names = _names(other.size)
+        terms += _of_arm(i, other)
         if other.linear is not None:
             terms.append((-other.linear[i], names[i]))
         if other.quadratic is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -20,22 +20,18 @@ from taylor_verify.judge.causes.bodies import (
 )
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.equations import Changes
-from taylor_verify.judge.causes.fault import Sizes, of_body
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
+from taylor_verify.judge.causes.fault import Fault, Sizes, of_body
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fitted, gauss_newton
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.words.causes import with_numbers
 
 # Error of float64 over a whole answer.
 _FLOAT64: Final = 5e-13
-# What a cause leaves: of the error on the whole answer or of the defects, or so many roundings of the file.
-LEAVES: Final = 1e-3
-ROUNDINGS: Final = 3.0
-DEFECT_ROUNDINGS: Final = 30.0
-# Never more than this, with no number and with any.
-_CAPS: Final = (0.1, 0.01)
+# Defects of so many roundings of the file may be left.
+_DEFECT_ROUNDINGS: Final = 30.0
 # Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
 _STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
 _STRICTEST: Final = 1e-4
@@ -43,8 +39,6 @@ _STRICTEST: Final = 1e-4
 _PAIR: Final = 1e-4
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
-# More numbers must leave this much less; what leaves no more than this much more explains as well.
-_BETTER: Final = 10.0
 _NOTHING: Final = 1e-9
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
 _LOOSE: Final = 0.1
@@ -120,16 +114,21 @@ class _Dynamics:
     # Evidence.
 
     def _candidate(
-        self, name: str, kind: str, left: float, changes: Changes, **more: Any
+        self,
+        of: Fault | Family,
+        left: float,
+        changes: Changes,
+        numbers: Floats | None = None,
     ) -> Candidate:
         answer = self.answer
         return Candidate(
-            name,
-            kind,
+            of.name,
+            of.kind,
             left / self.arcs.size,
             lambda: whole(answer, answer.right.changed(changes)),
             changes=changes,
-            **more,
+            numbers=numbers,
+            family=of if isinstance(of, Family) else None,
         )
 
     def _faults(self) -> Iterator[Candidate]:
@@ -139,7 +138,7 @@ class _Dynamics:
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.arcs.size:
-                yield self._candidate(fault.name, fault.kind, left, fault.changes)
+                yield self._candidate(fault, left, fault.changes)
 
     def _groups(self, candidates: list[Candidate]) -> Iterator[list[Family]]:
         """Yield the families of one number, of few and of many, while no candidate is exact."""
@@ -183,7 +182,7 @@ class _Dynamics:
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
             fit = gauss_newton(self.arcs, family)
-            if family.kind == "clock" and not fit.size < _CAPS[1] * self.arcs.size:
+            if family.kind == "clock" and not fit.size < CAPS[1] * self.arcs.size:
                 fit = self._clock(family, fit)
             if np.isfinite(fit.size):
                 candidate = self._fitted(family, fit.numbers, fit.size)
@@ -192,11 +191,9 @@ class _Dynamics:
                 yield candidate
 
     def _fitted(self, family: Family, numbers: Floats, size: float) -> Candidate:
-        changes = family.changes(numbers)
-        more = {"count": family.count, "numbers": numbers, "family": family}
-        return self._candidate(family.name, family.kind, size, changes, **more)
+        return self._candidate(family, size, family.changes(numbers), numbers)
 
-    def _clock(self, family: Family, best: Any) -> Any:
+    def _clock(self, family: Family, best: Fitted) -> Fitted:
         """Return the fit from the best factor of a grid, if that is better."""
         tried = [
             (float(np.linalg.norm(defects)), factor)
@@ -210,9 +207,7 @@ class _Dynamics:
             return best
         arcs = self.arcs
         if factor > 3:
-            arcs = replace(self.arcs)
-            steps = min(128, int(self.arcs.steps * np.ceil(factor)))
-            arcs.__dict__.update(steps=steps, few_steps=steps)
+            arcs = replace(arcs, steps_given=min(128, int(arcs.steps * np.ceil(factor))))
         fit = gauss_newton(arcs, family, np.array([factor]))
         return fit if fit.size < best.size else best
 
@@ -254,7 +249,7 @@ class _Dynamics:
                 continue
             if proven and candidate.count > max(1, proven[0].candidate.count):
                 before = proven[0].worst
-                if not before > max(_BETTER * proof.worst, self._floor):
+                if not before > max(BETTER * proof.worst, self._floor):
                     continue
                 proven = []
             proven.append(proof)
@@ -267,17 +262,17 @@ class _Dynamics:
         is_loose = self.answer.file.q is None and bool(
             {"space", "arm", "in_space"} & set(candidate.changes)
         )
-        most = _LOOSE if is_loose else max(LEAVES, DEFECT_ROUNDINGS * self.floor)
+        most = _LOOSE if is_loose else max(LEAVES, _DEFECT_ROUNDINGS * self.floor)
         if candidate.kind == "method":
             most = 0.02
         return bool(candidate.defects < most)
 
     def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
         """Return True if a proven candidate with fewer numbers makes another one needless."""
-        if simple.defects > max(_BETTER * other.defects, 5 * self.floor, _NOTHING):
+        if simple.defects > max(BETTER * other.defects, 5 * self.floor, _NOTHING):
             return False
         kinds = {each.candidate.kind for each in proven}
-        is_worse = other.defects > _BETTER * max(simple.defects, self.floor)
+        is_worse = other.defects > BETTER * max(simple.defects, self.floor)
         return other.count > 1 or other.kind in kinds or is_worse
 
     def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
@@ -294,7 +289,7 @@ class _Dynamics:
                 candidate, leaves, worst = better.candidate, better.leaves, better.worst
         part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
         allowed = max(most * part, self._floor)
-        if worst > min(allowed, _CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
+        if worst > min(allowed, CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
             return None
         return _Proven(candidate, leaves, worst)
 
@@ -332,11 +327,11 @@ class _Dynamics:
         if not proven:
             return None
         if "attitude" in self.answer.failed:
-            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= _CAPS[0]]
+            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= CAPS[0]]
             proven = with_attitude or proven
         proven.sort(key=lambda each: _simplest(each.candidate))
         best = proven[0].candidate
-        as_well = max(_BETTER * best.defects, 5 * self.floor, _NOTHING)
+        as_well = max(BETTER * best.defects, 5 * self.floor, _NOTHING)
         alike = [p.candidate for p in proven[1:] if p.candidate.defects <= as_well]
         text, changes = self._described(best)
         others = tuple(self._described(each)[0] for each in alike)

@@ -10,24 +10,21 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs, moved
+from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.methods import UPDATES
-from taylor_verify.judge.causes.proof import chained
+from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
 _ARCS: Final = 48
 _CLEAR: Final = 20.0
-# What is left of the defects, and of the error on the whole answer.
-_LEAVES: Final = 1e-3
+# What a hypothesis without numbers leaves of the defects.
 _REPLAYED: Final = 1e-2
-_CAPS: Final = (0.1, 0.01)
-_BETTER: Final = 10.0
 _MOST: Final = 256
 
 # The weights (b, a) of q' = (b W q + a q W) / 2.
@@ -43,12 +40,12 @@ _WRONG: Final = (
 
 @dataclass(frozen=True)
 class _Tried:
-    """A hypothesis: the part of the defects that it leaves, and its maps of q over all rows."""
+    """A hypothesis: the part of the defects that it leaves, and its maps of q over arcs."""
 
     name: str
     kind: str
     left: float
-    maps: Callable[[Answer], Floats]
+    maps: Callable[[Arcs], Floats]
     numbers: Floats | None = None
 
     @property
@@ -70,31 +67,31 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     arcs = Arcs(answer, rows, rows + 1)
     assert answer.file.q is not None
     ends = answer.file.q[rows + 1].T
-    by_right = _turned(answer, right, arcs, method)
-    size, floor = _apart(ends, by_right), max(answer.noise[1], 1e-16) * np.sqrt(ends.size)
+    exact = _turned(right, arcs)
+    size, floor = _apart(ends, exact), max(answer.noise[1], 1e-16) * np.sqrt(ends.size)
     if size < _CLEAR * floor:
         return None
-    tried = list(_replays(answer, right, arcs, ends, size, method))
+    tried = list(_replays(right, arcs, ends, exact, method))
     if method is None:
-        tried += [*_wrong(answer, right, arcs, ends, size), *_fits(answer, right, arcs, ends, size)]
+        tried += [*_wrong(right, arcs, ends, size), *_fits(right, arcs, ends, size)]
     near = [
         each
         for each in tried
-        if each.left < max(_LEAVES if each.count else _REPLAYED, 30 * floor / size)
+        if each.left < max(LEAVES if each.count else _REPLAYED, 30 * floor / size)
     ]
     return _settled(answer, sorted(near, key=lambda each: (each.count, each.left)))
 
 
 def _settled(answer: Answer, near: list[_Tried]) -> Cause | None:
+    every = row_to_row(answer)
     for each in near:
         simpler = [other for other in near if other.count < each.count]
-        if any(other.left < _BETTER * each.left for other in simpler):
+        if any(other.left < BETTER * each.left for other in simpler):
             continue
         assert answer.start.q is not None
-        q = chained(each.maps(answer), answer.start.q[0])
+        q = chained(each.maps(every), answer.start.q[0])
         left = answer.leaves(Motion(answer.truth.v, q)).get("attitude", np.inf)
-        allowed = max(_LEAVES, 3 * answer.floor(["attitude"]))
-        if left <= min(allowed, _CAPS[min(each.count, 1)]):
+        if left <= may_leave(answer, ["attitude"], each.count):
             same = [other for other in near if other.count == each.count and other is not each]
             alike = tuple(other.text for other in same if other.left < 3 * each.left)
             return Cause(each.name, each.kind, {"attitude": left}, each.text, alike)
@@ -102,55 +99,40 @@ def _settled(answer: Answer, near: list[_Tried]) -> Cause | None:
 
 
 def _apart(ends: Floats, q: Floats) -> float:
-    """Return the size of the difference of quaternions; q and -q are one attitude."""
-    unit = q / np.linalg.norm(q, axis=0)
-    signs = np.sign(np.sum(ends * unit, axis=0))
-    apart = float(np.linalg.norm(ends * signs - unit))
+    """Return the size of the difference of quaternions."""
+    apart = float(np.linalg.norm(_rest(ends, q)))
     return apart if np.isfinite(apart) else np.inf
 
 
-def _turned(answer: Answer, right: Equations, arcs: Arcs, method: Any) -> Floats:
-    """Return q at the ends of the arcs by the moving part of the equations or of the method."""
-    count = max(answer.n + 4, right.coupled)
-    begin = arcs.begin(count)
-    ends = moved(answer, right, begin, arcs.since, arcs.spans, arcs.steps)
-    return np.asarray(ends[0, answer.n : answer.n + 4])
+def _rest(ends: Floats, q: Floats) -> Floats:
+    """Return the difference of quaternions; q and -q are one attitude."""
+    unit = q / np.linalg.norm(q, axis=0)
+    return np.asarray(ends * np.sign(np.sum(ends * unit, axis=0)) - unit)
 
 
-def _weighted(changed: Equations, answer: Answer) -> Floats:
-    """Return the maps of q from each row to the next by equations of the attitude."""
-    every = _all_arcs(answer)
-    v = every.begin(changed.coupled)[0, : answer.n]
-    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, v.shape[1]))
-    begin = np.concatenate([np.broadcast_to(v, (4, *v.shape)), unit], axis=1)
-    ends = moved(answer, changed, begin, every.since, every.spans, every.steps)
-    return np.asarray(ends[:, answer.n : answer.n + 4].transpose(2, 1, 0))
+def _turned(right: Equations, arcs: Arcs) -> Floats:
+    """Return q at the ends of the arcs by the equations."""
+    n = arcs.answer.n
+    return np.asarray(arcs.ends(right, arcs.steps, n + 4)[0, n : n + 4])
 
 
-def _all_arcs(answer: Answer) -> Arcs:
-    rows = np.arange(answer.count - 1)
-    return Arcs(answer, rows, rows + 1)
+def _weighted(changed: Equations, arcs: Arcs) -> Floats:
+    """Return the maps of q over the arcs by equations of the attitude."""
+    n, begin = arcs.answer.n, with_units(arcs.begin(arcs.answer.n)[0])
+    ends = moved(arcs.answer, changed, begin, arcs.since, arcs.spans, arcs.steps)
+    return np.asarray(ends[:, n:].transpose(2, 1, 0))
 
 
-def _wrong(
-    answer: Answer, right: Equations, arcs: Arcs, ends: Floats, size: float
-) -> Iterator[_Tried]:
+def _wrong(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
     for name, weights in _WRONG:
         changed = right.changed({"turns": np.array(weights)})
-        left = _apart(ends, _turned(answer, changed, arcs, None)) / size
-        kind = "kinematics"
-        yield _Tried(name, kind, left, partial(_weighted, changed))
+        left = _apart(ends, _turned(changed, arcs)) / size
+        yield _Tried(name, "kinematics", left, partial(_weighted, changed))
 
 
-def _fits(
-    answer: Answer, right: Equations, arcs: Arcs, ends: Floats, size: float
-) -> Iterator[_Tried]:
-    pace = (
-        float(np.max(np.linalg.norm(answer.truth.v[:, -3:], axis=1)))
-        if not right.has_momenta
-        else 1.0
-    )
-    one = np.ones(1)
+def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
+    omega, one = arcs.answer.truth.v[:, -3:], np.ones(1)
+    pace = 1.0 if right.has_momenta else float(np.max(np.linalg.norm(omega, axis=1)))
     families = (
         Family(
             "attitude by the rate of another moment",
@@ -171,60 +153,41 @@ def _fits(
         numbers = family.right.copy()
         for _ in range(4):
             rest = [
-                _rest(ends, _turned(answer, right.changed(changes), arcs, None))
+                _rest(ends, _turned(right.changed(changes), arcs))
                 for changes in (family.changes(numbers), *family.around(numbers))
             ]
             slopes = family.slopes(np.array(rest[1:]))
             numbers = numbers - np.linalg.lstsq(slopes, rest[0].ravel(), rcond=1e-9)[0]
-        changed = right.changed(family.changes(numbers))
-        left = _apart(ends, _turned(answer, changed, arcs, None)) / size
         if f"{numbers[0]:.6g}" == "1":
             continue
-        yield _Tried(
-            family.name,
-            family.kind,
-            left,
-            partial(_weighted, changed),
-            numbers,
-        )
-
-
-def _rest(ends: Floats, q: Floats) -> Floats:
-    unit = q / np.linalg.norm(q, axis=0)
-    return np.asarray(ends * np.sign(np.sum(ends * unit, axis=0)) - unit)
+        changed = right.changed(family.changes(numbers))
+        left = _apart(ends, _turned(changed, arcs)) / size
+        yield _Tried(family.name, family.kind, left, partial(_weighted, changed), numbers)
 
 
 def _replays(
-    answer: Answer, right: Equations, arcs: Arcs, ends: Floats, size: float, method: Any
+    right: Equations, arcs: Arcs, ends: Floats, exact: Floats, method: Any
 ) -> Iterator[_Tried]:
-    if right.coupled > answer.n:
+    n = arcs.answer.n
+    if right.coupled > n:
         return
-    begin = arcs.begin(answer.n + 4)
-    exact = _turned(answer, right, arcs, None)
+    begin, size = arcs.begin(n + 4), _apart(ends, exact)
+    unit = exact / np.linalg.norm(exact, axis=0)
     for name, (order, update) in UPDATES.items():
 
-        def left(steps: int, update: Any = update) -> float:
-            return (
-                _apart(ends, _updated(answer, right, update, begin, arcs, steps, method)[0]) / size
-            )
+        def apart(rows: Floats, steps: int, update: Any = update) -> float:
+            return _apart(rows, _updated(right, update, begin, arcs, steps, method)[0])
 
-        def error(steps: int, update: Any = update) -> float:
-            return _apart(
-                exact / np.linalg.norm(exact, axis=0),
-                _updated(answer, right, update, begin, arcs, steps, method)[0],
-            )
+        def left(steps: int, apart: Any = apart) -> float:
+            return float(apart(ends, steps) / size)
 
-        steps = method[1] if method else _steps(order, error, size)
+        steps = method[1] if method else _steps(order, partial(apart, unit), size)
         tried = {k: left(k) for k in ({steps} if method else {max(1, steps - 1), steps, steps + 1})}
         best = min(tried, key=lambda k: tried[k])
         h = float(np.median(np.abs(arcs.spans))) / best
         words = f"attitude {name}" + ("" if method else f", h = {h:.6g}")
-        yield _Tried(
-            words,
-            "attitude step",
-            tried[best],
-            partial(_maps, right, update, best, method),
-        )
+        maps = partial(_maps, right, update, best, method)
+        yield _Tried(words, "attitude step", tried[best], maps)
 
 
 def _steps(order: int, error: Callable[[int], float], size: float) -> int:
@@ -241,16 +204,10 @@ def _steps(order: int, error: Callable[[int], float], size: float) -> int:
 
 
 def _updated(
-    answer: Answer,
-    right: Equations,
-    update: Any,
-    begin: Floats,
-    arcs: Arcs,
-    steps: int,
-    method: Any,
+    right: Equations, update: Any, begin: Floats, arcs: Arcs, steps: int, method: Any
 ) -> Floats:
     """Return q, not of unit length, after the arcs in so many updates."""
-    n, h = answer.n, arcs.spans / steps
+    answer, n, h = arcs.answer, arcs.answer.n, arcs.spans / steps
     v, q = begin[:, :n], begin[:, n:]
     for k in range(steps):
         since = arcs.since + k * h
@@ -268,11 +225,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
     return (right.inverse @ v if right.has_momenta else v)[:, -3:]
 
 
-def _maps(right: Equations, update: Any, steps: int, method: Any, answer: Answer) -> Floats:
+def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
-    every = _all_arcs(answer)
-    v = every.begin(answer.n)
-    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, v.shape[2]))
-    begin = np.concatenate([np.broadcast_to(v, (4, *v.shape[1:])), unit], axis=1)
-    ends = _updated(answer, right, update, begin, every, steps, method)
-    return ends.transpose(2, 1, 0)
+    begin = with_units(arcs.begin(arcs.answer.n)[0])
+    return _updated(right, update, begin, arcs, steps, method).transpose(2, 1, 0)

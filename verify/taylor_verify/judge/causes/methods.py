@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact import rotation
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.models.frame import attitude_rate
 
 _Step = Callable[[Equations, Floats, Floats, Floats], Floats]
 _Update = Callable[[Floats, Floats, Floats, Floats], Floats]
@@ -163,13 +165,15 @@ def _quaternion_of(omega: Floats, h: Floats) -> Floats:
 
 def _times(p: Floats, q: Floats) -> Floats:
     """Return the product of quaternions whose components are on axis 1."""
-    scalar = p[:, :1] * q[:, :1] - np.sum(p[:, 1:] * q[:, 1:], axis=1, keepdims=True)
-    vector = p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:], axis=1)
-    return np.concatenate([scalar, vector], axis=1)
+    return np.stack(rotation.product(_parts(p), _parts(q)), axis=1)
+
+
+def _parts(rows: Floats) -> list[Any]:
+    return list(rows.swapaxes(0, 1))
 
 
 def _slope(q: Floats, omega: Floats) -> Floats:
-    return _times(q, np.concatenate([np.zeros_like(omega[:, :1]), omega], axis=1)) / 2
+    return np.stack(attitude_rate(_parts(q), _parts(omega)), axis=1)
 
 
 def _updated_in_place(q: Floats, before: Floats, after: Floats, h: Floats) -> Floats:

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Places
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import Arcs, row_to_row
 from taylor_verify.judge.causes.fault import Sizes
 from taylor_verify.judge.causes.flow import Floats
 
@@ -27,8 +27,7 @@ def missing_load(answer: Answer) -> str:
     """Return the load in words; empty where rows are too far apart to tell it, or where it is rounding."""
     if answer.count < 4 or not answer.moving:
         return ""
-    rows = np.arange(answer.count - 1)
-    arcs = Arcs(answer, rows, rows + 1)
+    arcs = row_to_row(answer)
     load, slopes, left = _fitted(answer, arcs)
     if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
         return ""

@@ -7,7 +7,7 @@ are usual.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
@@ -21,12 +21,24 @@ from taylor_verify.scenes.instants import evenly
 # A function from the states of all rows but the last (sets, components, arcs) to those one row later.
 Stepper = Callable[[Floats], Floats]
 
+# The standard of proof. What a cause leaves: of the error on the whole answer or of the defects, or so many
+# roundings of the file; never more than the caps, with no fitted number and with any.
+LEAVES: Final = 1e-3
+ROUNDINGS: Final = 3.0
+CAPS: Final = (0.1, 0.01)
+# More numbers must leave this much less; what leaves no more than this much more explains as well.
+BETTER: Final = 10.0
 _ROUNDS: Final = 5
 # The next correction is of second order.
 _SMALL: Final = 1e-6
 _LOST: Final = 1e3
 _DIFFERENCE: Final = 1e-6
 _SOME: Final = 24
+
+
+def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
+    """Return the part of these groups' errors that a cause with so many fitted numbers may leave."""
+    return min(max(LEAVES, ROUNDINGS * answer.floor(groups)), CAPS[min(count, 1)])
 
 
 def whole(
@@ -41,11 +53,10 @@ def whole(
     """
     n, count = answer.n, equations.coupled
     start = _start(answer, equations, count)
-    rows = _rows(answer, count)
+    rows = answer.states(count)
     times = answer.times
     if not answer.is_from_start:
         rows, times = np.vstack([start, rows]), np.r_[answer.begins, times]
-    rows = rows.copy()
     rows[0] = start
     since, spans = times[:-1], np.diff(times)
     if not len(spans):
@@ -70,17 +81,6 @@ def whole(
 def _start(answer: Answer, equations: Equations, count: int) -> Floats:
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     return np.concatenate([answer.first(equations.mass), *frame])[:count]
-
-
-def _rows(answer: Answer, count: int) -> Floats:
-    parts = [answer.file.v]
-    if count > answer.n:
-        parts.append(answer.attitudes)
-    if count > answer.n + 4:
-        own = answer.file.c if answer.file.c is not None else answer.truth.c
-        assert own is not None
-        parts.append(own)
-    return np.hstack(parts)
 
 
 def _enough_steps(
@@ -124,10 +124,15 @@ def _attitudes(
 ) -> Floats:
     """Return the attitudes of a motion; they are linear in the first one, given the moving part."""
     assert answer.start.q is not None
-    v = np.broadcast_to(rows[:-1].T, (4, rows.shape[1], len(spans)))
-    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, len(spans)))
-    ends = moved(answer, equations, np.concatenate([v, unit], axis=1), since, spans, steps)
+    ends = moved(answer, equations, with_units(rows[:-1].T), since, spans, steps)
     return chained(ends[:, rows.shape[1] :].transpose(2, 1, 0), answer.start.q[0])
+
+
+def with_units(v: Floats) -> Floats:
+    """Return v (n, arcs) with each of the four unit quaternions, (4, n + 4, arcs)."""
+    n, arcs = v.shape
+    unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, arcs))
+    return np.concatenate([np.broadcast_to(v, (4, n, arcs)), unit], axis=1)
 
 
 def chained(maps: Floats, first: Floats) -> Floats:

@@ -45,6 +45,7 @@ FACTORS: Final = {
     "thousands": 1e-3,
     "feet": 1 / 0.3048,
 }
+_NOUNS: Final = {"velocity": "the linear velocity", "centre": "the centre"}
 
 
 @dataclass(frozen=True)
@@ -61,21 +62,21 @@ def readings(answer: Answer) -> dict[str, Cause]:
     causes: dict[str, Cause] = {}
     for name in answer.failed:
         tried = _attitudes(answer) if name == "attitude" else _vectors(answer, name)
-        near = []
+        near, least = [], _ROUNDINGS * answer.roundings[name]
         for reading in tried:
             left = _left(answer, name, reading.rows)
-            least = _ROUNDINGS * answer.roundings[name]
             if left <= max(least, _PART * answer.worst[name]) and left < _MOST * answer.worst[name]:
                 near.append((reading.count, left, reading.name))
         if near:
             count = min(each[0] for each in near)
             same = sorted(each for each in near if each[0] == count)
+            noun = _NOUNS.get(name, name)
             alike = [each for each in same[1:4] if each[1] <= max(10 * same[0][1], least)]
             causes[name] = Cause(
-                f"{_noun(answer, name)} {same[0][2]}",
+                f"{noun} {same[0][2]}",
                 "convention",
                 {name: same[0][1] / answer.worst[name]},
-                alike=tuple(f"{_noun(answer, name)} {each[2]}" for each in alike),
+                alike=tuple(f"{noun} {each[2]}" for each in alike),
             )
     omega = causes.get("omega")
     is_alone = "attitude" in answer.failed and "attitude" not in causes
@@ -83,10 +84,6 @@ def readings(answer: Answer) -> dict[str, Cause]:
         # An axisymmetric body of the other sign looks like a turn.
         del causes["omega"]
     return causes
-
-
-def _noun(answer: Answer, name: str) -> str:
-    return {"velocity": "the linear velocity", "centre": "the centre"}.get(name, name)
 
 
 def _left(answer: Answer, name: str, rows: Floats) -> float:
@@ -236,13 +233,12 @@ def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
     for words, rows in (("", R), ("is transposed, and ", R.transpose(0, 2, 1))):
         for P in (P for P in SIGNED[1:] if np.linalg.det(P) > 0):
             S = file[0] @ P.T @ rows[0].T
-            turned = S @ rows @ P
-            middle = len(turned) // 2
-            if max(np.max(np.abs(turned[k] - file[k])) for k in (middle, -1)) > _NEAR:
+            some = [len(rows) // 2, -1]
+            if np.max(np.abs(S @ rows[some] @ P - file[some])) > _NEAR:
                 continue
             known = [s for s in SIGNED if np.max(np.abs(S - s)) < 1e-6]
             of_space = f"space axes {axes(known[0])}" if known else "space axes turned"
-            rotations = quaternion_columns(turned)
+            rotations = quaternion_columns(S @ rows @ P)
             unit = rotations / np.linalg.norm(rotations, axis=1, keepdims=True)
             name = f"{words}has other frames: body axes {axes(P.T)}, {of_space}, q = E q F"
             yield Reading(name, 0 if known else 3, unit)
@@ -252,9 +248,7 @@ def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
     """Return the attitude relative to a frame that turns at a constant rate, by Newton's method."""
     elapsed = answer.times - answer.begins
     early = np.argsort(np.abs(elapsed))[1 : max(3, len(elapsed) // 10)]
-    apart, rate = _small_turns(times(q, conjugate(truth))), np.zeros(3)
-    squares = max(float(np.sum(elapsed[early] ** 2)), 1e-300)
-    rate = np.sum(apart[early] * elapsed[early, None], axis=0) / squares
+    rate = _rate(_small_turns(times(q, conjugate(truth)))[early], elapsed[early])
     turned = truth
     for _ in range(4):
         turn = elapsed[:, None] * rate
@@ -262,10 +256,14 @@ def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
         frame = np.hstack([np.cos(angle / 2), np.sin(angle / 2) * turn / angle])
         turned = times(frame, truth)
         rest = _small_turns(times(q, conjugate(turned)))
-        rate = rate + np.sum(rest * elapsed[:, None], axis=0) / max(
-            float(np.sum(elapsed**2)), 1e-300
-        )
+        rate = rate + _rate(rest, elapsed)
     return Reading(f"is relative to a space frame that turns at {numbers(rate)}", 3, turned)
+
+
+def _rate(turns: Floats, elapsed: Floats) -> Floats:
+    """Return the constant rate that fits small turns best."""
+    squares = max(float(np.sum(elapsed**2)), 1e-300)
+    return np.asarray(np.sum(turns * elapsed[:, None], axis=0) / squares)
 
 
 def _small_turns(q: Floats) -> Floats:

@@ -32,23 +32,15 @@ def wrong_rows(answer: Answer) -> Cause | None:
     return _repeated(answer, wrong) or _interpolated(answer, bad) or _single(answer, wrong, good)
 
 
-def _time(answer: Answer, row: int) -> str:
-    return f"{answer.times[row] + answer.right.start:.6g}"
-
-
 def _repeated(answer: Answer, wrong: Places) -> Cause | None:
     parts = [part for part in (answer.file.v, answer.file.q, answer.file.c) if part is not None]
     is_repeated = all(
         row > 0 and all(np.array_equal(part[row], part[row - 1]) for part in parts) for row in wrong
     )
-    if not is_repeated or len(wrong) > answer.count // 2:
+    if not is_repeated or len(wrong) > answer.count // 2 or answer.stride != 1:
         return None
     count = "one row repeats" if len(wrong) == 1 else f"{len(wrong)} rows repeat"
-    name = (
-        f"{count} the row before (first at t = {_time(answer, int(wrong[0]))}); "
-        f"all others of {answer.count} rows are right"
-    )
-    return Cause(name, "rows", dict.fromkeys(answer.failed, 0.0))
+    return _of_some(answer, wrong, f"{count} the row before")
 
 
 def _single(answer: Answer, wrong: Places, good: Floats) -> Cause | None:
@@ -61,10 +53,14 @@ def _single(answer: Answer, wrong: Places, good: Floats) -> Cause | None:
     if not stands_out or is_end or len(wrong) > max(1, answer.count // _ONE_IN):
         return None
     count = "one row is" if len(wrong) == 1 else f"{len(wrong)} rows are"
-    name = (
-        f"{count} wrong (first at t = {_time(answer, int(wrong[0]))}); "
-        f"all others of {answer.count} rows are right"
-    )
+    return _of_some(answer, wrong, f"{count} wrong")
+
+
+def _of_some(answer: Answer, wrong: Places, what: str) -> Cause:
+    """Return the cause of an answer whose other rows are right."""
+    first = answer.times[wrong[0]] + answer.right.start
+    some = f"{answer.count} rows" if abs(answer.stride) == 1 else f"{answer.count} examined rows"
+    name = f"{what} (first at t = {first:.6g}); all others of {some} are right"
     return Cause(name, "rows", dict.fromkeys(answer.failed, 0.0))
 
 
@@ -72,20 +68,18 @@ def _single(answer: Answer, wrong: Places, good: Floats) -> Cause | None:
 
 
 def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
+    file, (rates, turns) = answer.file, _rates(answer)
     for every in range(2, _MOST_BETWEEN + 1):
         nodes = np.arange(0, answer.count, every)
         if len(nodes) < _FEWEST or np.any(bad[nodes]):
             continue
         for name, between in _KINDS.items():
-            motion = Motion(
-                between(answer, nodes, answer.file.v, _rates(answer)[0]),
-                None
-                if answer.file.q is None
-                else _unit(between(answer, nodes, answer.file.q, _rates(answer)[1])),
-            )
+            v = between(answer, nodes, file.v, rates)
+            q = None if file.q is None else _unit(between(answer, nodes, file.q, turns))
+            motion = Motion(v, q)
             leaves = _leaves_between(answer, motion, int(nodes[-1]))
             if leaves and max(leaves.values()) <= _allowed(answer, leaves):
-                words = f"{name} between exact rows: every {every} rows one is exact"
+                words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
                 return Cause(words, "interpolation", leaves)
     return None
 

@@ -46,15 +46,12 @@ def other_times(answer: Answer) -> Cause | None:
 
 def _offsets(answer: Answer) -> tuple[Floats, Floats]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
-    right, truth, _n = answer.right, answer.truth, answer.n
-    has_q = answer.file.q is not None and truth.q is not None
-    z, rows = truth.v.T, answer.file.v.T
+    right, truth, file = answer.right, answer.truth, answer.file
+    z, rows = truth.v.T, file.v.T
     scale = answer.sizes[:, None]
-    if has_q:
-        assert answer.file.q is not None
-        assert truth.q is not None
-        signs = np.sign(np.sum(answer.file.q * truth.q, axis=1))
-        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, answer.file.q.T * signs])
+    if file.q is not None and truth.q is not None:
+        signs = np.sign(np.sum(file.q * truth.q, axis=1))
+        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, file.q.T * signs])
         scale = np.vstack([scale, np.ones((4, 1))])
     spacing = float(np.median(np.abs(np.diff(answer.times))))
     late, at = np.zeros(answer.count), z[None]
@@ -81,7 +78,7 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
         return None
     mean = float(np.mean(late[1:]))
     if np.ptp(late[1:]) < _PATTERN * size:
-        rows = mean / spacing
+        rows = mean / spacing * answer.stride
         if abs(rows - round(rows)) < _PATTERN and round(rows):
             return f"rows shifted: row k holds the state of row k{round(rows):+d}"
         return (
@@ -90,7 +87,7 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
     return (
         _decimals(answer, size)
         or _single_precision(times, times + late, size)
-        or _factor_or_jumps(times, late, size, spacing)
+        or _factor_or_jumps(answer, late, size, spacing)
     )
 
 
@@ -114,16 +111,18 @@ def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
     return "times are a running sum in float32" if is_sum else None
 
 
-def _factor_or_jumps(times: Floats, late: Floats, size: float, spacing: float) -> str | None:
+def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) -> str | None:
+    times = answer.times
     line = np.polynomial.Polynomial.fit(times, late, 1)
     if np.max(np.abs(late - line(times))) < 1e-2 * size:
         return None
     jumps = np.flatnonzero(np.abs(np.diff(late)) > 0.2 * size)
-    if 0 < len(jumps) <= max(3, len(times) // 50):
-        rows = np.diff(late)[jumps] / spacing
+    if 0 < len(jumps) <= max(3, len(times) // 50) and answer.stride > 0:
+        rows = np.diff(late)[jumps] / spacing * answer.stride
         if np.max(np.abs(rows - np.rint(rows))) < _PATTERN:
+            first, off = answer.places[jumps[0] + 1] + 1, round(float(rows[0]))
             return (
-                f"rows dropped or doubled: from row {jumps[0] + 2} on, a row holds the state of row "
-                f"k{round(float(rows[0])):+d}"
+                f"rows dropped or doubled: from row {first} on, a row holds the state of row "
+                f"k{off:+d}"
             )
     return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"

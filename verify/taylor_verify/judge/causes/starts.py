@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.proof import CAPS, may_leave, whole
 
 # A defect of so many roundings, and of this part of the largest one, is a jump.
 _JUMP: Final = 40.0
@@ -22,8 +22,6 @@ _NOISE: Final = 1e-6
 _FEW: Final = 2
 _ONE_IN: Final = 50
 _OFF: Final = 10.0
-LEAVES: Final = 1e-3
-_ROUNDINGS: Final = 3.0
 _FEWEST: Final = 12
 _EARLY: Final = 20
 _STANDS_OUT: Final = 30.0
@@ -32,8 +30,7 @@ _AT_REST: Final = 4.0
 
 def roundings(answer: Answer) -> Floats:
     """Return the largest defect of each arc from row to row, in roundings of the file."""
-    rows = np.arange(answer.count - 1)
-    arcs = Arcs(answer, rows, rows + 1)
+    arcs = row_to_row(answer)
     ends = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
     defects = np.abs(arcs.end - ends) / answer.sizes[:, None]
     return np.asarray(np.max(defects / answer.rounding[:, None], axis=0))
@@ -55,7 +52,7 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         return _from_a_row(answer, first) if first else None
     begins = [0, *(int(row) + 1 for row in bad)]
     leaves = _leaves(answer, begins, is_off)
-    if leaves is None or max(leaves.values()) > _allowed(answer):
+    if leaves is None or max(leaves.values()) > may_leave(answer, answer.moving):
         return None
     last = answer.file.v[bad[-1] + 1 :]
     times = ", ".join(f"{answer.times[row + 1] + answer.right.start:.6g}" for row in bad[:4])
@@ -72,12 +69,13 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
     return Cause(name, "jump", leaves)
 
 
-def _allowed(answer: Answer) -> float:
-    return max(LEAVES, min(0.1, _ROUNDINGS * answer.floor(answer.moving)))
-
-
 def _is_at_rest(answer: Answer, rows: Floats) -> bool:
-    return bool(np.all(np.abs(rows) <= _AT_REST * np.maximum(answer.noise[0], 1e-300)))
+    return bool(np.all(np.abs(rows) <= _nothing(answer)))
+
+
+def _nothing(answer: Answer) -> Floats:
+    """Return the largest size of each component of v that is no motion."""
+    return np.asarray(_AT_REST * np.maximum(answer.noise[0], 1e-300))
 
 
 def _from_a_row(answer: Answer, first: int) -> Cause | None:
@@ -91,9 +89,9 @@ def _from_a_row(answer: Answer, first: int) -> Cause | None:
         for name in answer.failed
         if name in errors
     }
-    if max(leaves[name] for name in answer.moving) > _allowed(answer):
+    if max(leaves[name] for name in answer.moving) > may_leave(answer, answer.moving):
         return None
-    if leaves.get("attitude", 0.0) > 0.1:
+    if leaves.get("attitude", 0.0) > CAPS[0]:
         del leaves["attitude"]
     if first:
         begin, end = answer.times[0] + answer.right.start, answer.times[1] + answer.right.start
@@ -145,11 +143,11 @@ def last_right_row(answer: Answer, defects: Floats) -> int | None:
 
 def stopped(answer: Answer, row: int) -> Cause | None:
     """Return the cause of rows that are all the same after a row that is right."""
-    rest, limit = answer.file.v[row + 1 :], _AT_REST * np.maximum(answer.noise[0], 1e-300)
-    if np.any(np.ptp(rest, axis=0) > limit):
+    rest = answer.file.v[row + 1 :]
+    if np.any(np.ptp(rest, axis=0) > _nothing(answer)):
         return None
-    is_at_rest = bool(np.all(np.abs(rest[-1, -3:]) <= limit[-3:]))
     time = answer.times[row + 1] + answer.right.start
+    is_at_rest = _is_at_rest(answer, rest[-1])
     what = "all velocities are 0" if is_at_rest else "all rows have the same numbers"
     leaves = dict.fromkeys(answer.failed, 0.0)
     return Cause(f"right before t = {time:.6g}, and {what} from there on", "at rest", leaves)
