@@ -17,12 +17,6 @@ from taylor_verify.scenes.scene import Scene
 Document = dict[str, Any]
 
 
-def own_names(scene: Scene) -> frozenset[str]:
-    """Return the names of all states of the scene's own."""
-    loads = scene.body.loads
-    return frozenset() if loads is None else frozenset(state.name for state in loads.states)
-
-
 def acting_on(scene: Scene, course: Mapping[str, Any]) -> list[Document]:
     """Return a document for each load and each own state: its name, its rows, and whether it is held."""
     loads = scene.body.loads

@@ -14,6 +14,7 @@ from taylor_verify.records.quantities import (
     state_quantities,
 )
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import Clock, State
 
 
@@ -56,12 +57,15 @@ class Scene:
     @property
     def known_groups(self) -> Mapping[str, Group]:
         """All columns that a file may have, by their group; all states of the scene's own among them."""
-        loads = self.body.loads
-        states = () if loads is None else loads.states
-        return {**GROUPS, **{s.name: own_state(s.name, s.components)[1] for s in states}}
+        own = {s.name: own_state(s.name, s.components)[1] for s in self.own_states}
+        return {**GROUPS, **own}
+
+    @property
+    def own_states(self) -> tuple[Own, ...]:
+        """The states of the scene's own, tracked or not."""
+        return () if self.body.loads is None else self.body.loads.states
 
     @property
     def _own(self) -> list[tuple[Quantity, Group]]:
-        loads = self.body.loads
-        states = () if loads is None else loads.states
-        return [own_state(s.name, s.components) for s in states if s.name in self.states]
+        tracked = (state for state in self.own_states if state.name in self.states)
+        return [own_state(state.name, state.components) for state in tracked]
