@@ -68,17 +68,12 @@ def fixed_step(
     return solve
 
 
-def step(rates: Callable[[Any, list[Any]], list[Any]], t: Any, y: list[Any], h: Any) -> list[Any]:
-    """The classical Runge-Kutta method goes one step, in whatever numbers."""
-
-    def moved(slope: list[Any], share: Any) -> list[Any]:
-        return [a + share * s for a, s in zip(y, slope, strict=True)]
-
-    first = rates(t, y)
-    second = rates(t + h / 2, moved(first, h / 2))
-    third = rates(t + h / 2, moved(second, h / 2))
-    fourth = rates(t + h, moved(third, h))
-    return [
-        a + h / 6 * (p + 2 * q + 2 * r + s)
-        for a, p, q, r, s in zip(y, first, second, third, fourth, strict=True)
-    ]
+def step(rates: Callable[[Any, Any], Any], t: Any, y: Any, h: Any) -> Floats:
+    """Return the state after one step of the classical Runge-Kutta method, in whatever numbers."""
+    y = np.asarray(y)
+    a = np.asarray(rates(t, y))
+    b = np.asarray(rates(t + h / 2, y + a * (h / 2)))
+    c = np.asarray(rates(t + h / 2, y + b * (h / 2)))
+    d = np.asarray(rates(t + h, y + c * h))
+    after: Floats = y + (a + 2 * b + 2 * c + d) * (h / 6)
+    return after

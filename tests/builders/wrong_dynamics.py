@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from builders import integrators
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.answer import Motion, steady_signs
@@ -91,16 +92,8 @@ def simulated(
     if change is not None:
         change(n)
     times = n.times if times is None else times
-    count = len(n.state)
-    made = rate or (euler if count == 3 else kirchhoff)
-
-    def derivative(t: float, z: Array) -> Array:
-        state, q = z[:count], z[count:]
-        w = state if count == 3 else (n.tensor @ state)[3:]
-        return np.concatenate([made(state, q, n), turn(q, w)])
-
     solved = solve_ivp(
-        derivative,
+        derivative(n, rate, turn),
         (n.start, times[-1]),
         np.concatenate([n.state, n.q]),
         method=method,
@@ -109,6 +102,21 @@ def simulated(
         atol=tolerance * 1e-3,
     )
     return columns_of(times, solved.y.T)
+
+
+def derivative(
+    n: Numbers, rate: Rate | None = None, turn: Turn = turned
+) -> Callable[[float, Array], Array]:
+    """The rates of momenta and quaternion, one vector."""
+    count = len(n.state)
+    made = rate or (euler if count == 3 else kirchhoff)
+
+    def rates(_: float, z: Array) -> Array:
+        state, q = z[:count], z[count:]
+        w = state if count == 3 else (n.tensor @ state)[3:]
+        return np.concatenate([made(state, q, n), turn(q, w)])
+
+    return rates
 
 
 def columns_of(times: Array, rows: Array) -> Columns:
@@ -134,27 +142,16 @@ def runge_kutta(
     With ``factor`` the damping is applied once in a step: to the momenta, after the motion or first.
     """
     n = Numbers(scene)
-    count = len(n.state)
-    made = euler if count == 3 else kirchhoff
-    once = 1.0
+    count, once = len(n.state), 1.0
     if factor is not None:
         once, n.damping = factor(n.damping * h), 0.0
-
-    def derivative(z: Array) -> Array:
-        state, q = z[:count], z[count:]
-        w = state if count == 3 else (n.tensor @ state)[3:]
-        return np.concatenate([made(state, q, n), turned(q, w)])
-
     z = np.concatenate([n.state, n.q])
     steps = round((n.times[-1] - n.start) / h)
     rows = [z]
     for step in range(1, steps + 1):
         if factor_first:
             z = np.concatenate([once * z[:count], z[count:]])
-        k1 = derivative(z)
-        k2 = derivative(z + h / 2 * k1)
-        k3 = derivative(z + h / 2 * k2)
-        z = z + h / 6 * (k1 + 2 * k2 + 2 * k3 + derivative(z + h * k3))
+        z = integrators.step(derivative(n), 0.0, z, h)
         if not factor_first:
             z = np.concatenate([once * z[:count], z[count:]])
         if single:

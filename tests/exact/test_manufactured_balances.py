@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import step
 from mpmath import mp, mpf
 
 from taylor_verify.exact.route import solution
@@ -173,7 +175,7 @@ class Forced(Solver):
         rates = straight_line(problem.form, [float(p) for p in problem.parameters])
         state_size = len(problem.form.states) - 2 * len(motion_of(problem.given).waves)
 
-        def rate(t: float, since: float, z: Any) -> Any:
+        def rate(since: float, t: float, z: Any) -> Any:
             clock = self.clock(problem, t, since)
             return np.array(rates(t, [*z, *clock])[:state_size])
 
@@ -182,11 +184,7 @@ class Forced(Solver):
         h = float(problem.times[-1]) / self.steps
         for end in map(float, problem.times):
             while end - t > h / 2:
-                a = rate(t, t, z)
-                b = rate(t + h / 2, t, z + h / 2 * a)
-                c = rate(t + h / 2, t, z + h / 2 * b)
-                d = rate(t + h, t, z + h * c)
-                z, t = z + h / 6 * (a + 2 * b + 2 * c + d), t + h
+                z, t = step(partial(rate, t), t, z, h), t + h
             rows.append(in_scene_units(problem, z))
         return rows
 

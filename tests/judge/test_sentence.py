@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import step
 from builders.numbers import cross
 from builders.trajectories import Columns, columns_at, write_csv
 from builders.turns import by_turns
@@ -72,17 +73,14 @@ def runge_kutta_4() -> Columns:
     """The classical Runge-Kutta method with a step of 1/200."""
     inertia = np.array([1.0, 2.0, 3.0])
 
-    def rate(w: Any) -> Any:
+    def rate(_: float, w: Any) -> Any:
         return -cross(w, inertia * w) / inertia
 
     w, h, rows = np.array([float(v) for v in load(SCENE).initial.omega]), 1 / 200, []
     for _ in TIMES:
         rows.append(w)
         for _ in range(200):
-            k1 = rate(w)
-            k2 = rate(w + h / 2 * k1)
-            k3 = rate(w + h / 2 * k2)
-            w = w + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(w + h * k3))
+            w = step(rate, 0.0, w, h)
     return {
         "t": [float(t) for t in TIMES],
         **dict(zip(OMEGA, np.array(rows).T.tolist(), strict=True)),

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders import integrators
 from builders.scenes import asked_at
 from builders.trajectories import columns_at, write_csv
 from mpmath import mp, mpf
@@ -128,10 +129,7 @@ def runge_kutta(problem: Problem, step: float) -> Any:
         count = math.ceil(abs(instant - now) / step)
         for k in range(count):
             h, t = (instant - now) / count, now + k * (instant - now) / count
-            k1 = rates(t, z)
-            k2 = rates(t + h / 2, z + h / 2 * k1)
-            k3 = rates(t + h / 2, z + h / 2 * k2)
-            z = z + h / 6 * (k1 + 2 * k2 + 2 * k3 + rates(t + h, z + h * k3))
+            z = integrators.step(rates, t, z, h)
         now = instant
         rows.append(body["inverse_inertia"] @ z if is_euler else z)
     return np.array(rows)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from builders.integrators import step
 from builders.written_loads import euler, kirchhoff
 from mpmath import mp, mpf
 
@@ -226,15 +227,10 @@ def by_hand(problem: Problem) -> np.ndarray:  # type: ignore[type-arg]
     stops = sorted({*map(float, problem.switches), *elapsed})
     rows, now = [], 0.0
     for stop in (s for s in stops if 0 <= s <= elapsed[-1]):
-        h = (stop - now) / 200
+        # The last stage stays before the switch.
+        h = (stop - now) / 200 * (1 - 1e-15)
         for k in range(200):
-            # The last stage stays before the switch.
-            times = [now + (k + part) * h * (1 - 1e-15) for part in (0, 0.5, 1)]
-            a = rates(times[0], y)
-            b = rates(times[1], y + h / 2 * a)
-            c = rates(times[1], y + h / 2 * b)
-            d = rates(times[2], y + h * c)
-            y = y + h / 6 * (a + 2 * b + 2 * c + d)
+            y = step(rates, now + k * h, y, h)
         now = stop
         if stop in elapsed:
             rows.append(y)

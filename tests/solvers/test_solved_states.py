@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.integrators import step
 from mpmath import mp, mpf
 
 from taylor_verify.models.frame import rotation
@@ -188,7 +190,7 @@ def by_hand(problem: Problem) -> np.ndarray[Any, Any]:
     """All columns by the classical method, from each instant and each sample to the next."""
     start = float(problem.given.clock.start)
 
-    def rates(t: float, y: Any, held: Any) -> Any:
+    def rates(held: Any, t: float, y: Any) -> Any:
         return np.concatenate(
             [problem.loads(start + t, y, held), problem.rates(start + t, y, held)]
         )
@@ -197,11 +199,7 @@ def by_hand(problem: Problem) -> np.ndarray[Any, Any]:
     y, held = np.array([1.5, 0, 0]), np.array([0, 1 / 16, 0])
     rows, now, taken = [], Fraction(0), 0
     for stop in sorted({*times, *instants}):
-        t, h = float(now), float(stop - now)
-        a = rates(t, y, held)
-        b = rates(t + h / 2, y + h / 2 * a, held)
-        c = rates(t + h / 2, y + h / 2 * b, held)
-        y = y + h / 6 * (a + 2 * b + 2 * c + rates(t + h, y + h * c, held))
+        y = step(partial(rates, held), float(now), y, float(stop - now))
         now = stop
         if now in instants:
             held, taken = problem.taken(taken, y, held), taken + 1
