@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 
 from taylor_verify import check, explain
 from taylor_verify.exact.conditioning.condition import transition
-from taylor_verify.exact.conditioning.loaded import times_of_run
+from taylor_verify.exact.conditioning.path_times import times_of_run
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.records.status import Status

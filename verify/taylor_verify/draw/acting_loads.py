@@ -17,12 +17,6 @@ from taylor_verify.scenes.scene import Scene
 Document = dict[str, Any]
 
 
-def own_names(scene: Scene) -> frozenset[str]:
-    """Return the names of all states of the scene's own."""
-    loads = scene.body.loads
-    return frozenset() if loads is None else frozenset(state.name for state in loads.states)
-
-
 def acting_on(scene: Scene, course: Mapping[str, Any]) -> list[Document]:
     """Return a document for each load and each own state: its name, its rows, and whether it is held."""
     loads = scene.body.loads
@@ -43,10 +37,7 @@ def acting_on(scene: Scene, course: Mapping[str, Any]) -> list[Document]:
 def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
     """Return the loads in body axes, (times, 3) or (times, 6)."""
     moving = [np.array(course[name]) for name in scene.initial.MOVING]
-    turns = quaternions(np.array(course["attitude"]).reshape(-1, 3, 3))
-    if turns[0] @ np.array(scene.initial.attitude, dtype=float) < 0:
-        # The sign goes on from that of the start.
-        turns = -turns
+    turns = quaternions(np.array(course["attitude"]), scene.initial.attitude)
     centre = [np.array(course["centre"])] if "centre" in course else []
     state = np.hstack([*moving, turns, *centre, *_own(loads, course, is_held=False)])
     values = Acting(scene, loads).loads(course["t"], state, _taken(loads, course))

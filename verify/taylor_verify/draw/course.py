@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.draw.acting_loads import acting_on, own_names
+from taylor_verify.draw.acting_loads import acting_on
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
@@ -53,7 +53,8 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     ``intervals`` is the number of intervals of time; a body that turns fast gets more. Raises Unsettled if
     the motion cannot be computed to the digits of a picture.
     """
-    whole = replace(scene, track=frozenset(TRACKED[scene.model]), states=own_names(scene))
+    own = frozenset(state.name for state in scene.own_states)
+    whole = replace(scene, track=frozenset(TRACKED[scene.model]), states=own)
     exact, orbit = solution(whole), _orbit_of(scene)
     body = scene.body
     shape, rotor = getattr(body, "ellipsoid", None), body.parts().get("rotor")

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.numbers.tensors import Matrix
+from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.mpfr import real, sqrt
 
 Array = np.ndarray[Any, Any]
@@ -86,8 +87,11 @@ def nonzero(scale: Any) -> Any:
     return scale if scale != 0 else 0 * scale + 1
 
 
-def quaternions(attitudes: Array) -> Array:
-    """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour."""
+def quaternions(attitudes: Array, start: Quaternion | None = None) -> Array:
+    """Return unit quaternions (n, 4), scalar first; the sign of each is that of its neighbour.
+
+    The sign of the first is that of ``start``, if one is given.
+    """
     xx, xy, xz, yx, yy, yz, zx, zy, zz = attitudes.reshape(-1, 9).T
     # A unit quaternion q of R is the eigenvector to the greatest eigenvalue of this symmetric matrix.
     upper = [
@@ -97,6 +101,6 @@ def quaternions(attitudes: Array) -> Array:
         [yx - xy, xz + zx, yz + zy, zz - xx - yy],
     ]
     rows = np.linalg.eigh(np.moveaxis(np.array(upper), -1, 0)).eigenvectors[:, :, -1]
-    signs = np.where((rows[1:] * rows[:-1]).sum(axis=1) < 0, -1.0, 1.0)
-    rows[1:] *= np.cumprod(signs)[:, None]
-    return np.asarray(rows)
+    first = rows[0] if start is None else np.array(start, dtype=float)
+    signs = np.where((rows * np.vstack([first, rows[:-1]])).sum(axis=1) < 0, -1.0, 1.0)
+    return np.asarray(rows * np.cumprod(signs)[:, None])

@@ -221,9 +221,7 @@ class _Gates:
             return
         motion = exact.motion(given.clock.elapsed, digits)
         roundoff = float(self.run.problem.rung.unit_roundoff)
-        answer = {
-            name: self.run.trajectory.quantities[name] for name in self.run.trajectory.quantities
-        }
+        answer = self.run.trajectory.quantities
         for law in Laws(given, motion, orbit, answer, bits, roundoff):
             terms = Reason(floor=RoundoffFloor(Carried.LAW))
             yield Gate(self.run, law.errors, law.attainable, terms)

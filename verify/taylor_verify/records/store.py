@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -58,7 +58,7 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     ordered_runs = runs(verdicts)
     data = folder / FOLDER
     ordered = [verdict for run in ordered_runs for verdict in run.verdicts]
-    rows = [_without_digest(row(verdict)) for verdict in ordered]
+    rows = [row(verdict, apart=("scene",)) for verdict in ordered]
     same = {"versions": versions(ordered), "scenes": _digests(ordered)}
     text = laid_out({**_MADE_BY, **same, "verdicts": rows})
     # The verdicts are written last, so that the files they refer to are already there.
@@ -123,12 +123,6 @@ def with_digest(verdict: Verdict, digests: Mapping[str, str]) -> Verdict:
     return replace(verdict, provenance=provenance)
 
 
-def _without_digest(row: dict[str, Any]) -> dict[str, Any]:
-    own = {key: value for key, value in row["provenance"].items() if key != "scene"}
-    del row["provenance"]
-    return {**row, "provenance": own} if own else row
-
-
 def _digests(verdicts: Iterable[Verdict]) -> dict[str, str]:
     """Return the digest of each scene's text. Raises ValueError for two of one scene."""
     digests: dict[str, str] = {}
@@ -159,10 +153,13 @@ _DERIVED = ("because", "digits", "sentence", "until")
 _SELDOM = ("tolerance", "since", "change", "error_kind", "exponent")
 
 
-def row(verdict: Verdict) -> dict[str, Any]:
-    """Return a verdict as it is stored, without numbers that depend on the run or the machine."""
+def row(verdict: Verdict, apart: Collection[str] = ()) -> dict[str, Any]:
+    """Return a verdict as it is stored, without numbers that depend on the run or the machine.
+
+    ``apart`` are keys of its provenance that the document has once for many verdicts.
+    """
     stored = verdict.row()
-    del stored["seconds"]
+    del stored["seconds"], stored["provenance"]
     left_out = {*_DERIVED, *(name for name in _SELDOM if stored[name] is None)}
     if verdict.verdict is not Status.FAIL:
         # The sign of the shift by roundings differs on every machine.
@@ -171,9 +168,9 @@ def row(verdict: Verdict) -> dict[str, Any]:
         left_out.add("error_kind")
     for name in left_out:
         del stored[name]
-    apart = ("versions", *_MACHINE)
-    stored["provenance"] = {k: v for k, v in verdict.provenance.items() if k not in apart}
-    return stored
+    left_out = {"versions", *_MACHINE, *apart}
+    own = {key: value for key, value in verdict.provenance.items() if key not in left_out}
+    return {**stored, "provenance": own} if own else stored
 
 
 def _timings(ordered_runs: Iterable[Run]) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from taylor_verify.records.quantities import (
     state_quantities,
 )
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import Clock, State
 
 
@@ -56,14 +57,15 @@ class Scene:
     @property
     def known_groups(self) -> Mapping[str, Group]:
         """All columns that a file may have, by their group; all states of the scene's own among them."""
-        return {**GROUPS, **{group.name: group for _, group in self._every_own}}
+        own = {s.name: own_state(s.name, s.components)[1] for s in self.own_states}
+        return {**GROUPS, **own}
+
+    @property
+    def own_states(self) -> tuple[Own, ...]:
+        """The states of the scene's own, tracked or not."""
+        return () if self.body.loads is None else self.body.loads.states
 
     @property
     def _own(self) -> list[tuple[Quantity, Group]]:
-        return [each for each in self._every_own if each[1].name in self.states]
-
-    @property
-    def _every_own(self) -> list[tuple[Quantity, Group]]:
-        """All states of the scene's own, whether it tracks them or not."""
-        loads = self.body.loads
-        return [own_state(s.name, s.components) for s in (loads.states if loads else ())]
+        tracked = (state for state in self.own_states if state.name in self.states)
+        return [own_state(state.name, state.components) for state in tracked]

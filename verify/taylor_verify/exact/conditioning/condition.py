@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from math import ceil, inf, log10
 from typing import Any, Final
 
@@ -27,9 +27,9 @@ import numpy as np
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
-from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, times_of_run
+from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame
 from taylor_verify.exact.conditioning.momentum import momentum
-from taylor_verify.exact.conditioning.path_times import few, many
+from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
@@ -168,25 +168,21 @@ class Path:
         return bool((self.growth <= REGULAR * (1 + self.rate * times)).all())
 
     @cached_property
-    def _spans(self) -> dict[str, range]:
-        """The components of each block among those of all blocks."""
-        lengths = [
-            self.carried.own[name].shape[1] if name in self.carried.own else 3
-            for name in self.blocks
-        ]
-        ends = [0, *accumulate(lengths)]
-        return {name: range(ends[k], ends[k + 1]) for k, name in enumerate(self.blocks)}
+    def _spans(self) -> dict[str, slice]:
+        own = self.carried.own
+        lengths = (own[name].shape[1] if name in own else 3 for name in self.blocks)
+        ends = pairwise(accumulate(lengths, initial=0))
+        return {name: slice(*span) for name, span in zip(self.blocks, ends, strict=True)}
 
     def span(self, block: str) -> slice:
         """The components of a block among those of all blocks."""
-        span = self._spans[block]
-        return slice(span.start, span.stop)
+        return self._spans[block]
 
     @cached_property
     def places(self) -> Places:
         """The components of all blocks in the derivative, which has turn and centre always."""
         own = sum(rows.shape[1] for rows in self.carried.own.values())
-        body = sum(map(len, self._spans.values())) - own
+        body = 3 * (len(self.blocks) - len(self.carried.own))
         whole = self.momentum.shape[1] + 6
         places: Places = np.r_[0:body, whole : whole + own]
         return places

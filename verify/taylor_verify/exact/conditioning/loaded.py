@@ -20,7 +20,7 @@ from flint import arb, arb_mat
 from taylor_verify.exact.balls import balls, midpoint
 from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
-from taylor_verify.exact.conditioning.path_times import golden_shares
+from taylor_verify.exact.conditioning.path_times import MOST_OF_RUN, times_of_run
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Image
@@ -33,14 +33,9 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
 from taylor_verify.exact.taylor import Enclosing, Times
 from taylor_verify.numbers.precision import floor_log2, power_of_two
-from taylor_verify.scenes.instants import chosen
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# As many times between the samples as this, which share no rhythm with them.
-_POINTS: Final = 400
-# Up to this many samples the motion and its derivative come from one run.
-_MOST_SAMPLES: Final = 2000
 # Digits where the derivative alone is wanted.
 DIGITS: Final = 15
 
@@ -53,24 +48,9 @@ def frame(scene: Scene) -> frozenset[str]:
     return scene.track.union(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
-def times_of_run(scene: Scene) -> list[Fraction]:
-    """Return the times of samples, of instants, and some between, sorted away from the start.
-
-    Samples and instants are all there unless they are many.
-    """
-    elapsed, loads = scene.clock.elapsed, scene.body.loads
-    taken = [] if loads is None else [i.time for i in loads.instants(elapsed[-1])]
-    asked = (
-        times if len(times) <= _MOST_SAMPLES else chosen(times, _POINTS)
-        for times in (elapsed, taken)
-    )
-    between = (elapsed[-1] * share for share in golden_shares(_POINTS))
-    return sorted({Fraction(0), *chain(*asked), *between}, key=abs)
-
-
 def truth(scene: Scene, digits: int) -> Solution:
     """Return the exact solution; under written loads that which comes with the derivative of its motion."""
-    if scene.body.loads is None or len(scene.clock.elapsed) > _MOST_SAMPLES:
+    if scene.body.loads is None or len(scene.clock.elapsed) > MOST_OF_RUN:
         return solution(scene)
     return Linearised(scene, digits)
 

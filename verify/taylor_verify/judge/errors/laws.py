@@ -25,7 +25,7 @@ from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.loads.steps import needed
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.trajectory import motion_of
+from taylor_verify.solvers.trajectory import motion_of, rows_at
 
 Column = np.ndarray[Any, Any]
 
@@ -33,8 +33,8 @@ Column = np.ndarray[Any, Any]
 def laws_of(scene: Scene) -> list[str]:
     """Return the names of the laws of the held states that a scene tracks."""
     loads = scene.body.loads
-    states = () if loads is None else loads.states
-    return [_named_law(s) for s in states if isinstance(s, Held) and s.name in scene.states]
+    states = () if loads is None else loads.held_states
+    return [_named_law(state) for state in states if state.name in scene.states]
 
 
 def _named_law(state: Held) -> str:
@@ -66,16 +66,14 @@ class Laws:
     def __iter__(self) -> Iterator[Law]:
         """Yield the law of each state that rows of the answer determine."""
         loads = self.scene.body.loads
-        states = () if loads is None else loads.states
-        taken = (
-            {i.time: i.names for i in loads.instants(self._elapsed[-1])} if states and loads else {}
-        )
-        for state in states:
-            if isinstance(state, Held) and state.name in self.answer:
-                rows = [k for k, t in enumerate(self._elapsed) if state.name in taken.get(t, ())]
-                assert loads is not None
-                if rows and self._reads(loads, state) <= self._columns.keys():
-                    yield self._law(loads, state, rows)
+        if loads is None:
+            return
+        taken = {instant.time: instant.names for instant in loads.instants(self._elapsed[-1])}
+        for state in loads.held_states:
+            rows = [k for k, t in enumerate(self._elapsed) if state.name in taken.get(t, ())]
+            is_known = bool(rows) and state.name in self._numbers
+            if is_known and self._reads(loads, state) <= self._columns.keys():
+                yield self._law(loads, state, rows)
 
     @property
     def _elapsed(self) -> Sequence[Any]:
@@ -95,34 +93,49 @@ class Laws:
         places, count = _places(loads, state), len(self._elapsed)
         errors, floor = np.full(count, mpf(0), dtype=object), np.zeros(count)
         peaks = [or_one(peak) for peak in self.truth.peaks[state.name]]
-        sizes = self._sizes(places)
+        sizes = np.linalg.norm(self._rounded[:, :, places], axis=2).sum(axis=0)
         for k in rows:
             piece = loads.piece(self._elapsed[k])
             inputs = {name: column[k] for name, column in self._columns.items()}
             values = evaluated(piece, [piece.values[place] for place in places], inputs)
-            apart = self.answer[state.name][k] - np.array(values, dtype=object)
+            apart = self._numbers[state.name][k] - np.array(values, dtype=object)
             errors[k] = norms(apart[None, :])[0] / peaks[k]
-            floor[k] = self.roundoff * sizes[k] / float(peaks[k])
+            floor[k] = 2 * self.roundoff * sizes[k] / float(peaks[k])
         known = Errors(
             _named_law(state), f"max|{state.name}|", in_doubles(errors), np.zeros(count), {}
         )
         return Law(known, floor)
 
-    def _sizes(self, places: Sequence[int]) -> Floats:
-        """Return what one rounding of each step, number and value makes of a law, at every sample."""
-        along, at = Along(self.path), {time: k for k, time in enumerate(self.path.elapsed)}
-        rows = [at[time] for time in self._elapsed]
-        columns = [along.split(part)[2] for part in (along.sizes(), along.by_numbers())]
-        sizes: Floats = sum(np.linalg.norm(part[:, places], axis=1) for part in columns)
-        return 2 * sizes[rows]
+    @cached_property
+    def _numbers(self) -> Mapping[str, Column]:
+        """The numbers of the answer, formed once."""
+        return rows_at(self.answer, range(len(self._elapsed)))
+
+    @cached_property
+    def _along(self) -> Along:
+        return Along(self.path)
+
+    @cached_property
+    def _samples(self) -> list[int]:
+        """The places of the samples on the path."""
+        places = {time: k for k, time in enumerate(self.path.elapsed)}
+        return [places[time] for time in self._elapsed]
+
+    @cached_property
+    def _rounded(self) -> Floats:
+        """What one rounding of each step, and of each number, makes of all laws, at every sample."""
+        along = self._along
+        parts = [along.split(part)[2] for part in (along.sizes(), along.by_numbers())]
+        return np.array(parts)[:, self._samples]
 
     @cached_property
     def _columns(self) -> dict[str, Column]:
         """The columns of an answer by the names that texts have for them."""
-        motion, body = motion_of(self.answer, self.bits), self.scene.body
+        numbers, body = self._numbers, self.scene.body
+        motion = motion_of(numbers, self.bits)
         moving = self.scene.initial.MOVING
         columns = {"t": np.array([mp.convert(time) for time in self._elapsed], dtype=object)}
-        if all(name in self.answer for name in moving):
+        if all(name in numbers for name in moving):
             z = np.concatenate([motion[name] for name in moving], axis=1)
             if len(moving) > 1:
                 columns |= _named("x", z[:, :3]) | _named("y", z[:, 3:])
@@ -132,19 +145,18 @@ class Laws:
                 columns |= _named("w", z)
         if "attitude" in motion.quantities:
             columns |= dict(zip(ROTATION, motion["attitude"].reshape(-1, 9).T, strict=True))
-        if "quaternion" in self.answer:
+        if "quaternion" in numbers:
             columns |= dict(zip(QUATERNION, self._continuous().T, strict=True))
-        if "centre" in self.answer:
+        if "centre" in numbers:
             columns |= dict(zip(CENTRE, motion["centre"].T, strict=True))
-        for state in body.loads.states if body.loads is not None else ():
-            if state.name in self.answer and not isinstance(state, Held):
+        for state in self.scene.own_states:
+            if state.name in numbers and not isinstance(state, Held):
                 columns |= dict(zip(state.components, motion[state.name].T, strict=True))
         return columns
 
     def _continuous(self) -> Column:
         """The unit quaternions of the answer, with the sign of the exact motion."""
-        q, at = self.answer["quaternion"], {time: k for k, time in enumerate(self.path.elapsed)}
-        exact = Along(self.path).quaternions[[at[time] for time in self._elapsed]]
+        q, exact = self._numbers["quaternion"], self._along.quaternions[self._samples]
         signs = np.where(np.sum(q.astype(float) * exact, axis=1) < 0, -1, 1)
         unit: Column = q * signs[:, None] / norms(q)[:, None]
         return unit

@@ -173,9 +173,8 @@ def _untracked(scene: Scene) -> set[str]:
     return {*TRACKED[scene.model], *_own_states(scene)} - {each.name for each in scene.tracked}
 
 
-def _own_states(scene: Scene) -> list[str]:
-    loads = scene.body.loads
-    return [] if loads is None else [state.name for state in loads.states]
+def _own_states(scene: Scene) -> Iterator[str]:
+    return (state.name for state in scene.own_states)
 
 
 def _known(scene: Scene) -> list[str]:

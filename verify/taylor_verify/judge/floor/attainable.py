@@ -38,7 +38,6 @@ from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.quantities import UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
-from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -330,18 +329,16 @@ def condition(scene: Scene) -> Path:
 def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
     """Return the roundings with those of held values at their instants alone, and not in each step."""
     loads = orbit.scene.body.loads
-    if loads is None or not loads.held_values:
+    if loads is None or not loads.held_states:
         return rounded
     result, times = rounded.copy(), [abs(float(t)) for t in orbit.elapsed]
-    counts = {state.name: np.zeros(len(times)) for state in loads.states}
+    counts = {state.name: np.zeros(len(times)) for state in loads.held_states}
     for instant in loads.instants(orbit.elapsed[-1]):
         place = min(int(np.searchsorted(times, float(instant.time))), len(times) - 1)
         for name in instant.names:
             counts[name][place] += 1
-    for state in loads.states:
-        if isinstance(state, Held):
-            taken = np.sqrt(counts[state.name] / steps_at)
-            result[:, orbit.span(state.name)] *= taken[:, None]
+    for name, count in counts.items():
+        result[:, orbit.span(name)] *= np.sqrt(count / steps_at)[:, None]
     return result
 
 

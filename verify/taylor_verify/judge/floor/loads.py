@@ -243,8 +243,7 @@ class Along:
     @cached_property
     def quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
-        rows, start = quaternions(self.attitude), self.path.scene.initial.attitude
-        return rows if rows[0] @ np.array(start, dtype=float) >= 0 else -rows
+        return quaternions(self.attitude, self.path.scene.initial.attitude)
 
 
 @dataclass(frozen=True)

@@ -99,7 +99,7 @@ def _courses(path: Path) -> list[Course]:
 
 def _by_differences(path: Path) -> list[Course]:
     """Return the courses under written loads, whose derivatives are differences along the path."""
-    momenta, loads = _differences(path, path.momentum), path.scene.body.loads
+    momenta = _differences(path, path.momentum)
     courses = [momenta]
     if "attitude" in path.blocks:
         courses.append(_turns(path, momenta))
@@ -107,7 +107,7 @@ def _by_differences(path: Path) -> list[Course]:
         length = path.units["centre"]
         start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
         courses.append(_differences(path, path.centre + start))
-    taken = {} if loads is None else {s.name for s in loads.states if isinstance(s, Held)}
+    taken = {state.name for state in path.scene.own_states if isinstance(state, Held)}
     for name, rows in path.carried.own.items():
         x = rows / float(path.units[name])
         still = np.zeros_like(x)

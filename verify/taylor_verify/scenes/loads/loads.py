@@ -158,10 +158,11 @@ class Loads:
     @cached_property
     def held_values(self) -> tuple[str, ...]:
         """The components of all held states, in the scene's order; so are `Piece.values`."""
-        return tuple(name for state in self._held_states for name in state.components)
+        return tuple(name for state in self.held_states for name in state.components)
 
     @property
-    def _held_states(self) -> tuple[Held, ...]:
+    def held_states(self) -> tuple[Held, ...]:
+        """The states whose values are held, in the scene's order."""
         return tuple(state for state in self.states if isinstance(state, Held))
 
     def starting(self, own: Mapping[str, Vector]) -> Loads:
@@ -176,7 +177,7 @@ class Loads:
 
         Raises ValueError for more than ten thousand, and where two of them are one number of the rung.
         """
-        return instants(self._held_states, until, self.rung)
+        return instants(self.held_states, until, self.rung)
 
     @property
     def reads_attitude(self) -> bool:
@@ -208,9 +209,9 @@ class Loads:
 
     def _missing_starts(self) -> Iterator[Fault]:
         """Yield held states that are read before they are first taken, and have no start."""
-        at_once = [state for state in self._held_states if not state.offset]
+        at_once = [state for state in self.held_states if not state.offset]
         first = self._read_by(at_once)
-        for state in self._held_states:
+        for state in self.held_states:
             if state.start is None and (state.offset or not first.isdisjoint(state.components)):
                 expected = "a start, as the state is read before it is first taken"
                 yield Fault(f"states.{state.name}", 0, expected, "nothing")

@@ -111,8 +111,8 @@ def read(
 
 def own_columns(scene: Scene | None) -> Mapping[str, tuple[str, ...]]:
     """Return the columns of each state of the scene's own, tracked or not."""
-    loads = None if scene is None else scene.body.loads
-    return {} if loads is None else {state.name: state.components for state in loads.states}
+    states = () if scene is None else scene.own_states
+    return {state.name: state.components for state in states}
 
 
 def from_columns(
