@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
-from types import MappingProxyType
 from typing import TypeVar
 
 from taylor_verify.numbers import tensors
@@ -74,12 +73,12 @@ class Table:
             return None
         return self._left.pop(key)
 
-    def close(self, hints: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Report every key that was not taken; ``hints`` says for some keys what to write instead."""
-        for key in self._left:
+    def close(self, advice: Callable[[str, object], str] = lambda key, value: "") -> None:
+        """Report every key that was not taken; ``advice`` says for some keys what to write instead."""
+        for key, value in self._left.items():
             if self.faults.is_full:
                 break
-            mend = hints.get(key.lower()) or near(cut(key), self._known)
+            mend = advice(key, value) or near(cut(key), self._known)
             self.fault("a known key", f"`{cut(key)}`", cut(key), mend)
 
     def table(self, key: str) -> Table | None:
@@ -227,7 +226,9 @@ class Table:
         try:
             return (number or exact_number)(value)
         except ValueError as error:
-            self.fault(str(error), shown(value), key)
+            parts = quantity(value)
+            mend = f"write {parts[0]}, if {parts[1]} is the unit of this scene" if parts else ""
+            self.fault(str(error), shown(value), key, mend)
             return None
 
 
