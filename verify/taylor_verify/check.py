@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any, overload
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from taylor_verify.batch.judgements import Judgements
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.solver import Solver
 
 
 @overload
@@ -28,6 +30,16 @@ def check(
 ) -> Judgement: ...
 @overload
 def check(
+    scene: list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[Problem], Any] | Solver | str,
+    rung: Rung | str = "f64",
+    accept_conventions: bool = False,
+    partial: bool = False,
+    tolerance: Tolerances | Tolerance = None,
+    columns: Mapping[str, str] | None = None,
+) -> Judgements: ...
+@overload
+def check(
     scene: Scene | str | PathLike[str],
     solve_or_file: list[Any] | tuple[Any, ...],
     rung: Rung | str = "f64",
@@ -39,8 +51,8 @@ def check(
     steps: Sequence[float] | None = None,
 ) -> FilesJudgement: ...
 def check(
-    scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
+    scene: Scene | str | PathLike[str] | list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[Problem], Any] | Solver | str | PathLike[str] | Any,
     rung: Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
@@ -48,20 +60,22 @@ def check(
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
-) -> Judgement:
+) -> Judgement | Judgements:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
     ----------
     scene
-        A Scene, a path, or the name of a shipped scene.
+        A Scene, a path, or the name of a shipped scene; or a list of these for a callable, which is then
+        judged on all cores as by `run_many`.
     solve_or_file
-        A callable ``solve(problem) -> states``, the path of a trajectory file, a trajectory in memory, or a
-        list of these: answers of one solver at several steps. States have the shape (samples, n): row k is
-        the state at ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3,
-        centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body,
-        start and instants. A file is CSV, NPZ, Parquet, JSON or another of
-        solvers.files.formats.reading. In memory it is a pandas or polars DataFrame, an
+        A callable ``solve(problem)``, ``python:package.module:function``, the path of a trajectory file, a
+        trajectory in memory, or a list of these: answers of one solver at several steps. A callable returns
+        states of the shape (samples, n): row k is the state at ``problem.given.clock.instants[k]``. Its
+        columns are omega, q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own
+        units; ``problem.given`` holds the exact body, start and instants. It may also return (t, y), SciPy's
+        OdeResult, a dense output, which is sampled, or a trajectory in memory. A file is CSV, NPZ, Parquet,
+        JSON or another of solvers.files.formats.reading. In memory it is a pandas or polars DataFrame, an
         xarray Dataset, a dict of arrays such as
         ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
         OdeResult, whose states are in the order above (solvers.files.objects). Numbers are taken exactly.
@@ -97,13 +111,24 @@ def check(
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
         `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
-    if callable(solve_or_file):
+    from taylor_verify.solvers.registry import PYTHON
+    from taylor_verify.solvers.solver import Solver
+
+    is_named = isinstance(solve_or_file, str) and solve_or_file.startswith(PYTHON)
+    if callable(solve_or_file) or is_named or isinstance(solve_or_file, Solver):
         if columns:
             raise ValueError("expected `columns` with a trajectory, got them with a callable")
-        from taylor_verify.run import run
-        from taylor_verify.solvers.solver import Callback
+        if isinstance(scene, list | tuple):
+            from taylor_verify.run_many import run_many
 
-        return run(scene, Callback(solve_or_file), rung, tolerance)
+            return run_many(scene, solve_or_file, [rung], tolerance=tolerance)
+        from taylor_verify.run import run
+
+        return run(scene, solve_or_file, rung, tolerance)
+    if isinstance(scene, list | tuple):
+        raise ValueError(
+            "expected a callable with several scenes, got a trajectory @ solve_or_file"
+        )
     from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.series.files import judge_files
     from taylor_verify.judge.tolerances import tolerances

@@ -6,20 +6,23 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from os import PathLike
+    from typing import Any
 
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.files.file import TrajectoryFile
     from taylor_verify.solvers.solver import Solver
     from taylor_verify.solvers.trajectory import Trajectory
 
 
 def run(
     scene: Scene | str | PathLike[str],
-    solver: Solver | str = "taylor",
+    solver: Solver | Callable[..., Any] | str = "taylor",
     rung: Rung | str = "f64",
     tolerance: Tolerances | Tolerance = None,
     *,
@@ -32,7 +35,8 @@ def run(
     scene
         A Scene, a path, or the name of a shipped scene.
     solver
-        A Solver, or a name such as ``taylor?tol=1e-9`` or ``process:./mine``.
+        A Solver, a name such as ``taylor?tol=1e-9``, ``process:./mine`` or ``python:package.module:f``, or
+        a callable ``solve(problem)``, as `check` takes it.
     rung
         A Rung or ``f32 f64 f80 f128 mpN``.
     tolerance
@@ -65,6 +69,7 @@ def run(
     from taylor_verify.judge.judgement import judgement, unjudged
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.records.faults import Refused
     from taylor_verify.records.reason import Cause
     from taylor_verify.records.status import Status
     from taylor_verify.scenes.reading.reader import as_scene
@@ -85,6 +90,11 @@ def run(
     with costs.of(SOLVING):
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
+    if trajectory.file is not None:
+        try:
+            return _judged_as_file(scene, solver, rung, trajectory.file, asked)
+        except Refused as fault:
+            trajectory = Trajectory(Outcome.MISSHAPEN, detail=str(fault))
     judged = judgement(problem, solver, trajectory, seconds, asked)
     if causes:
         judged = with_causes(judged, problem, trajectory)
@@ -92,8 +102,24 @@ def run(
     return replace(judged, costs=total([costs.seconds, judged.costs]))
 
 
+def _judged_as_file(
+    scene: Scene, solver: Solver, rung: Rung, file: TrajectoryFile, asked: Tolerances
+) -> Judgement:
+    """Judge the rows of a user's function at their own times, under the name of the function."""
+    from dataclasses import replace
+
+    from taylor_verify.judge.files.judgement import judge_file
+
+    judged = judge_file(file, scene, rung, tolerances=asked)
+    verdicts = (replace(v, solver=solver.name, setting=solver.setting) for v in judged.verdicts)
+    record = judged.record and replace(judged.record, solver=solver.name)
+    return replace(judged, verdicts=tuple(verdicts), record=record)
+
+
 def solve(
-    scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
+    scene: Scene | str | PathLike[str],
+    solver: Solver | Callable[..., Any] | str = "taylor",
+    rung: Rung | str = "f64",
 ) -> Trajectory:
     """Solve one scene on one rung and return the trajectory, which nothing has judged.
 
@@ -145,9 +171,10 @@ def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
 
 def _answer(solver: Solver, problem: Problem) -> Trajectory:
     """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on."""
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.solver import raised
 
     try:
-        return solver.solve(problem)
+        return solver.answered(problem) if isinstance(solver, Callback) else solver.solve(problem)
     except SystemExit as end:
         return raised(end)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.util import find_spec
@@ -17,6 +18,8 @@ PROCESS = "process:"
 CLOSED_FORM = "closed-form:"
 # Solvers of other libraries, each in its own environment.
 OUTSIDE = "outside:"
+# A function of Python.
+PYTHON = "python:"
 
 
 class Family(NamedTuple):
@@ -52,6 +55,7 @@ FAMILIES = (
     Family(CLOSED_FORM, "closed_form", _ELLIPJ[0], _ELLIPJ, "scipy", "scipy"),
     Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
     Family(PROCESS, "process.process", "process:COMMAND"),
+    Family(PYTHON, "function", "python:package.module:function"),
     Family("fmu:", "fmu.fmu", _FMU[0], _FMU, "fmpy", "fmu"),
 )
 
@@ -92,14 +96,16 @@ def _module(family: Family) -> Any:
     return import_module(f"taylor_verify.solvers.{family.module}")
 
 
-def as_solver(solver: Solver | str) -> Solver:
-    """Return a Solver as it is, and that of a name; ValueError for anything else."""
+def as_solver(solver: Solver | Callable[..., Any] | str) -> Solver:
+    """Return a Solver as it is, and that of a name or of a callable; ValueError for anything else."""
     from taylor_verify.records.faults import brief
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.solver import Solver
 
     if isinstance(solver, str):
         return solver_named(solver)
     if isinstance(solver, Solver):
         return solver
-    mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
-    raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
+    if callable(solver):
+        return Callback.of(solver)
+    raise ValueError(f"expected a Solver, the name of one or a callable, got {brief(solver)}")

@@ -19,7 +19,8 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Trajectory
 
 
