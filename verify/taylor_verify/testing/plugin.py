@@ -162,8 +162,8 @@ def _judgement(
     from taylor_verify.records.faults import Refused
     from taylor_verify.run import run
     from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.registry import as_solver
-    from taylor_verify.solvers.solver import Callback
 
     raised: list[BaseException] = []
 
