@@ -74,9 +74,9 @@ def check(
         states of the shape (samples, n): row k is the state at ``problem.given.clock.instants[k]``. Its
         columns are omega, q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own
         units; ``problem.given`` holds the exact body, start and instants. It may also return (t, y),
-        SciPy's OdeResult, a dense output, which is sampled, or a trajectory in memory. A file is CSV, NPZ, Parquet,
-        JSON or another of solvers.files.formats.reading. In memory it is a pandas or polars DataFrame, an
-        xarray Dataset, a dict of arrays such as
+        SciPy's OdeResult, a dense output, which is sampled, or a trajectory in memory. A file is CSV,
+        NPZ, Parquet, JSON or another of solvers.files.formats.reading. In memory it is a pandas or polars
+        DataFrame, an xarray Dataset, a dict of arrays such as
         ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
         OdeResult, whose states are in the order above (solvers.files.objects). Numbers are taken exactly.
     rung

@@ -22,7 +22,8 @@ from typing import Any, Final, NoReturn
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
-from taylor_verify.cli.verbs import add, described, package_of, verbs
+from taylor_verify.cli.verbs import add, described, verbs
+from taylor_verify.records.plugins import package_of
 from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 

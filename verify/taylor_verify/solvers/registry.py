@@ -9,6 +9,8 @@ from importlib.util import find_spec
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
+from taylor_verify.records.plugins import Plugin, free
+
 if TYPE_CHECKING:
     from taylor_verify.solvers.solver import Solver
 
@@ -65,7 +67,7 @@ def solver_names() -> tuple[str, ...]:
     names = (
         _module(family).usages() if family.names is None else family.names for family in FAMILIES
     )
-    return tuple(chain.from_iterable(names))
+    return (*chain.from_iterable(names), *(plugin.name for plugin in _plugged()))
 
 
 def remarks() -> dict[str, str]:
@@ -77,7 +79,7 @@ def remarks() -> dict[str, str]:
         elif family.package and find_spec(family.package) is None:
             install = f"unavailable: pip install 'taylor-verify[{family.extra}]'"
             by_name |= dict.fromkeys(family.names, install)
-    return by_name
+    return by_name | {plugin.name: plugin.origin for plugin in _plugged()}
 
 
 def solver_named(name: str) -> Solver:
@@ -85,10 +87,22 @@ def solver_named(name: str) -> Solver:
     for family in FAMILIES:
         if f"{name}?".startswith(family.prefix):
             return cast("Solver", _module(family).named(name))
+    word, _, query = name.partition("?")
+    for plugin in _plugged():
+        if plugin.name == word:
+            from taylor_verify.solvers.function import solver_of
+
+            return solver_of(plugin.content, word, query)
     forms = ", ".join(family.form for family in FAMILIES)
     near = get_close_matches(name, solver_names(), n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise ValueError(f"expected a solver ({forms}), got {name!r}{hint}")
+
+
+def _plugged() -> list[Plugin]:
+    """Return the solvers of other packages whose names are not those of a family."""
+    words = (family.prefix.rstrip("?:") for family in FAMILIES)
+    return free("solvers", lambda plugin: iter((plugin.name.partition(":")[0],)), words)
 
 
 def _module(family: Family) -> Any:

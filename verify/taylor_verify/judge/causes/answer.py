@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.models.frame import rotation
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.scene import Scene
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 
@@ -56,7 +57,7 @@ class Answer:
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
     ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
-    ``places`` are the rows of the file, from 0, that these are.
+    ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
     """
 
     right: Equations
@@ -70,6 +71,7 @@ class Answer:
     places: Places
     decimals: int | None = None
     own_attitudes: Floats | None = None
+    scene: Scene | None = None
     begins: float = 0.0
 
     @property

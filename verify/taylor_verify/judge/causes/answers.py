@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
@@ -20,6 +21,7 @@ from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
+from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.printed import half_units
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
@@ -139,6 +141,7 @@ def explained(answer: Answer) -> Explained:
         causes = causes_of(answer)
     except _SILENT:
         return Explained()
+    causes += plugged_causes(answer, partial(_truth, has_momenta=answer.right.has_momenta))
     is_motion = bool(causes) and not any(map(_is_convention, causes))
     notes: tuple[str, ...] = ()
     if not causes:
@@ -227,6 +230,7 @@ def material(
         Budget(_BUDGET * right.size if has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
         every * np.array(rows),
         decimals,
+        scene=given,
     )
 
 
