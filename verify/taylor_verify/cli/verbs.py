@@ -3,8 +3,8 @@
 An entry point's name is the verb. It points to a module or an object with
 
     add(parser)      add arguments to the parser of the verb
-    run(arguments)   return an Answer (taylor_verify.cli.answer), or an exit status; stdout is for an Answer,
-                     and what a verb prints by itself goes to stderr
+    run(arguments)   return an Answer (taylor_verify.cli.answer), or an exit status; stdout is for it,
+                     what a verb prints by itself goes to stderr
     help, example    texts, which may be left out
 
 A plug-in is imported when its verb is called. One that cannot be imported, or whose name is taken, is named
