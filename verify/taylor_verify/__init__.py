@@ -15,6 +15,8 @@ function is called, so that `import taylor_verify` is quick. Some of those modul
 function: write `from taylor_verify.exact.route import solution`, never `taylor_verify.exact.route`.
 """
 
+from typing import TYPE_CHECKING, Any
+
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
 from taylor_verify.check import check
@@ -26,7 +28,27 @@ from taylor_verify.run_many import run_many
 from taylor_verify.scenes import load
 from taylor_verify.tradeoff import recommend, tradeoff
 
+if TYPE_CHECKING:
+    from taylor_verify.types import (
+        Judgement,
+        Motion,
+        Problem,
+        Recommendation,
+        Refused,
+        Scene,
+        Trajectory,
+        Verdict,
+    )
+
 __all__ = [
+    "Judgement",
+    "Motion",
+    "Problem",
+    "Recommendation",
+    "Refused",
+    "Scene",
+    "Trajectory",
+    "Verdict",
     "__version__",
     "check",
     "exact",
@@ -38,3 +60,12 @@ __all__ = [
     "solve",
     "tradeoff",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Return a type by its name: they need numbers, and are imported when they are asked for."""
+    from taylor_verify import types
+
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(types, name)

@@ -2,65 +2,59 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+from taylor_verify import types
 
-    from taylor_verify.batch.judgements import Judgements
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.series.files import FilesJudgement
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
-    from taylor_verify.models.problem import Problem
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.solver import Solver
+if TYPE_CHECKING:
+    pass
 
 
 @overload
 def check(
-    scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
-    rung: Rung | str = "f64",
+    scene: types.Scene | str | PathLike[str],
+    solve_or_file: Callable[[types.Problem], Any] | str | PathLike[str] | Any,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
-) -> Judgement: ...
+) -> types.Judgement: ...
 @overload
 def check(
     scene: list[Any] | tuple[Any, ...],
-    solve_or_file: Callable[[Problem], Any] | Solver | str,
-    rung: Rung | str = "f64",
+    solve_or_file: Callable[[types.Problem], Any] | types.Solver | str,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
-) -> Judgements: ...
+) -> types.Judgements: ...
 @overload
 def check(
-    scene: Scene | str | PathLike[str],
+    scene: types.Scene | str | PathLike[str],
     solve_or_file: list[Any] | tuple[Any, ...],
-    rung: Rung | str = "f64",
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
-) -> FilesJudgement: ...
+) -> types.FilesJudgement: ...
 def check(
-    scene: Scene | str | PathLike[str] | list[Any] | tuple[Any, ...],
-    solve_or_file: Callable[[Problem], Any] | Solver | str | PathLike[str] | Any,
-    rung: Rung | str = "f64",
+    scene: types.Scene | str | PathLike[str] | list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[types.Problem], Any] | types.Solver | str | PathLike[str] | Any,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
-) -> Judgement | Judgements:
+) -> types.Judgement | types.Judgements:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters

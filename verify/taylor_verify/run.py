@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from os import PathLike
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify import types
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from os import PathLike
-    from typing import Any
-
     from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
+    from taylor_verify.judge.tolerances import Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 def run(
-    scene: Scene | str | PathLike[str],
-    solver: Solver | Callable[..., Any] | str = "taylor",
-    rung: Rung | str = "f64",
-    tolerance: Tolerances | Tolerance = None,
+    scene: types.Scene | str | PathLike[str],
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
+    rung: types.Rung | str = "f64",
+    tolerance: types.Tolerances | types.Tolerance = None,
     *,
     causes: bool = True,
-) -> Judgement:
+) -> types.Judgement:
     """Solve one scene on one rung and judge the answer.
 
     Parameters
@@ -117,10 +117,10 @@ def _judged_as_file(
 
 
 def solve(
-    scene: Scene | str | PathLike[str],
-    solver: Solver | Callable[..., Any] | str = "taylor",
-    rung: Rung | str = "f64",
-) -> Trajectory:
+    scene: types.Scene | str | PathLike[str],
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
+    rung: types.Rung | str = "f64",
+) -> types.Trajectory:
     """Solve one scene on one rung and return the trajectory, which nothing has judged.
 
     Parameters

@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Iterator
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify import types
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from concurrent.futures import Executor
-    from os import PathLike
-    from typing import Any
-
-    from taylor_verify.batch.judgements import Judgements
-    from taylor_verify.batch.judging import Progress
-    from taylor_verify.batch.selection import Selection
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.solver import Solver
+    pass
 
 
 def run_many(
     scenes: (
-        Selection | Iterable[Scene | str | PathLike[str]] | Scene | str | PathLike[str] | None
+        types.Selection
+        | Iterable[types.Scene | str | PathLike[str]]
+        | types.Scene
+        | str
+        | PathLike[str]
+        | None
     ) = None,
-    solver: Solver | Callable[..., Any] | str = "taylor",
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
     rungs: Iterable[str] | str | None = None,
     jobs: int | None = None,
-    executor: Executor | None = None,
+    executor: types.Executor | None = None,
     resume: bool = False,
     out: str | PathLike[str] | None = None,
-    progress: Progress | None = None,
-    tolerance: Tolerances | Tolerance = None,
-) -> Judgements:
+    progress: types.Progress | None = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
+) -> types.Judgements:
     """Solve many scenes on some rungs and judge the answers.
 
     Parameters

@@ -6,22 +6,19 @@ of it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import os
-
-    from taylor_verify.scenes.motion import Motion
-    from taylor_verify.scenes.scene import Scene
+from taylor_verify import types
 
 
 def exact(
-    scene: Scene | str | os.PathLike[str],
+    scene: types.Scene | str | os.PathLike[str],
     times: Iterable[Any],
     digits: int = 30,
     route: str | None = None,
-) -> Motion:
+) -> types.Motion:
     """Return the exact motion of a scene at given times.
 
     Parameters

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from typing import Any
 
-if TYPE_CHECKING:
-    from os import PathLike
-
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
+from taylor_verify import types
 
 
-def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dict[str, Any]:
+def explain(
+    scene: types.Scene | str | PathLike[str], rung: types.Rung | str = "f64"
+) -> dict[str, Any]:
     """Run a scene on one rung and explain the equations, the orbit and the terms of each bound.
 
     Parameters

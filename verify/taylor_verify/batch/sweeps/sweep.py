@@ -117,6 +117,8 @@ def sweep(
         tolerated = tolerances(tolerance, asked.examples())
         chosen = _solver(solver)
         manifest = _manifest(asked, chosen, rung_named(rung), tolerated)
+    except Refused:
+        raise
     except ValueError as error:
         raise ValueError("\n".join([*faults, str(error)])) from None
     if faults:

@@ -78,6 +78,8 @@ class _Builder:
     def root(self, content: bytes) -> Node:
         try:
             self._parser.Parse(content, True)  # noqa: FBT003 (Parse has no names)
+        except Refused:
+            raise
         except (expat.ExpatError, LookupError, ValueError) as error:
             line = f"expected an XML document, got a fault in it: {error} @ {self._path}"
             raise Refused([line]) from None

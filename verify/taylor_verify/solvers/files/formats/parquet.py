@@ -25,7 +25,7 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
     try:
         texts = _checked(parquet.ParquetFile(file), path)
         table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
-    except MemoryError:
+    except (MemoryError, Refused):
         raise
     except (ArrowException, OSError, ValueError) as error:
         reason = str(error).splitlines()[0]
