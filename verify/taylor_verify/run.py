@@ -141,6 +141,8 @@ def solve(
     ValueError
         For a name that is no solver or no rung.
     """
+    from dataclasses import replace
+
     from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
@@ -148,7 +150,11 @@ def solve(
 
     solver = as_solver(solver)
     problem = posed(as_scene(scene), solver, rung_named(rung))
-    return problem if isinstance(problem, Trajectory) else _answer(solver, problem)
+    if isinstance(problem, Trajectory):
+        return problem
+    answered = _answer(solver, problem)
+    times = problem.given.clock.instants if answered.file is None else answered.file.times
+    return replace(answered, times=tuple(times) if answered.quantities else ())
 
 
 def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:

@@ -40,7 +40,7 @@ def exact(
         A row for each time, in body axes but for ``centre``: omega (n, 3), or linear_impulse and
         angular_impulse (n, 3), and, where tracked, attitude (n, 3, 3) from body to space and centre (n, 3).
         ``radius`` (n,) bounds the relative error of each vector: proven, or for ``mpmath`` as far as two
-        precisions agree.
+        precisions agree. Each number prints with all the ``digits``.
 
     Raises
     ------
@@ -59,10 +59,17 @@ def exact(
     The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics 48 (3), (4). The
     formulas of a closed form are named in exact.euler and exact.kirchhoff.
     """
+    from taylor_verify.exact.printed import printable
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
+    from taylor_verify.exact.solution import Unsettled
     from taylor_verify.scenes.reading.reader import as_scene
 
-    scene, digits = as_scene(scene), check_digits(digits)
-    elapsed = [time - scene.clock.start for time in exact_times(times)]
-    return solution(scene, route).motion(elapsed, digits)
+    scene, digits, asked = as_scene(scene), check_digits(digits), exact_times(times)
+    elapsed = [time - scene.clock.start for time in asked]
+    try:
+        return printable(solution(scene, route).motion(elapsed, digits), asked, digits)
+    except Unsettled as doubt:
+        if doubt.motion is not None:
+            doubt.motion = printable(doubt.motion, [asked[k] for k in doubt.places], digits)
+        raise

@@ -24,6 +24,7 @@ from taylor_verify.models.registry import mechanics
 from taylor_verify.models.written import unit_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import exact_value, held_exactly
+from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
@@ -134,8 +135,8 @@ def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Moti
     return Motion(by_name, np.array([mp.zero] * samples, dtype=object))
 
 
-@dataclass(frozen=True)
-class Trajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(Sampled):
     """The answer of one solver to one problem.
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse``, ``centre`` (n, 3) and
@@ -156,6 +157,12 @@ class Trajectory:
     compile_seconds: float = 0.0
     inner_seconds: float | None = None
     file: TrajectoryFile | None = None
+    times: Sequence[Fraction] = ()
+
+    @property
+    def _remark(self) -> str:
+        reason = f" ({self.detail})" if self.detail else ""
+        return f", {self.outcome.value}{reason}"
 
     def motion(self, bits: int) -> Motion:
         """Return the answer as a Motion; ``bits`` is the precision of attitude matrices."""
