@@ -14,7 +14,9 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import os
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib import import_module
@@ -28,6 +30,7 @@ from taylor_verify.records.version import __version__
 from taylor_verify.scenes.names import escaped
 
 _VERB: Final = "VERB"
+COLOURS: Final = ("auto", "always", "never")
 # What this distribution publishes is not on the first page of help.
 _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
@@ -120,8 +123,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   (velocity of the body's origin, body axes; with w1 w2 w3 in place of the impulses); x1 x2 x3 y1 y2 y3
   (impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 (centre, space
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
-  and a note says so. All other columns are ignored, and a note names them. Several files are the answers
-  of one solver at several steps: their order of convergence is shown too
+  and a note says so. All other columns are ignored, and a note names them. `-` is standard input. Several
+  files are the answers of one solver at several steps: their order of convergence is shown too
 --columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); a
   comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
@@ -215,6 +218,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
             options.verb.error(f"expected a value, got -- @ {option}")
     if options.completion:
         options.act = partial(_complete, options.completion)
+    elif options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
+        parser.error(f"expected a verb, got none ({', '.join(_VERBS)})")
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
     if hasattr(options, "unknown"):
@@ -295,8 +300,34 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
     return rungs, scenes
 
 
+# What argparse says of a wrong call, and the same as a sentence of this program.
+_SENTENCES: Final = tuple(
+    (re.compile(pattern), sentence)
+    for pattern, sentence in (
+        (r"the following arguments are required: (.*)", r"expected \1, got none"),
+        (
+            r"argument ([^:]+): invalid choice: (.+) \(choose from (.+)\)",
+            r"expected \3, got \2 @ \1",
+        ),
+        (
+            r"argument ([^:]+): expected (?:one|at least one) argument",
+            r"expected a value, got none @ \1",
+        ),
+        (r"argument ([^:]+): ignored explicit argument (.+)", r"expected no value, got \2 @ \1"),
+        (r"argument ([^:]+): (expected .+)", r"\2 @ \1"),
+    )
+)
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
+
+    def error(self, message: str) -> NoReturn:
+        for pattern, sentence in _SENTENCES:
+            if match := pattern.fullmatch(message):
+                message = match.expand(sentence)
+                break
+        super().error(message)
 
     def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         super().exit(status, message and escaped(message))
@@ -322,7 +353,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         choices=SHELLS,
         help=f"print the script by which a shell completes words: {', '.join(SHELLS)} (needs shtab)",
     )
-    parser.set_defaults(act=_greet, verb=parser, json=False)
+    parser.set_defaults(act=_greet, verb=parser, json=False, quiet=False, color=COLOURS[0])
     own = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in _VERBS.items():
         verb = _verb_parser(own, name, what, example)
@@ -354,6 +385,15 @@ def _verb_parser(
         allow_abbrev=False,
     )
     verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+    verb.add_argument(
+        "-q", "--quiet", action="store_true", help="print the last line of the answer alone"
+    )
+    verb.add_argument(
+        "--color",
+        choices=COLOURS,
+        default=COLOURS[0],
+        help="when to print in colours; default: auto",
+    )
     verb.set_defaults(verb=verb)
     return verb
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -12,6 +13,7 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
+from taylor_verify.cli.streams import MANNER
 from taylor_verify.scenes.names import escaped
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
@@ -49,7 +51,11 @@ class Page:
     """
 
     def __init__(self, piped_width: int = PIPED_WIDTH) -> None:
-        self.console = EscapingConsole(markup=False, emoji=False, highlight=False)
+        styles: dict[str, Any] = {
+            "always": {"force_terminal": True, "color_system": "standard"},
+            "never": {"color_system": None},
+        }.get(MANNER.colour, {})
+        self.console = EscapingConsole(markup=False, emoji=False, highlight=False, **styles)
         if not sys.stdout.isatty():
             self.console.width = piped_width
         self.console.begin_capture()

@@ -6,12 +6,31 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import TextIO
+from dataclasses import dataclass
+from typing import Final, TextIO
 
 from taylor_verify.scenes.names import escaped
 
 
+@dataclass
+class Manner:
+    """How the program talks: ``quiet`` without messages, in ``colour`` auto, always or never."""
+
+    quiet: bool = False
+    colour: str = "auto"
+
+
+MANNER: Final = Manner()
+
+
 def say(message: str) -> None:
+    """Print a message, unless the caller asked for none."""
+    if not MANNER.quiet:
+        tell(message)
+
+
+def tell(message: str) -> None:
+    """Print a message in any case."""
     tell_runner(f"taylor-verify: {message}")
 
 
