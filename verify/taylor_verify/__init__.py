@@ -5,6 +5,7 @@
     solve(scene, solver, rung)      the trajectory of a solver, not yet judged
     run(scene, solver, rung)        solve, compare with the exact motion, judge
     run_many(scenes, solver, rungs) the same for many scenes on all cores
+    sweep(family)                   many bodies and starts, with the worst of them
     check(scene, solve_or_file)     judge a solver, or a trajectory, of one's own
     explain(scene, rung)            the equations, the orbit and the terms of each bound
     tradeoff(scene)                 time against error for every setting
@@ -26,6 +27,7 @@ from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
 from taylor_verify.run_many import run_many
 from taylor_verify.scenes import load
+from taylor_verify.sweep import sweep
 from taylor_verify.tradeoff import recommend, tradeoff
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ __all__ = [
     "run",
     "run_many",
     "solve",
+    "sweep",
     "tradeoff",
 ]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -21,6 +21,11 @@ PIPED_WIDTH = 140
 
 
 Cell = str | Text
+
+_STYLES: Final[Mapping[str, dict[str, Any]]] = {
+    "always": {"force_terminal": True, "color_system": "standard"},
+    "never": {"color_system": None},
+}
 
 # The blanks between two columns, one where this makes room for all.
 _GAP = 2
@@ -51,10 +56,7 @@ class Page:
     """
 
     def __init__(self, piped_width: int = PIPED_WIDTH) -> None:
-        styles: dict[str, Any] = {
-            "always": {"force_terminal": True, "color_system": "standard"},
-            "never": {"color_system": None},
-        }.get(MANNER.colour, {})
+        styles = _STYLES.get(MANNER.colour, {})
         self.console = EscapingConsole(markup=False, emoji=False, highlight=False, **styles)
         if not sys.stdout.isatty():
             self.console.width = piped_width

@@ -86,7 +86,7 @@ def of_gazebo(plugin: Node, reading: Reading) -> Water:
     for child in plugin.children:
         if match := _DERIVATIVE.fullmatch(child.name):
             i, k = _FORCES.index(match[1]), [*_SPEEDS].index(match[2])
-            added[i][k] = -(reading.number(child, child.text, child.name) or 0)
+            added[i][k] = -(reading.number(child, child.text, child.name) or Fraction(0))
         elif match := _DRAG.fullmatch(child.name):
             number = reading.number(child, child.text, child.name)
             terms[_FORCES.index(match[1])] += term(number, _speeds(*match.groups()[1:]))
