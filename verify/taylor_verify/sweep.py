@@ -70,6 +70,6 @@ def sweep(
 
     asked = {"count": count, "seed": seed, "points": points}
     how = {"solver": solver, "rung": rung, "tolerance": tolerance, "executor": executor}
-    kept = {"jobs": jobs, "out": out, "resume": resume, "worst": worst, "ahead": ahead}
-    options: dict[str, Any] = {**asked, **how, **kept}
+    where = {"jobs": jobs, "out": out, "resume": resume, "worst": worst, "ahead": ahead}
+    options: dict[str, Any] = {**asked, **how, **where}
     return room.sweep(what, **options)

@@ -13,21 +13,20 @@ a verb are a text: a line for each, with its help two blanks behind it, which go
 from __future__ import annotations
 
 import argparse
-import difflib
 import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib import import_module
-from typing import Any, Final, NoReturn
+from typing import Final
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
+from taylor_verify.cli.parser import Parser, add_argument, near_word, unknown_words
 from taylor_verify.cli.verbs import add, described, verbs
 from taylor_verify.records.plugins import package_of
 from taylor_verify.records.version import __version__
-from taylor_verify.scenes.names import escaped
 
 _VERB: Final = "VERB"
 COLOURS: Final = ("auto", "always", "never")
@@ -36,8 +35,7 @@ _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
-# Name, whether it must be given, sign, value, default and help of an argument.
-_ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
+
 
 _SCENE: Final = "SCENE  a scene file, or the name of a shipped scene (`taylor-verify list`)"
 _RUNG: Final = (
@@ -226,7 +224,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
         # A verb of a plug-in may name an unknown word itself, beside what there is.
         options.unknown, left = left, []
     if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
-        options.verb.error(_unknown_words(left, options.verb))
+        options.verb.error(unknown_words(left, options.verb))
     if scenes is not None:
         # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
         options.rung, taken = _split(options.rung)
@@ -241,23 +239,7 @@ def _unknown_verb(arguments: Sequence[str]) -> str:
     """Return the message for a first word that is no verb, with those that are near to it."""
     word = next(word for word in arguments if not word.startswith("-"))
     known = [*_VERBS, *(verb.name for verb in verbs(_VERBS))]
-    return (
-        f"expected a verb, got {word} ({_near(word, known, '`taylor-verify --help` names them')})"
-    )
-
-
-def _unknown_words(words: Sequence[str], verb: argparse.ArgumentParser) -> str:
-    """Return the message for words that a verb does not take, with the options that may be meant."""
-    known = re.findall(r"--[a-z-]+", verb.format_usage())
-    options = [word for word in words if word.startswith("-")]
-    named = [f"{word} ({_near(word, known, 'there is none like it')})" for word in options]
-    expected = "the options" if named else "no words but those"
-    return f"expected {expected} above, got {', '.join(named or words)}"
-
-
-def _near(word: str, known: Iterable[str], otherwise: str) -> str:
-    close = difflib.get_close_matches(word.partition("=")[0], [*known], n=3, cutoff=0.65)
-    return f"did you mean {', '.join(close)}?" if close else otherwise
+    return f"expected a verb, got {word} ({near_word(word, known, '`taylor-verify --help` names them')})"
 
 
 def _greet(options: argparse.Namespace) -> Answer:
@@ -300,42 +282,9 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
     return rungs, scenes
 
 
-# What argparse says of a wrong call, and the same as a sentence of this program.
-_SENTENCES: Final = tuple(
-    (re.compile(pattern), sentence)
-    for pattern, sentence in (
-        (r"the following arguments are required: (.*)", r"expected \1, got none"),
-        (
-            r"argument ([^:]+): invalid choice: (.+) \(choose from (.+)\)",
-            r"expected \3, got \2 @ \1",
-        ),
-        (
-            r"argument ([^:]+): expected (?:one|at least one) argument",
-            r"expected a value, got none @ \1",
-        ),
-        (r"argument ([^:]+): ignored explicit argument (.+)", r"expected no value, got \2 @ \1"),
-        (r"argument ([^:]+): (expected .+)", r"\2 @ \1"),
-    )
-)
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
-
-    def error(self, message: str) -> NoReturn:
-        for pattern, sentence in _SENTENCES:
-            if match := pattern.fullmatch(message):
-                message = match.expand(sentence)
-                break
-        super().error(message)
-
-    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        super().exit(status, message and escaped(message))
-
-
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Return the parser; verbs of other packages are loaded if they are among the words."""
-    parser = _Parser(
+    parser = Parser(
         prog="taylor-verify",
         description="Find out how wrong a simulation is: of a rigid body, or of a solid in an ideal "
         "fluid. Its numbers are compared with the exact motion.",
@@ -360,7 +309,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         verb.set_defaults(act=partial(_act, name))
         for line in arguments.replace("\n  ", " ").split("\n"):
             if line:
-                _add(verb, line)
+                add_argument(verb, line)
     first = next((word for word in words if not word.startswith("-")), "")
     # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
     for plugged in verbs(_VERBS) if first not in _VERBS else ():
@@ -374,7 +323,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _verb_parser(
-    verbs: argparse._SubParsersAction[_Parser], name: str, what: str, example: str
+    verbs: argparse._SubParsersAction[Parser], name: str, what: str, example: str
 ) -> argparse.ArgumentParser:
     """Return the parser of a verb, with what every verb has."""
     verb = verbs.add_parser(
@@ -402,33 +351,3 @@ def _act(name: str, options: argparse.Namespace) -> Answer:
     """Import the module of a verb and let it answer."""
     answer: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
     return answer
-
-
-def _whole_number(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"expected a whole number, got {text!r:.60}") from None
-
-
-def _add(verb: argparse.ArgumentParser, line: str) -> None:
-    """Add the argument that a line of the text describes."""
-    match = _ARGUMENT.fullmatch(line)
-    assert match is not None, line
-    name, required, sign, value, default, meaning = match.groups()
-    if value is None:
-        verb.add_argument(name, action="store_true", help=meaning)
-        return
-    first, *others = value.split("|")
-    given: dict[str, Any] = {"help": meaning, "metavar": None if others else first}
-    if others:
-        given["choices"] = [first, *others]
-    if value == "N":
-        given["type"] = _whole_number
-    if required:
-        given["required"] = True
-    if sign and name.startswith("-"):
-        given |= {"action": "append", "nargs": "+" if sign == "+" else None}
-    elif sign:
-        given["nargs"] = sign
-    verb.add_argument(name, default=default, **given)

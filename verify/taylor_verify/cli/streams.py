@@ -14,7 +14,7 @@ from taylor_verify.scenes.names import escaped
 
 @dataclass
 class Manner:
-    """How the program talks: ``quiet`` without messages, in ``colour`` auto, always or never."""
+    """Manner of talking: ``quiet`` without messages, in ``colour`` auto, always or never."""
 
     quiet: bool = False
     colour: str = "auto"

@@ -80,7 +80,7 @@ class Sampled:
 
     @property
     def _remark(self) -> str:
-        """What a subclass has to say of itself."""
+        """The remark that a subclass adds to its repr."""
         return ""
 
     def __str__(self) -> str:

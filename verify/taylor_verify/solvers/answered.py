@@ -1,4 +1,4 @@
-"""What a user's function returned: states at the scene's times, or a trajectory at times of its own.
+"""Answers of a user's function: states at the scene's times, or a trajectory at times of its own.
 
 array (samples, n)     states at the scene's times, in the order of the protocol
 (t, y), OdeResult      at the scene's times likewise; at other times a trajectory of its own

@@ -80,9 +80,9 @@ def _of_file(file: TrajectoryFile, problem: Problem, seconds: float) -> Trajecto
     return Trajectory(Outcome.FINISHED, groups, seconds=seconds, file=file)
 
 
-def of_states(states: np.ndarray[Any, Any], problem: Problem, seconds: float = 0.0) -> Trajectory:
+def of_states(answered: Any, problem: Problem, seconds: float = 0.0) -> Trajectory:
     """Return the trajectory of states in the order of the protocol."""
-    layout = columns(problem)
+    layout, states = columns(problem), np.asarray(answered)
     expected = (len(problem.times), sum(width for _, width in layout))
     if states.shape != expected:
         detail = f"expected states of shape {expected}, got {states.shape}"

@@ -26,7 +26,7 @@ def named(name: str) -> Solver:
     module, _, attribute = place.partition(":")
     if not module or not attribute:
         raise ValueError(f"expected {_FORM}, got {cut(name)}")
-    return solver_of(_found(module, attribute), f"{PREFIX}{place}", query)
+    return solver_of(_looked_up(module, attribute), f"{PREFIX}{place}", query)
 
 
 def solver_of(answer: Any, name: str, query: str = "") -> Solver:
@@ -48,7 +48,7 @@ def file_of(name: str) -> str:
     return getattr(sys.modules.get(module), "__file__", None) or ""
 
 
-def _found(module: str, attribute: str) -> Any:
+def _looked_up(module: str, attribute: str) -> Any:
     try:
         return reduce(getattr, attribute.split("."), _imported(module))
     except Exception as error:  # importing runs a user's code

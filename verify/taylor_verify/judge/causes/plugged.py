@@ -32,10 +32,10 @@ def plugged_causes(answer: Answer, motion_of: Callable[[Scene, Any], Motion]) ->
     scene = answer.scene
     if scene is None:
         return []
-    found = [
+    causes = [
         cause for plugin in plugins("causes") for cause in _of(plugin, scene, answer, motion_of)
     ]
-    return sorted(found, key=lambda cause: max(cause.leaves.values()))
+    return sorted(causes, key=lambda cause: max(cause.leaves.values()))
 
 
 def _of(

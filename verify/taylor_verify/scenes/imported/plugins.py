@@ -137,5 +137,5 @@ def _with_buoyancy(
     heavy = reading.number(density, density.text, density.name) if density else Fraction(1000)
     mass = shape.volume * (heavy or 0)
     hanging = balance(link.mass, link.centre, mass, shape.centre, volumes.GRAVITY)
-    remark = f"Weight and buoyancy: {shape.said}, gravity (0, 0, {float(volumes.GRAVITY[2])})."
+    remark = f"Weight and buoyancy: {shape.sentence}, gravity (0, 0, {float(volumes.GRAVITY[2])})."
     return replace(water, hanging=hanging, remarks=(*water.remarks, remark))

@@ -20,7 +20,7 @@ _PI: Final = Fraction("3.14159265358979323846")
 class Displaced(NamedTuple):
     volume: Fraction
     centre: Vector
-    said: str
+    sentence: str
 
 
 def displaced(link: Node, reading: Reading) -> Displaced | None:

@@ -43,7 +43,7 @@ class Hanging:
 
 @dataclass(frozen=True)
 class Water:
-    """What water does to one link, about its origin and in its axes.
+    """Effect of water on one link, about its origin and in its axes.
 
     ``terms`` are texts by component of force and couple; ``hanging`` are forces by the key of a scene;
     ``thrusts`` are the names of thrusts in them, each with its joint; ``left_out`` says what the
