@@ -55,9 +55,9 @@ def check_plugin(kind: str, content: Any) -> None:
         use(content)
 
 
-def check_reader(content: Any, example: str | PathLike[str]) -> None:
-    """Read an example file. Raises BrokenContract where the table has no column of times."""
-    table = content.read(Path(example))
+def check_reader(reader: Any, example: str | PathLike[str]) -> None:
+    """Read an example with a reader. Raises BrokenContract where the table has no column of times."""
+    table = reader.read(Path(example))
     if "t" not in list(table):
         raise BrokenContract(f"expected a column t, got {', '.join(map(str, table)) or 'none'}")
 
