@@ -147,7 +147,10 @@ def test_definitions_of_values_alone_may_jump() -> None:
         ),
         ('h = { rate = "w1" }', "got nothing @ states.h.start"),
         ("h = { start = 1 }", "got nothing @ states.h.rate"),
-        ('h = { start = [1], rate = "w1" }', "expected one number, got an array of 1 @ states.h.start"),
+        (
+            'h = { start = [1], rate = "w1" }',
+            "expected one number, got an array of 1 @ states.h.start",
+        ),
         ('h = { start = 1, rate = ["w1"] }', "an array of 1, got one number @ states.h.start"),
         ("h = { start = [], rate = [] }", "from 1 to 100 entries, got 0 @ states.h.rate"),
         ("h = { start = 1, rate = 1, value = 2 }", "got nothing @ states.h.every"),
