@@ -142,7 +142,7 @@ class _Run:
 
     def rows(self, solution: Any) -> list[list[Any]]:
         """Return the states at the samples, with the held values of a motion without stops."""
-        rows = solution.y.T.tolist()
+        rows: list[list[Any]] = solution.y.T.tolist()
         if not isinstance(self.rates, Unstopped):
             return rows
         return [

@@ -231,10 +231,11 @@ class Table:
 
     def _exact(self, value: object, key: str, reader: Number) -> Fraction | None:
         try:
-            return reader.read(value)
+            number: Fraction = reader.read(value)
         except ValueError as error:
             self.fault(str(error), shown(value), key)
             return reader.stand_in
+        return number
 
 
 def exact_number(value: object) -> Fraction:
