@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
-from typing import TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -35,8 +35,16 @@ _QUANTITY = re.compile(
 )
 
 T = TypeVar("T")
-Number = Callable[[object], Fraction]
-"""Function that reads one entry of an array, or raises ValueError with what it expects."""
+
+
+class Number(NamedTuple):
+    """A way to read one number: ``read`` raises ValueError with what it expects.
+
+    ``stand_in`` takes the place of a number that is a fault, so that what reads it is examined too.
+    """
+
+    read: Callable[[object], Any]
+    stand_in: Fraction | None = None
 
 
 def complete(values: Iterable[T | None]) -> tuple[T, ...] | None:
@@ -129,16 +137,16 @@ class Table:
         return known.intersection(word for word in value if isinstance(word, str))
 
     def number(
-        self, key: str, default: Fraction | None = None, number: Number | None = None
+        self, key: str, default: Fraction | None = None, reader: Number | None = None
     ) -> Fraction | None:
         """Return an exact number; missing is a fault, unless there is a default.
 
-        ``number`` reads it, and is `exact_number` unless given.
+        ``reader`` reads it, and is that of exact numbers unless given.
         """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, _NUMBER)
-        return None if value is None else self._exact(value, key, number)
+        return None if value is None else self._exact(value, key, reader or EXACT)
 
     def left(self) -> list[str]:
         """Return the keys that were not taken yet."""
@@ -148,7 +156,7 @@ class Table:
         """Return an array of at most ``most`` exact numbers."""
         value = self.take(key, "an array of numbers")
         if isinstance(value, list) and len(value) <= most:
-            return self._entries(value, key)
+            return self._entries(value, key, EXACT)
         if isinstance(value, list):
             self.fault(f"at most {most} numbers", str(len(value)), key)
         elif value is not None:
@@ -156,16 +164,16 @@ class Table:
         return None
 
     def vector(
-        self, key: str, default: Vector | None = None, length: int = 3, number: Number | None = None
+        self, key: str, default: Vector | None = None, length: int = 3, reader: Number | None = None
     ) -> Vector | None:
         """Return an array of ``length`` numbers; missing is a fault, unless there is a default.
 
-        ``number`` reads an entry, and is `exact_number` unless given.
+        ``reader`` reads an entry, and is that of exact numbers unless given.
         """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, f"{length} numbers")
-        return None if value is None else self._row(value, key, length, number)
+        return None if value is None else self._row(value, key, length, reader or EXACT)
 
     def note(self, sentence: str) -> None:
         """Add a sentence on how numbers of this table were formed."""
@@ -210,26 +218,25 @@ class Table:
         return None
 
     def _row(
-        self, value: object, key: str, length: int, number: Number | None = None
+        self, value: object, key: str, length: int, reader: Number | None = None
     ) -> Vector | None:
         if not isinstance(value, list) or len(value) != length:
             self.fault(f"{length} numbers", shown(value), key)
             return None
-        return self._entries(value, key, number)
+        return self._entries(value, key, reader or EXACT)
 
-    def _entries(
-        self, values: list[object], key: str, number: Number | None = None
-    ) -> Vector | None:
-        return complete([self._exact(v, f"{key}[{i}]", number) for i, v in enumerate(values)])
+    def _entries(self, values: list[object], key: str, reader: Number) -> Vector | None:
+        return complete([self._exact(v, f"{key}[{i}]", reader) for i, v in enumerate(values)])
 
-    def _exact(self, value: object, key: str, number: Number | None = None) -> Fraction | None:
+    def _exact(self, value: object, key: str, reader: Number) -> Fraction | None:
         try:
-            return (number or exact_number)(value)
+            number: Fraction = reader.read(value)
         except ValueError as error:
             parts = quantity(value)
             mend = f"write {parts[0]}, if {parts[1]} is the unit of this scene" if parts else ""
             self.fault(str(error), shown(value), key, mend)
-            return None
+            return reader.stand_in
+        return number
 
 
 def exact_number(value: object) -> Fraction:
@@ -248,6 +255,9 @@ def exact_number(value: object) -> Fraction:
     if isinstance(value, str):
         return _from_text(value.strip())
     raise ValueError(_NUMBER)
+
+
+EXACT: Final = Number(exact_number)
 
 
 def _from_decimal(value: Decimal) -> Fraction:
