@@ -163,5 +163,5 @@ def test_a_unit_is_refused_with_the_number_to_write() -> None:
     """Units are read for angular velocities alone."""
     text = 'title = "x"\nmodel = "euler"\n[body]\ninertia = ["1 kg m^2", 2, 3]\n'
     text += f"[initial]\n{STARTS['euler']}\n"
-    with pytest.raises(Refused, match=r"write 1, if kg m\^2 is the unit of this scene"):
+    with pytest.raises(Refused, match=r"write 1, if kg m\^2 is its unit"):
         read(text + "[time]\nend = 1\nsamples = 2\n", "a test")

@@ -233,7 +233,7 @@ class Table:
             number: Fraction = reader.read(value)
         except ValueError as error:
             parts = quantity(value)
-            mend = f"write {parts[0]}, if {parts[1]} is the unit of this scene" if parts else ""
+            mend = f"write {cut(parts[0])}, if {cut(parts[1])} is its unit" if parts else ""
             self.fault(str(error), shown(value), key, mend)
             return reader.stand_in
         return number
