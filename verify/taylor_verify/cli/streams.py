@@ -6,13 +6,11 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
 from typing import Final, TextIO
 
 from taylor_verify.scenes.names import escaped
 
 
-@dataclass
 class Manner:
     """Manner of talking: ``quiet`` without messages, in ``colour`` auto, always or never."""
 

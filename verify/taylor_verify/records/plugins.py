@@ -13,11 +13,9 @@ name is named in one line of the log, and everything else goes on.
 
 from __future__ import annotations
 
-import logging
 import os
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 if TYPE_CHECKING:
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
 
 _GROUP: Final = "taylor_verify."
 _SCRIPTS: Final = (".py", ".mjs")
-_log = logging.getLogger(__name__)
 
 
 class BrokenPlugin(ValueError):  # noqa: N818 (it names what it is)
@@ -76,7 +73,9 @@ def free(kind: str, names: Callable[[Plugin], Iterator[str]], own: Iterator[str]
 @cache
 def say_once(sentence: str) -> None:
     """Log why a plug-in is left out."""
-    _log.warning("taylor-verify: warning: %s", sentence)
+    import logging
+
+    logging.getLogger(__name__).warning("taylor-verify: warning: %s", sentence)
 
 
 def taken(kind: str, name: str, package: str) -> str:
@@ -139,16 +138,15 @@ def _lacks_of_solver(content: Any) -> str:
 
 
 def _lacks_of_folder(content: Any) -> str:
-    if not isinstance(content, str | os.PathLike) or not Path(content).is_dir():
+    if not isinstance(content, str | os.PathLike) or not os.path.isdir(content):
         return f"to be the path of a folder, got {content!r:.200}"
-    return (
-        "" if any(Path(content).glob("*.toml")) else f"to have scenes *.toml, got none in {content}"
-    )
+    has_scenes = any(os.fspath(name).endswith(".toml") for name in os.listdir(content))
+    return "" if has_scenes else f"to have scenes *.toml, got none in {content}"
 
 
 def _lacks_of_script(content: Any) -> str:
     is_path = isinstance(content, str | os.PathLike)
-    if is_path and Path(content).is_file() and Path(content).suffix in _SCRIPTS:
+    if is_path and os.path.isfile(content) and str(content).endswith(_SCRIPTS):
         return ""
     return f"to be the path of a script ({', '.join(_SCRIPTS)}), got {content!r:.200}"
 
