@@ -93,7 +93,7 @@ def _read_by(reader: Plugin, path: Path) -> Table:
         got = f"{type(error).__name__}: {error}"
         raise refusal(f"a file that {reader.package} reads", got, path) from error
     ROWS.check(max((len(column.values) for column in columns), default=0), path)
-    return Table(columns, [f"read by {reader.name} {reader.origin}"])
+    return Table(columns, (f"read by {reader.name} {reader.origin}",))
 
 
 def parted(file: str) -> tuple[Path, str]:
