@@ -22,6 +22,7 @@ from builders.scenes import LISTED_INSTANTS, scene_file
 import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
+from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -68,6 +69,7 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
         "formats": list(FORMATS),
+        "plugins": {kind: {p.name: p.package for p in plugins(kind)} for kind in KINDS},
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out
