@@ -214,7 +214,9 @@ def test_a_document_type_is_refused_in_any_encoding(encoding: str, tmp_path: Pat
     """A document type is refused by the parser that reads it, whatever its bytes look like."""
     file = tmp_path / "run.xml"
     file.write_bytes('<!DOCTYPE aem [<!ENTITY b "c">]><aem>&b;</aem>'.encode(encoding))
-    with pytest.raises(Refused, match="expected (XML without a document type|text in UTF-8)"):
+    with pytest.raises(
+        Refused, match="expected (XML without a document type|text in UTF-8|KEYWORD = value)"
+    ):
         read(file)
 
 
