@@ -16,12 +16,12 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import COLUMNS, ROWS
+from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES
 
 _TABLES: Final = ("topics", "messages")
 _READABLE: Final = (*_TABLES, "sqlite_master")
 _STEPS_AT_ONCE: Final = 10**6
 _STEPS: Final = Limit(500, "million steps of SQLite", "ten million messages take a fifth of them")
-_VALUE: Final = Limit(2**26, "bytes in a message", "an image is shorter")
 
 
 class Stored(NamedTuple):
@@ -40,7 +40,7 @@ class Database:
     def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
         self._connection, self._path = connection, path
         self._million = 0
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _VALUE.most)
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_BYTES.most)
         connection.set_authorizer(_permission)
         connection.set_progress_handler(self._goes_on, _STEPS_AT_ONCE)
         self._check_tables()

@@ -132,6 +132,7 @@ def _decoded_ros1(reader: Any, topic: Topic, path: Path) -> Iterator[Any]:
     for entry in connections:
         _check_digest(entry.digest, own, topic, path)
     for connection, _, data in reader.messages(connections=connections):
+        messages.MESSAGE_BYTES.check(len(data), path)
         yield types.deserialize_ros1(data, connection.msgtype)
 
 
