@@ -31,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if sys.flags.dev_mode:
             raise
-        say(_message(error))
+        say(*_message(error))
         return WRONG_CALL
     finally:
         print_out()
@@ -44,7 +44,7 @@ def _print(answer: Answer, as_json: bool) -> int:
 
         text = json.dumps(answer.document, indent=1, allow_nan=False)
         # JSON escapes every other control character by itself.
-        print_out(text.replace("\x7f", "\\u007f"))
+        print_out(text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023["))
     else:
         text = answer.text()
         print_out(text)
@@ -67,12 +67,18 @@ def _interruption(interrupt: KeyboardInterrupt) -> str:
     )
 
 
-def _message(error: Exception) -> str:
-    """Return a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
+def _message(error: Exception) -> Sequence[str]:
+    """Return the lines of a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
     from taylor_verify.records.faults import Refused
 
-    if isinstance(error, WrongCall | Refused):
-        return str(error)
+    if isinstance(error, WrongCall):
+        return error.lines
+    if isinstance(error, Refused):
+        return error.faults
+    return [_sentence(error)]
+
+
+def _sentence(error: Exception) -> str:
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"

@@ -12,7 +12,11 @@ _GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
 
 
 class WrongCall(Exception):  # noqa: N818 (it names what was done)
-    """The call or its input was wrong; the text is the message."""
+    """The call or its input was wrong; ``lines`` are the message."""
+
+    def __init__(self, *lines: str) -> None:
+        self.lines = lines
+        super().__init__("\n".join(lines))
 
 
 @contextmanager
@@ -23,7 +27,8 @@ def wrong_calls(
     try:
         yield
     except kinds as error:
-        raise WrongCall(f"{error}{place}") from error
+        *lines, last = getattr(error, "faults", (str(error),))
+        raise WrongCall(*lines, f"{last}{place}") from error
 
 
 class Answer(NamedTuple):

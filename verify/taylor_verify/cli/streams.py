@@ -8,11 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from typing import TextIO
 
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import escaped, one_line, without_commands
 
 
-def say(message: str) -> None:
-    tell_runner(f"taylor-verify: {message}")
+def say(*lines: str) -> None:
+    """Print a message, each of its lines in one line."""
+    tell_runner("taylor-verify: " + "\n".join(map(one_line, lines)))
 
 
 def tell_runner(line: str) -> None:
@@ -27,7 +28,7 @@ def print_out(text: str = "") -> None:
     """Print the answer, if there is one; a reader that went away (`| head`) is no error."""
     try:
         if text:
-            print(text)
+            print(without_commands(text))
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon(sys.stdout)

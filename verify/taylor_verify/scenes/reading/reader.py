@@ -26,7 +26,7 @@ from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.hints import hints
@@ -117,7 +117,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     if faults.lines or body is None or initial is None or time is None:
         raise Refused(faults.lines)
     return Scene(
-        name=escaped(name),
+        name=one_line(name),
         title=title,
         model=model.name,
         track=track - own,
