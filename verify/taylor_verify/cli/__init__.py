@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 
 from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall
-from taylor_verify.cli.streams import have_streams, print_out, say, stdout_reserved
+from taylor_verify.cli.streams import as_json_text, have_streams, print_out, say, stdout_reserved
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -40,11 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _print(answer: Answer, as_json: bool) -> int:
     shown = ""
     if as_json:
-        import json
-
-        text = json.dumps(answer.document, indent=1, allow_nan=False)
-        # JSON escapes every other control character by itself.
-        print_out(text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023["))
+        print_out(as_json_text(answer.document))
     else:
         text = answer.text()
         print_out(text)
@@ -68,7 +64,7 @@ def _interruption(interrupt: KeyboardInterrupt) -> str:
 
 
 def _message(error: Exception) -> Sequence[str]:
-    """Return the lines of a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
+    """Return the lines of a message without a traceback, which `python -X dev -m taylor_verify` shows."""
     from taylor_verify.records.faults import Refused
 
     if isinstance(error, WrongCall):

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import TextIO
+from typing import Any, TextIO
 
 from taylor_verify.scenes.names import escaped, one_line, without_commands
 
@@ -22,6 +22,14 @@ def tell_runner(line: str) -> None:
         print(escaped(line), file=sys.stderr, flush=True)
     except OSError:
         _abandon(sys.stderr)
+
+
+def as_json_text(document: Any) -> str:
+    """Return a document as JSON, which escapes most of what commands a terminal or a runner by itself."""
+    import json
+
+    text = json.dumps(document, indent=1, allow_nan=False)
+    return text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023[")
 
 
 def print_out(text: str = "") -> None:
