@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall
+from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
 from taylor_verify.cli.streams import as_json_text, have_streams, print_out, say, stdout_reserved
 
 
@@ -67,10 +67,8 @@ def _message(error: Exception) -> Sequence[str]:
     """Return the lines of a message without a traceback, which `python -X dev -m taylor_verify` shows."""
     from taylor_verify.records.faults import Refused
 
-    if isinstance(error, WrongCall):
-        return error.lines
-    if isinstance(error, Refused):
-        return error.faults
+    if isinstance(error, WrongCall | Refused):
+        return lines_of(error)
     return [_sentence(error)]
 
 

@@ -105,7 +105,7 @@ def _asked(
         try:
             return reading(*given)
         except (WrongCall, Refused) as error:
-            faults.extend(getattr(error, "faults", error.args))
+            faults.extend(error.faults)
 
     steps = attempt(_steps, options)
     scene = attempt(read_scene, options.scene)

@@ -73,7 +73,7 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
         try:
             return reading()
         except (WrongCall, Refused) as error:
-            faults.extend(getattr(error, "faults", error.args))
+            faults.extend(error.faults)
 
     scene = attempt(lambda: read_scene(options.scene))
     columns = options.columns or ()

@@ -13,7 +13,7 @@ from taylor_verify.scenes.names import escaped, one_line, without_commands
 
 def say(*lines: str) -> None:
     """Print a message, each of its lines in one line."""
-    tell_runner("taylor-verify: " + "\n".join(map(one_line, lines)))
+    tell_runner(without_commands("taylor-verify: " + "\n".join(map(one_line, lines))))
 
 
 def tell_runner(line: str) -> None:
