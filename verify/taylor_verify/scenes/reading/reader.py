@@ -83,13 +83,17 @@ def load(scene: str | os.PathLike[str]) -> Scene:
     at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
     file = library.find(scene)
+    return read(text_of(file), str(scene), file.parent)
+
+
+def text_of(file: Path) -> str:
+    """Return the text of a scene file. Raises Refused for one that cannot be read."""
     content = read_bytes(file, "a readable scene file", MOST_BYTES)
     try:
-        text = content.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         reason = "bytes that are not UTF-8"
         raise Refused([f"expected a readable scene file, got {reason!r} @ {file}"]) from None
-    return read(text, str(scene), file.parent)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
