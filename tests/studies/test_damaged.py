@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ from builders.verdicts import MIXED, RECORD
 
 from taylor_verify.cli import main
 from taylor_verify.records import store
+from taylor_verify_reports.studies.site import pages
+from taylor_verify_reports.studies.source import Report
 
 Captured = pytest.CaptureFixture[str]
 Rows = list[dict[str, Any]]
@@ -114,3 +117,10 @@ def test_a_fifo_among_the_records_is_never_opened(
     status, message = published(report, capsys)
     assert status == 2
     assert "expected a stored document, got a FIFO" in message
+
+
+def test_the_site_lists_the_scenes_of_any_solver(tmp_path: Path) -> None:
+    """Runs of another solver than ours, all failed or not, are the runs of their scene."""
+    store.write(tmp_path, [replace(verdict, solver="mine") for verdict in MIXED], [])
+    text = pages._scenes(Report(tmp_path))
+    assert all(f"`{verdict.scene}`" in text for verdict in MIXED)
