@@ -1,12 +1,16 @@
-"""Columns in a Parquet file, read with pyarrow; those in structs have dotted names."""
+"""Columns in a Parquet file, read with pyarrow; those in structs have dotted names.
+
+What can hold no numbers is not read: a page of text may be a thousand times its size in the file.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections import Counter
+from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, Final
 
-from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -15,16 +19,25 @@ from taylor_verify.solvers.files.formats.column import (
     check_size,
     refuse_part,
 )
+from taylor_verify.solvers.files.formats.content import Content
+
+# A million decimals of sixty characters.
+_TEXT_BYTES: Final = 2**26
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
     refuse_part(part, path)
     from pyarrow import ArrowException, parquet
 
     try:
-        texts = _checked(parquet.ParquetFile(file), path)
-        table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
+        footer = parquet.ParquetFile(file.binary)
+        texts = _checked(footer, path)
+        long = _long_texts(footer, texts)
+        wanted = [name for name in footer.schema_arrow.names if name not in long]
+        table = parquet.ParquetFile(file.binary, read_dictionary=texts).read(
+            wanted, use_threads=False
+        )
     except MemoryError:
         raise
     except (ArrowException, OSError, ValueError) as error:
@@ -32,8 +45,11 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
         raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
     table = _flat(table)
     _check_texts(table, texts, path)
-    columns = (table.column(i).to_pylist() for i in range(table.num_columns))
-    return Table(list(map(Column, table.column_names, columns)))
+    columns = [Column(name, _values(table.column(i))) for i, name in enumerate(table.column_names)]
+    notes = [
+        f"not read, because it is longer than numbers are: column {cut(name)}" for name in long
+    ]
+    return Table(columns, tuple(notes))
 
 
 def _checked(footer: Any, path: Path) -> list[str]:
@@ -44,6 +60,10 @@ def _checked(footer: Any, path: Path) -> list[str]:
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
+    packing = {group.column(i).compression for group in groups for i in range(group.num_columns)}
+    if "BROTLI" in packing:
+        # It has no bound on what a page becomes, and the sizes in the footer are only said.
+        raise refusal("columns packed by snappy, gzip, lz4 or zstd", "brotli", path)
     is_a, faults, texts = pa.types, Faults(), []
     numbers = (is_a.is_integer, is_a.is_floating, is_a.is_decimal, is_a.is_boolean)
     for field in _flat(footer.schema_arrow.empty_table()).schema:
@@ -55,6 +75,30 @@ def _checked(footer: Any, path: Path) -> list[str]:
     if faults.lines:
         raise Refused(faults.lines)
     return texts
+
+
+def _long_texts(footer: Any, texts: Collection[str]) -> set[str]:
+    """Return the names of columns of text that have more bytes than numbers have."""
+    metadata, sizes = footer.metadata, Counter[str]()
+    for group in (metadata.row_group(i) for i in range(metadata.num_row_groups)):
+        for column in (group.column(i) for i in range(group.num_columns)):
+            sizes[column.path_in_schema] += column.total_uncompressed_size
+    return {name for name in texts if sizes[name] > _TEXT_BYTES}
+
+
+def _values(column: Any) -> Any:
+    """Return the entries: binary numbers as NumPy has them, and each text of a dictionary once."""
+    import pyarrow as pa
+
+    if pa.types.is_dictionary(column.type):
+        return [entry for chunk in column.chunks for entry in _texts(chunk)]
+    is_binary = pa.types.is_integer(column.type) or pa.types.is_float64(column.type)
+    return column.to_numpy() if is_binary and not column.null_count else column.to_pylist()
+
+
+def _texts(chunk: Any) -> Iterator[Any]:
+    texts = chunk.dictionary.to_pylist()
+    return (None if place is None else texts[place] for place in chunk.indices.to_pylist())
 
 
 def _flat(table: Any) -> Any:
