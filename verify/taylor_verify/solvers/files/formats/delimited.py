@@ -4,60 +4,48 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from io import TextIOWrapper
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.records.faults import Faults, Refused, refusal
-from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import (
     ROWS,
     Column,
     Table,
     alike,
     check_size,
-    no_utf8,
     refuse_part,
 )
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.values import is_number
 
-_LINE: Final = Limit(2**20, "characters in a line", "a thousand columns of a thousand each")
 _ROWS_AT_ONCE: Final = 1000
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; # begins a comment line. The rows are counted before any of them is kept."""
     refuse_part(part, path)
-    text = TextIOWrapper(file, encoding="utf-8-sig")
+    for count, _ in enumerate(_Lines(file)):
+        if count > ROWS.most:
+            raise ROWS.refusal("more", path)
     try:
-        for count, _ in enumerate(_Lines(text, path)):
-            if count > ROWS.most:
-                raise ROWS.refusal("more", path)
-        text.seek(0)
-        return Table(_columns(_Lines(text, path), path))
-    except UnicodeDecodeError:
-        file.seek(0)
-        raise no_utf8(file.read(2), path) from None
+        return Table(_columns(_Lines(file), path))
     except csv.Error as error:
         raise refusal("a CSV file", f"a fault in it: {error}", path) from None
-    finally:
-        text.detach()  # else it would close the file, which is the caller's
 
 
 class _Lines:
     """The lines that are neither blank nor a comment; ``number`` is that of the last one."""
 
-    def __init__(self, text: TextIOWrapper, path: Path) -> None:
-        self._text, self._path, self.number = text, path, 0
+    def __init__(self, file: Content) -> None:
+        self._file, self.number = file, 0
 
     def __iter__(self) -> Iterator[str]:
-        while line := self._text.readline(_LINE.most + 1):
-            self.number += 1
-            if len(line) > _LINE.most:
-                raise _LINE.refusal("more", f"{self._path}, line {self.number}")
+        for number, line in enumerate(self._file.lines(), start=1):
+            self.number = number
             if line.strip() and not line.lstrip().startswith("#"):
                 yield line
 
