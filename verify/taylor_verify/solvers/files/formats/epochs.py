@@ -20,7 +20,20 @@ _EPOCH: Final = re.compile(rf"(?P<date>\d{{4}}-(?:\d{{2}}-\d{{2}}|\d{{3}}))T{_OF
 _ZONE: Final = r"\s*(?:Z|UTC|(?P<offset>[+-]\d{2}:?\d{2}))?"
 _DATE: Final = r"\d{4}[-/](?:\d{1,2}[-/]\d{1,2}|\d{3})|\d{1,2} [A-Za-z]{3} \d{4}"
 _IN_A_LOG: Final = re.compile(rf"(?:(?P<date>{_DATE})(?:T|\s+))?{_OF_DAY}{_ZONE}", re.ASCII)
-_MONTHS: Final = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+_MONTHS: Final = (
+    "jan",
+    "feb",
+    "mar",
+    "apr",
+    "may",
+    "jun",
+    "jul",
+    "aug",
+    "sep",
+    "oct",
+    "nov",
+    "dec",
+)
 # Days of UTC that had a second 23:59:60, from the bulletins of the IERS; there was none after 2016.
 _LEAP_DAYS: Final = tuple(
     date.fromisoformat(day).toordinal()

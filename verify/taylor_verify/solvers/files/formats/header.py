@@ -1,8 +1,8 @@
 """The head of a table in text: the line that names its columns, and the mark between their cells.
 
-The first line of numbers tells the mark and the number of cells. Of the lines above it the header is the one
-with as many cells whose names are known best, be it a comment or not. A line of units below it belongs to
-the names. What stands above it is no part of the table.
+The first line of numbers tells the mark and the number of cells. Of the lines above it with as many cells,
+comments too, the header is the one with the most known names. A line of units below it belongs to the names.
+What stands above the header is no part of the table.
 """
 
 from __future__ import annotations
@@ -166,7 +166,9 @@ def _passed(lines: Sequence[Line]) -> Iterator[str]:
     """Yield a sentence about the lines above the header that are no comments."""
     numbers = [line.number for line in lines if not line.is_comment]
     if numbers:
-        where = f"line {numbers[0]}" if len(numbers) == 1 else f"lines {numbers[0]} to {numbers[-1]}"
+        where = (
+            f"line {numbers[0]}" if len(numbers) == 1 else f"lines {numbers[0]} to {numbers[-1]}"
+        )
         yield f"{where} above the table not read"
 
 
@@ -209,9 +211,9 @@ def _units(line: Line, mark: str, width: int) -> list[str] | None:
     """Return the units in a line below the header; None for any other line."""
     for cells in _ways(line.bare, mark):
         units = [cell[1:-1] if cell[:1] + cell[-1:] in ("[]", "()") else cell for cell in cells]
-        if len(cells) == width and not any(map(_is_plain_number, cells)):
-            if any(map(_is_unit, units)):
-                return units
+        is_of_numbers = len(cells) != width or any(map(_is_plain_number, cells))
+        if not is_of_numbers and any(map(_is_unit, units)):
+            return units
     return None
 
 
