@@ -68,6 +68,11 @@ def is_text(file: Content) -> bool:
     return _beginning(file).startswith(b"CCSDS_")
 
 
+def is_turning(frame: str) -> bool:
+    """Return True for a frame that turns with the earth or with an orbit."""
+    return frame.upper().startswith(_TURNING) and not frame.upper().endswith("_INERTIAL")
+
+
 def _beginning(file: Content) -> bytes:
     return file.beginning(64).lstrip(_BLANK)
 
@@ -123,7 +128,7 @@ def _check_frames(segment: Segment, path: Path) -> bool:
             expected, f"{cut(a)} and {cut(b)}", path, "a scene's axes are those of the body"
         )
     space = b if a.startswith(_BODY) else a
-    if space.startswith(_TURNING) and not space.endswith("_INERTIAL"):
+    if is_turning(space):
         raise refusal(f"an inertial frame beside {_BODY}", cut(space), path)
     direction = segment.metadata.get("ATTITUDE_DIR", "A2B").upper()
     if direction not in ("A2B", "B2A"):

@@ -18,7 +18,8 @@ from taylor_verify.records.faults import refusal
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")
-_NUMBERS: Final = "fiu"
+# Decimals in text are numbers too.
+_NUMBERS: Final = "fiuU"
 _MOST_LISTED: Final = 8
 
 
@@ -53,7 +54,7 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
     inner = _without_common_group(_within(list(arrays), part, place))
     _refuse_several(inner, place)
     numbers = [array for array in inner if array.kind in _NUMBERS and array.shape]
-    rows = _rows(numbers)
+    rows = _rows_of_one(numbers[0], place) if len(numbers) == 1 else _rows(numbers)
     read = [array for array in numbers if rows in array.shape]
     COLUMNS.check(len(read), place)
     check_size(sum(prod(a.shape) // max(rows, 1) for a in read), rows, place)
@@ -100,14 +101,29 @@ def _rows(arrays: Sequence[Array]) -> int:
     return max(lengths, key=lambda length: (lengths[length], length), default=0)
 
 
+def _rows_of_one(array: Array, place: object) -> int:
+    """Return the number of rows of the only array: a matrix that is wider than long may be transposed."""
+    length, *width = array.shape
+    if len(width) != 1 or length >= width[0] or not length:
+        return array.longest if length else 0
+    BYTES.check(prod(array.shape) * array.itemsize, place)
+    values = array.load()
+    is_transposed = _rises(values[0]) and not _rises(values[:, 0])
+    return width[0] if is_transposed else length
+
+
+def _rises(line: np.ndarray[Any, Any]) -> bool:
+    return len(line) > 1 and bool((np.diff(line) > 0).all())
+
+
 def _columns(array: Array, rows: int) -> Iterator[Column]:
     values = np.moveaxis(array.load(), array.shape.index(rows), 0)
     if values.size == rows:
-        yield Column(array.name, values.reshape(rows).tolist())
+        yield Column(array.name, values.reshape(rows))
         return
     for index in np.ndindex(values.shape[1:]):
         name = array.name + "".join(f"[{i}]" for i in index)
-        yield Column(name, values[(slice(None), *index)].tolist())
+        yield Column(name, values[(slice(None), *index)])
 
 
 def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iterator[str]:
