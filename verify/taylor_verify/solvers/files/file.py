@@ -29,6 +29,7 @@ from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.numbered import by_number
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
 from taylor_verify.solvers.files.parts import Parts
+from taylor_verify.solvers.files.planar import with_zeros
 from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.files.single_precision import are_single_precision
 from taylor_verify.solvers.files.step import FileStep, step_inside
@@ -126,7 +127,7 @@ def from_columns(
     and times that tell which of two clocks is meant. Raises Refused with every fault.
     """
     faults = Faults()
-    named = _named_once(columns, place, faults)
+    named, planar = with_zeros(_named_once(columns, place, faults), scene)
     clock = with_times(named, by_number(named, wanted, scene, place), scene, place, faults)
     own, asked = own_columns(scene), clock.wanted
     beside, left, asked = apart(clock.columns, asked, own, place, faults)
@@ -147,7 +148,7 @@ def from_columns(
         )
         for part in parts.of_rows(len(times))
     ]
-    sentences = (*notes, *clock.notes, *selection.notes, *parts.notes)
+    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes)
     return replace(first, notes=sentences, apart=tuple(others))
 
 

@@ -15,12 +15,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.records.faults import refusal
+from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")
 # Decimals in text are numbers too.
 _NUMBERS: Final = "fiuU"
 _MOST_LISTED: Final = 8
+_MOST_OF_MATRIX: Final = 30
 
 
 class Array(NamedTuple):
@@ -60,7 +62,7 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
     check_size(sum(prod(a.shape) // max(rows, 1) for a in read), rows, place)
     BYTES.check(sum(prod(array.shape) * array.itemsize for array in read), place)
     columns = [column for array in read for column in _columns(array, rows)]
-    return Table(columns, tuple(_left_out(inner, read, rows)))
+    return Table(columns, (*_left_out(inner, read, rows), *_matrices(read, rows)))
 
 
 def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
@@ -133,6 +135,18 @@ def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iter
         yield f"not read, because they have no {rows} rows: {_listed(short)}"
     if strange := [array.name for array in other if array.kind not in _NUMBERS]:
         yield f"not read, because they hold no real numbers: {_listed(strange)}"
+
+
+def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
+    """Yield how to name the columns of a matrix whose own name says nothing."""
+    for array in read:
+        width = prod(array.shape) // max(rows, 1)
+        names = [f"{array.name}[{k}]" for k in range(width)]
+        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).readings:
+            example = ",".join(f"w{k}={name}" for k, name in enumerate(names[1:3], start=1))
+            shown = ", ".join(names[:_MOST_OF_MATRIX])
+            more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""
+            yield f"the columns of {array.name} are {shown}{more}, as in --columns {example},..."
 
 
 def _listed(names: Sequence[str]) -> str:
