@@ -248,9 +248,10 @@ def _notes(
     for sample in short:
         yield f"{sample.judged.file.name} ends before the others do, and has no part in the order"
     for small, large in alike:
+        named = "step, h" if knob == STEP else knob
         names = f"{small.judged.file.name} and {large.judged.file.name}"
         yield (
-            f"no order of convergence: {names} have the same {knob} = {small.step:g}; "
+            f"no order of convergence: {names} have the same {named} = {small.step:g}; "
             "--steps says others"
         )
     known = {record.quantity: record.order for record in order if record.order is not None}

@@ -41,7 +41,7 @@ def read(file: Content, path: Path, part: str) -> Table:
     if path.suffix.lower() in _LINES or _is_of_lines(file):
         return table(_objects(file, path), path)
     document = _document(file, path)
-    if isinstance(document, list):
+    if isinstance(document, list) and document and isinstance(document[0], dict):
         rows = enumerate(document, start=1)
         return table((_object(each, f"{path}, row {k}") for k, each in rows), path)
     if isinstance(document, dict) and isinstance(document.get("columns"), dict):

@@ -144,8 +144,11 @@ def _above(first: Line, lines: Sequence[Line]) -> Head:
     row = _cells(first.text, mark)
     above = [line for line in lines if line.number < first.number and not is_rule(line.text)]
     candidates = [names for line in above if (names := _names(line, mark, row))]
+    if not candidates and (plain := [line for line in above if not line.is_comment]):
+        # As many names as there are, so that lines of another length are the fault.
+        return Head(tuple(_cells(plain[-1].text, mark)), mark, plain[-1].number + 1)
     if not candidates:
-        return Head((), mark, first.number, tuple(_passed(above)))
+        return Head((), mark, first.number)
     # Of lines alike the first that is no comment, or the comment that is nearest to the numbers.
     lines_alike = [c for c in candidates if c.known == max(one.known for one in candidates)]
     plain = [c for c in lines_alike if not c.line.is_comment]
