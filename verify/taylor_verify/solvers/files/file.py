@@ -23,6 +23,8 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.attitudes import one_attitude
+from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import Taken, select
 from taylor_verify.solvers.files.formats.column import Column, alike
@@ -143,19 +145,22 @@ def from_columns(
     times = _times(clock, place, faults) if clock and not faults.lines else ()
     if faults.lines:
         raise Refused(faults.lines)
-    groups = {
+    groups: Mapping[str, Rows] = {
         group: Rows(
             [read[name].values for name in names],
             np.logical_and.reduce([finite[name] for name in names]),
             [taken[name].factor for name in names],
         )
-        for group, names in {**COLUMNS, **own}.items()
+        for group, names in {**GROUPS, **own}.items()
         if names[0] in read
     }
+    groups, settled = one_attitude(groups, selection, place, faults)
+    if faults.lines:
+        raise Refused(faults.lines)
     if clock and (factor := taken["t"].factor) != 1:
         times = tuple(t * factor for t in times)
     digits = written_digits(read.values())
-    sentences = (*notes, *selection.notes)
+    sentences = (*notes, *selection.notes, *settled)
     return TrajectoryFile(place, times, groups, digits, sentences, columns={**COLUMNS, **own})
 
 

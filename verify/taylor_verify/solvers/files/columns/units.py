@@ -19,6 +19,7 @@ from mpmath import mp
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
+from taylor_verify.solvers.files.columns.forms import FORMS
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,13 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
         ),
         (_of_pi(Fraction(2)), "turns per unit of time", "rev/s rps"),
     ),
+    "angle": (
+        (Fraction(1), "radians", "rad rads radian radians -"),
+        (DEGREE, "degrees", "deg degs degree degrees"),
+        (Fraction(1, 1000), "thousandths of a radian", "mrad"),
+        (DEGREE / 3600, "seconds of arc", "arcsec"),
+        (_of_pi(Fraction(2)), "turns", "rev turns"),
+    ),
     "velocity": (
         (Fraction(1), "the scene's unit of velocity", "m/s m/sec m.s^-1 m.s-1 mps m_per_s"),
         (Fraction(1, 100), "hundredths of the scene's unit of velocity", "cm/s"),
@@ -88,6 +96,7 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
 DIMENSION: Final[Mapping[str, str]] = {
     "time": "time",
     **{name: group.dimension for name, group in GROUPS.items()},
+    **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
 _GREEK: Final = str.maketrans(
     {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "°": "deg", "·": ".", "*": "."}
