@@ -483,7 +483,13 @@ def test_names_of_the_page_are_taken() -> None:
 
 def test_units_of_the_page_are_known() -> None:
     """The documentation shows the first name of every unit, and each of them is known."""
-    of = {"a rate": "omega", "a velocity": "linear_velocity", "a length": "centre", "time": "time"}
+    of = {
+        "an angle": "zyx",
+        "a rate": "omega",
+        "a velocity": "linear_velocity",
+        "a length": "centre",
+        "time": "time",
+    }
     for kind, texts in _documented("## Units"):
         group = of.get(kind, "angular_impulse" if "m" in texts else "linear_impulse")
         assert all(in_brackets(text, group) is not None for text in texts.split())

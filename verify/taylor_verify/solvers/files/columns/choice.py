@@ -106,12 +106,15 @@ class Candidates:
         """Return every spelling all of whose names are there; each set of columns once."""
         choices: dict[tuple[Name, ...], Choice] = {}
         for (spelling, path), cells in self.cells.items():
-            is_possible = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
-            is_possible = is_possible and self.keeps_company(spelling, path)
-            is_possible = is_possible and self.has_signs(spelling)
-            if spelling.group == group and is_possible and (whole := self._whole(spelling, cells)):
+            if spelling.group != group or not self._is_possible(spelling, path, chosen):
+                continue
+            if whole := self._whole(spelling, cells):
                 choices.setdefault(whole.names, whole)
         return list(choices.values())
+
+    def _is_possible(self, spelling: Spelling, path: str, chosen: Mapping[str, Choice]) -> bool:
+        is_alone = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
+        return is_alone and self.keeps_company(spelling, path) and self.has_signs(spelling)
 
     def keeps_company(self, spelling: Spelling, path: str) -> bool:
         """Return True if the company of a spelling stands behind its path, and what it shuns does not."""
