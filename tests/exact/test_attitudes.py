@@ -13,8 +13,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.attitudes import in_form
 from taylor_verify.exact.printed import document
-from taylor_verify.exact.route import solution
 from taylor_verify.exact.rotation import rotation_rows
+from taylor_verify.exact.route import solution
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.turns import AXES, Turn, combined, matrix
 

@@ -38,7 +38,7 @@ def _quaternion(R: Balls) -> list[arb]:
 
 
 def _zyx(R: Balls) -> list[arb]:
-    square = R[2][1] ** 2 + R[2][2] ** 2
+    square = R[2][1] * R[2][1] + R[2][2] * R[2][2]
     # A ball that holds zero has no root: either sign of the root is then allowed for.
     level = square.sqrt() if square > 0 else arb(0, ball(exact_value(upper(square))).sqrt())
     pairs = ((R[1][0], R[0][0]), (-R[2][0], level), (R[2][1], R[2][2]))
