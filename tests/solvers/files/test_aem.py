@@ -17,6 +17,8 @@ import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.files.formats import aem_segment
+from taylor_verify.solvers.files.formats.column import ELEMENTS
 from taylor_verify.solvers.files.formats.epochs import seconds
 
 SCENE = "euler/with-attitude"
@@ -188,8 +190,11 @@ def test_faults_of_a_message_are_refused(fault: str, tmp_path: Path) -> None:
 
 
 XML_FAULTS: Mapping[str, tuple[str, str]] = {
-    "bomb": ('<!DOCTYPE a [<!ENTITY b "c">]><aem>&b;</aem>', "expected XML without a DOCTYPE"),
-    "cut": ("<aem><body>", "expected XML, got a fault in it"),
+    "bomb": (
+        '<!DOCTYPE a [<!ENTITY b "c">]><aem>&b;</aem>',
+        "expected XML without a document type",
+    ),
+    "cut": ("<aem><body>", "expected an XML document, got a fault in it"),
     "orbit": ("<oem/>", "expected an attitude ephemeris .*got <oem>"),
     "no metadata": ("<aem><attitudeState/></aem>", "expected metadata before the states"),
     "empty": ("<aem></aem>", "expected a segment with attitude data, got none"),
@@ -202,6 +207,26 @@ def test_faults_of_xml_are_refused(fault: str, tmp_path: Path) -> None:
     content, expected = XML_FAULTS[fault]
     with pytest.raises(Refused, match=expected):
         read(written(tmp_path, content, "run.xml"))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
+def test_a_document_type_is_refused_in_any_encoding(encoding: str, tmp_path: Path) -> None:
+    """A document type is refused by the parser that reads it, whatever its bytes look like."""
+    file = tmp_path / "run.xml"
+    file.write_bytes('<!DOCTYPE aem [<!ENTITY b "c">]><aem>&b;</aem>'.encode(encoding))
+    with pytest.raises(
+        Refused, match="expected (XML without a document type|text in UTF-8|KEYWORD = value)"
+    ):
+        read(file)
+
+
+def test_a_file_of_empty_elements_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Elements are counted while they are read, whatever they are."""
+    monkeypatch.setattr(aem_segment, "ELEMENTS", ELEMENTS._replace(most=1000))
+    with pytest.raises(Refused, match="expected at most 1000 elements, got more"):
+        read(written(tmp_path, "<aem>" + "<a/>" * 1000 + "</aem>", "run.xml"))
 
 
 # Epochs.

@@ -11,10 +11,10 @@ from typing import Final
 from taylor_verify.batch.differences import ERRORS
 from taylor_verify.records.json_text import parsed
 from taylor_verify.records.limit import Limit
+from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import with_digest
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.reading.regular_file import read_bytes
 
 _SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
 _MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")

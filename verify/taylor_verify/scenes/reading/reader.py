@@ -20,6 +20,7 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import Faults, Refused, cut, near, shown
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
+from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Loads
@@ -32,7 +33,6 @@ from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.loads import immersed_loads, loaded, rigid_loads
 from taylor_verify.scenes.reading.manufactured import manufactured
-from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.states import own_states
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify.scenes.scene import Scene

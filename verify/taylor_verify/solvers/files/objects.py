@@ -16,8 +16,9 @@ from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, own_columns
+from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column, check_size
+from taylor_verify.solvers.files.own_states import own_columns
 
 _ACCEPTED: Final = (
     "a callable solve(problem), a trajectory file, a DataFrame, an xarray Dataset, a dict of arrays or "
@@ -72,7 +73,7 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
         raise Refused(gathered.faults.lines)
     taken = gathered.columns
     check_size(len(taken), max((len(c.values) for c in taken), default=0), place)
-    return from_columns(taken, place, columns, gathered.notes, own_columns(scene))
+    return from_columns(taken, place, columns, gathered.notes, scene)
 
 
 class _Gathered:

@@ -176,8 +176,11 @@ def _as_mpf(values: Raw, bits: int) -> Array:
 # What is read of a file.
 
 
-def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
-    """Return True for the entries that are finite numbers; add a fault for text and too large numbers."""
+def check_numbers(column: Column, file: str, faults: Faults, blank: Flags) -> Flags:
+    """Return True for the entries that are finite numbers; add a fault for text and too large numbers.
+
+    Rows that are ``blank`` are passed over.
+    """
     finite = np.ones(len(column.values), dtype=bool)
     with alike(faults, f"{file}, column {column.name}") as wrong:
         for part in _chunks(len(column.values)):
@@ -188,13 +191,20 @@ def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
                 suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
             else:
                 suspects = np.full(len(values), not _is_short(values))
-            for k in np.flatnonzero(suspects).tolist():
+            gone = blank[part.start : part.stop]
+            finite[part.start : part.stop] &= ~gone
+            for k in np.flatnonzero(suspects & ~gone).tolist():
                 try:
                     finite[part[k]] = _is_finite(values[k])
                 except ValueError as error:
                     place = f"{file}, row {part[k] + 1}, column {column.name}"
                     wrong(str(error), shown(values[k]), place)
     return finite
+
+
+def entries_at(column: Column, places: Sequence[int]) -> Column:
+    """Return a column with some of its entries."""
+    return column._replace(values=_some(column.values, places))
 
 
 def _is_finite(raw: object) -> bool:

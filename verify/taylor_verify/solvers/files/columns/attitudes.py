@@ -58,16 +58,18 @@ def one_attitude(
     groups: Groups, selection: Selection, place: str, faults: Faults
 ) -> tuple[Groups, list[str]]:
     """Return the groups with one description of the attitude, and sentences on how it was settled."""
+    choices = [choice for choice in selection.attitudes if choice.group in groups]
     every = [
         description
-        for choice in selection.attitudes
+        for choice in choices
         for description in _descriptions(choice, groups[choice.group])
     ]
     left = {name: rows for name, rows in groups.items() if name not in ATTITUDES}
-    first, notes = _settled(every, selection.attitudes, place, faults)
+    first, notes = _settled(every, choices, place, faults)
     if first:
         left[first.group] = first.rows
-    if selection.omega and selection.omega.spelling.turn is Turn.SPACE_AXES:
+    is_turned = selection.omega and selection.omega.spelling.turn is Turn.SPACE_AXES
+    if is_turned and "omega" in groups:
         if first:
             make = _in_body_by_matrix if first.group == "attitude" else _in_body
             left["omega"] = MadeRows([left["omega"], first.rows], make, 3)
@@ -96,7 +98,7 @@ def _settled(
     """Return the first of the descriptions, which all agree; it is a fault where two do not."""
     if len(choices) < 2:
         return (every[0] if every else None), []
-    right = next(each for each in every if not each.choice.doubt).matrices
+    right = next((each for each in every if not each.choice.doubt), every[0]).matrices
     apart = [_apart(each.matrices, right) for each in every]
     agree = [each for each, angle in zip(every, apart, strict=True) if angle <= _AGREE]
     if [each.choice for each in agree] != list(choices):

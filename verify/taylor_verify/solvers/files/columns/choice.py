@@ -90,7 +90,7 @@ class Candidates:
 
     @cached_property
     def _keys(self) -> set[str]:
-        return {name.key for name in self.free}
+        return {name.key for name in self.names}
 
     @cached_property
     def cells(self) -> Mapping[tuple[Spelling, str], Cells]:
@@ -133,7 +133,16 @@ class Candidates:
 
     def asked_unit(self, own: str, group: str) -> Unit:
         """Return the unit of a column that is asked for."""
-        return self.units.get(own) or self.asked[own].unit(group) or OWN
+        name = self.asked[own]
+        if (spelling := self.of_clock(name)) and group == "time":
+            return in_brackets(spelling.unit, group) or OWN
+        return self.units.get(own) or name.unit(group) or OWN
+
+    def of_clock(self, name: Name) -> Spelling | None:
+        """Return the spelling of a program that states the unit of a time, where the name does not."""
+        spellings = (reading.spelling for reading in name.readings if reading.unit is OWN)
+        stated = (s for s in spellings if s.group == "time" and s.unit and self.has_signs(s))
+        return next(stated, None)
 
     @cached_property
     def _parts(self) -> set[tuple[str, str]]:

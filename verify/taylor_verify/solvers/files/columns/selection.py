@@ -114,7 +114,8 @@ class _Chooser:
         if asked.keys() >= set(ours):
             names = tuple(asked[name] for name in ours)
             units = tuple(self.candidates.asked_unit(name, group) for name in ours)
-            spelling = next(s for s in SPELLINGS if s.keys == ours)
+            spelling = self.candidates.of_clock(names[0]) if group == "time" else None
+            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours)
             return Choice(group, names, units, Rank.ASKED, spelling)
         every = self.candidates.of(group, self.chosen)
         clear = [choice for choice in every if not choice.doubt]

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from math import nan
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Final
 
 from taylor_verify.models.algebra import apply, dot, transpose
 from taylor_verify.models.frame import attitude_rate, rotation
@@ -28,6 +28,7 @@ from taylor_verify.solvers.files.formats.aem_segment import (
     in_xml,
 )
 from taylor_verify.solvers.files.formats.column import Column, Table, alike, shown
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.epochs import seconds
 from taylor_verify.solvers.values import Value, exact
 
@@ -62,18 +63,16 @@ _UNIT_VECTORS: Final = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 Row = Sequence[Value]
 
 
-def is_text(file: BinaryIO) -> bool:
+def is_text(file: Content) -> bool:
     """Return True for a file that begins like a CCSDS message in text, whatever its name."""
     return _beginning(file).startswith(b"CCSDS_")
 
 
-def _beginning(file: BinaryIO) -> bytes:
-    start = file.read(64)
-    file.seek(0)
-    return start.lstrip(_BLANK)
+def _beginning(file: Content) -> bytes:
+    return file.beginning(64).lstrip(_BLANK)
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return t, q0 ... q3 and, where the message has it, w1 w2 w3; ``part`` is the number of a segment."""
     is_xml = _beginning(file).startswith(b"<")
     segment = _chosen(in_xml(file, path) if is_xml else in_text(file, path), part, path)

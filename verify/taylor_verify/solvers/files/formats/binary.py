@@ -15,7 +15,7 @@ from lzma import LZMAError
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from taylor_verify.solvers.files.formats.column import (
     check_size,
     refuse_part,
 )
+from taylor_verify.solvers.files.formats.content import Content
 
 _READERS: Final = {
     (1, 0): np.lib.format.read_array_header_1_0,
@@ -64,12 +65,12 @@ class _Member(NamedTuple):
     dtype: np.dtype[np.generic]
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the arrays; every header is checked before the data of any is read."""
     refuse_part(part, path)
     try:
         _check_entries(file, path)
-        with zipfile.ZipFile(file) as archive:
+        with zipfile.ZipFile(file.binary) as archive:
             members = [_member(archive, info, path) for info in archive.infolist()]
             _check(members, path)
             return Table([_column(archive, member) for member in members])
@@ -77,11 +78,11 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
         raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 
 
-def _check_entries(file: BinaryIO, path: Path) -> None:
+def _check_entries(file: Content, path: Path) -> None:
     """Count the entries of the directory, of which zipfile would make an object each."""
-    if file.read(6) == np.lib.format.MAGIC_PREFIX:
+    if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
         raise ValueError("one array, and no archive of named ones")
-    with mmap(file.fileno(), 0, access=ACCESS_READ) as content:
+    with mmap(file.binary.fileno(), 0, access=ACCESS_READ) as content:
         entries = sum(1 for _ in islice(_ENTRY.finditer(content), COLUMNS.most + 1))
     if entries > COLUMNS.most:
         raise COLUMNS.refusal("more", path)

@@ -4,38 +4,41 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 from taylor_verify.records.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.columns.names import KNOWN
 from taylor_verify.solvers.files.formats.column import (
+    BYTES,
+    COLUMNS,
+    KEYS,
     ROWS,
     VALUES,
     Column,
     Table,
-    no_utf8,
     refuse_part,
     shown,
 )
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.values import named_once
 
 _BETWEEN_BRACKETS: Final = re.compile(r"[^\[\]{}]+")
+_KEY_OR_BRACKET: Final = re.compile(r"[\[{]|\"\s*:")
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
-    """Return the arrays; their commas are counted before anything is made of the text."""
+def read(file: Content, path: Path, part: str) -> Table:
+    """Return the arrays; commas, keys and brackets are counted before anything is made of the text."""
     refuse_part(part, path)
-    content = file.read()
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise no_utf8(content[:2], path) from None
+    text = file.text(BYTES)
     # No array has more entries than commas and one.
     longest = max((text.count(",", *m.span()) for m in _BETWEEN_BRACKETS.finditer(text)), default=0)
     for limit, commas in ((ROWS, longest), (VALUES, text.count(","))):
         if commas > limit.most:
             raise limit.refusal("more", path)
+    if sum(1 for _ in islice(_KEY_OR_BRACKET.finditer(text), KEYS.most + 1)) > KEYS.most:
+        raise KEYS.refusal("more", path)
     document = _parsed(text, path)
     if isinstance(document, dict) and isinstance(document.get("columns"), dict):
         document = document["columns"]
@@ -50,6 +53,7 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
             faults.add("an array of numbers", shown(values), f"{path}, column {name}")
     if faults.lines:
         raise Refused(faults.lines)
+    COLUMNS.check(len(columns), path)
     return Table(columns)
 
 

@@ -8,27 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import unbroken
 
 # Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
 _FILTERS: Final = {1, 2, 3, 4, 5, 6, 32000}
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the datasets of a group; their declared sizes are checked before any is read."""
     return opened(file, path, lambda content: table(_arrays(content, path), part, path))
 
 
-def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Table:
+def opened(file: Content, path: Path, tabulate: Callable[[Any], Table]) -> Table:
     """Return the table that is made of the open file; whatever is broken in it is refused."""
     import h5py
 
-    with unbroken("an HDF5 file", path), h5py.File(file, "r") as content:
+    with unbroken("an HDF5 file", path), h5py.File(file.binary, "r") as content:
         return tabulate(content)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from functools import partial
 from math import prod
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats import hdf5
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 
 _HEADER: Final = 128
 # The last bytes of the header tell the order of all bytes; those before are the version.
@@ -50,19 +51,18 @@ class _Element(NamedTuple):
 _NO_ELEMENT: Final = _Element(0, memoryview(b""))
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the arrays of a struct, or of the whole file; their sizes are checked first."""
-    header = file.read(_HEADER)
+    header = file.beginning(_HEADER)
     order = _ORDERS.get(header[126:], "")
     version = struct.unpack(f"{order}H", header[124:126])[0] if order else 0
     if version == _HDF5 or header.startswith(b"\x89HDF"):
-        file.seek(0)
         return hdf5.opened(file, path, lambda f: _checked(list(_hdf5_arrays(f, path)), part, path))
     if version != _VERSION:
         got = f"one that begins with {header[:10].decode('latin-1')!r}"
         raise refusal("a MATLAB file of version 5 to 7.3", got, path)
     try:
-        arrays = list(_Reader(order, path).arrays(file.read()))
+        arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
     except _BROKEN as error:
         raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     return _checked(arrays, part, path)

@@ -12,19 +12,20 @@ from contextlib import redirect_stderr
 from io import BytesIO, StringIO
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats import messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.messages import Topic
 from taylor_verify.solvers.files.formats.package import unbroken
 
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns of a topic; the file is read twice, first for the topics there are."""
     with unbroken("an MCAP file", path):
         recording = _Recording.of(file, path)
@@ -35,13 +36,13 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 class _Recording(NamedTuple):
     """The schemas and channels of an MCAP file by their numbers, and the number of messages by channel."""
 
-    file: BinaryIO
+    file: Content
     schemas: dict[int, Any]
     channels: dict[int, Any]
     counts: Counter[int]
 
     @classmethod
-    def of(cls, file: BinaryIO, path: Path) -> _Recording:
+    def of(cls, file: Content, path: Path) -> _Recording:
         from mcap.records import Channel, Message, Schema
 
         recording = cls(file, {}, {}, Counter())
@@ -108,19 +109,18 @@ def _from_json(data: bytes) -> Any:
 class _Bounded:
     """A file of which no call reads more than a trajectory file has, whatever a record claims."""
 
-    def __init__(self, file: BinaryIO) -> None:
-        self._file = file
+    def __init__(self, file: Content) -> None:
+        self._file = file.binary
 
     def read(self, size: int) -> bytes:
         return self._file.read(min(size, BYTES.most))
 
 
-def _records(file: BinaryIO, path: Path) -> Iterator[Any]:
+def _records(file: Content, path: Path) -> Iterator[Any]:
     """Yield the records of the file from its beginning, those in chunks among them."""
     from mcap.records import Chunk
     from mcap.stream_reader import StreamReader
 
-    file.seek(0)
     unpacked = 0
     stream: Any = _Bounded(file)
     for record in StreamReader(stream, emit_chunks=True, record_size_limit=BYTES.most).records:

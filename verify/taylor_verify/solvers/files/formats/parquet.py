@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from taylor_verify.records.faults import Faults, Refused, refusal
 from taylor_verify.solvers.files.formats.column import (
@@ -15,16 +15,17 @@ from taylor_verify.solvers.files.formats.column import (
     check_size,
     refuse_part,
 )
+from taylor_verify.solvers.files.formats.content import Content
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
     refuse_part(part, path)
     from pyarrow import ArrowException, parquet
 
     try:
-        texts = _checked(parquet.ParquetFile(file), path)
-        table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
+        texts = _checked(parquet.ParquetFile(file.binary), path)
+        table = parquet.ParquetFile(file.binary, read_dictionary=texts).read(use_threads=False)
     except MemoryError:
         raise
     except (ArrowException, OSError, ValueError) as error:

@@ -1,7 +1,8 @@
 """The formats of a trajectory file: a line of `FORMATS` for each suffix.
 
-To add one: a file beside this one with ``read(file, path, part) -> Table``, and a line here. ``part`` is
-the text after # in FILE#PART, which says which of several trajectories in a file is read.
+To add one: a file beside this one with ``read(file, path, part) -> Table``, and a line here. ``file`` is a
+`Content`, whose every way to read has a limit. ``part`` is the text after # in FILE#PART, which says which
+of several trajectories in a file is read.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ from collections.abc import Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
-from taylor_verify.scenes.reading.regular_file import regular_file
+from taylor_verify.records.regular_file import regular_file
 from taylor_verify.solvers.files.formats import aem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
 
 
@@ -67,7 +69,8 @@ def read_table(file: str | os.PathLike[str]) -> Table:
         if rosbag.is_folder(path):
             table = rosbag.read_folder(path, part)
         else:
-            with regular_file(path, "a trajectory file", BYTES) as content:
+            with regular_file(path, "a trajectory file", BYTES) as opened:
+                content = Content(opened, path)
                 table = _reader(content, path).read(content, path, part)
     ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
@@ -82,7 +85,7 @@ def parted(file: str) -> tuple[Path, str]:
     return Path(file), ""
 
 
-def _reader(content: BinaryIO, path: Path) -> Any:
+def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
     if aem.is_text(content):
         return aem

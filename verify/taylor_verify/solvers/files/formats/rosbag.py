@@ -12,12 +12,13 @@ import re
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 from taylor_verify.records.faults import cut, refusal
-from taylor_verify.scenes.reading.regular_file import read_bytes, regular_file
+from taylor_verify.records.regular_file import read_bytes, regular_file
 from taylor_verify.solvers.files.formats import mcap, messages
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.messages import Topic
 from taylor_verify.solvers.files.formats.package import unbroken
 
@@ -51,10 +52,10 @@ def read_folder(path: Path, part: str) -> Table:
     if not recordings:
         return _table(path, part)
     with regular_file(recordings[0], "a trajectory file", BYTES) as file:
-        return mcap.read(file, recordings[0], part)
+        return mcap.read(Content(file, recordings[0]), recordings[0], part)
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns of a topic in a file; the library opens it again by its name."""
     del file
     return _table(path, part)
