@@ -22,6 +22,7 @@ from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
+from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.names import GROUPS, SPELLINGS, Spelling
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.columns.units import in_brackets, known_units
@@ -29,7 +30,11 @@ from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, read
 from taylor_verify.solvers.files.formats.column import Column
 
 SCENE = "euler/with-attitude"
-NAMES = {group: " ".join(names) for group, names in GROUPS.items()}
+# What a note says that columns were taken for.
+WORDS = {
+    group: FORMS[group].words if group in FORMS else " ".join(names)
+    for group, names in GROUPS.items()
+}
 
 
 MOMENTA = ("px", "py", "pz", "Lx", "Ly", "Lz")
@@ -69,7 +74,8 @@ def _file_of(spelling: Spelling) -> list[str]:
 
 @pytest.mark.parametrize(
     "spelling",
-    [s for s in SPELLINGS if not (s.doubt or s.unless)],
+    # Those of programs stand in test_programs.py, with files.
+    [s for s in SPELLINGS if not (s.doubt or s.unless or s.whose)],
     ids=lambda s: "-".join(s.keys[:2]),
 )
 def test_every_spelling_of_the_table_is_taken_in_any_order(spelling: Spelling) -> None:
@@ -82,10 +88,11 @@ def test_every_spelling_of_the_table_is_taken_in_any_order(spelling: Spelling) -
         if spelling.group == "time":
             assert file.times == (Fraction(0),)
         else:
-            (row,) = file.groups[spelling.group]
-            assert row == tuple(Fraction(values[key]) for key in spelling.keys)
+            form, row = FORMS.get(spelling.group), [Fraction(values[key]) for key in spelling.keys]
+            (read,) = file.groups["quaternion" if form else spelling.group]
+            assert list(read) == list(form.quaternion(row) if form else row)
         is_ours = spelling.keys == GROUPS[spelling.group]
-        assert any(NAMES[spelling.group] in note for note in file.notes) is not is_ours
+        assert any(WORDS[spelling.group] in note for note in file.notes) is not is_ours
 
 
 @pytest.mark.parametrize("spelling", [s for s in SPELLINGS if s.doubt], ids=lambda s: s.keys[0])
@@ -100,7 +107,7 @@ def test_a_spelling_in_doubt_is_refused_with_what_to_write(spelling: Spelling) -
 
 
 # Forms of names, a file in a line; those of the table are tested above.
-FORMS = {
+USUAL = {
     "omega": """
         t omega[0] omega[1] omega[2]
         t omega(1) omega(2) omega(3)
@@ -134,7 +141,7 @@ FORMS = {
 
 @pytest.mark.parametrize(
     ("names", "group"),
-    [(line, group) for group, text in FORMS.items() for line in text.strip().splitlines()],
+    [(line, group) for group, text in USUAL.items() for line in text.strip().splitlines()],
 )
 def test_usual_forms_of_names(names: str, group: str) -> None:
     """Capitals, brackets, dots, paths and Greek letters are read."""
@@ -157,7 +164,7 @@ def test_any_usual_names_in_any_order_are_the_same_file(data: st.DataObject) -> 
     """Spellings drawn for each group, in any order: times and numbers are those of the plain file."""
     plain: dict[str, Sequence[str]] = {"t": ["0", "1"]}
     names: dict[str, str] = {}
-    clear = [s for s in SPELLINGS if not (s.doubt or s.is_whole or s.unless)]
+    clear = [s for s in SPELLINGS if not (s.doubt or s.is_whole or s.unless or s.whose)]
     for group in ("time", "omega", "attitude", "centre"):
         spelling = data.draw(st.sampled_from([s for s in clear if s.group == group]))
         for ours, key in zip(GROUPS[group], spelling.keys, strict=True):
@@ -463,20 +470,26 @@ def _documented(heading: str) -> list[tuple[str, str]]:
 def test_names_of_the_page_are_taken() -> None:
     """Every name that the documentation shows is taken as the group that it says."""
     shown = _documented("## Other names")
-    assert {group for group, _ in shown} == set(GROUPS)
+    assert {group for group, _ in shown} == {g for g in GROUPS if g == "zyx" or g not in SEQUENCES}
     for group, names in shown:
         company = "t" if group != "time" else "w1 w2 w3"
         company += " p q r" if names == "u v w" else ""
         company += " Lx Ly Lz" if (group, names) == ("linear_impulse", "px py pz") else ""
         company += " px py pz" if names == "Lx Ly Lz" else ""
         file = made(f"{company} {names}")
-        assert group in file.groups or group == "time", names
-        assert any(" taken as " + NAMES[group] in note for note in file.notes)
+        assert {group, "quaternion"} & set(file.groups) or group == "time", names
+        assert any(" taken as " + WORDS[group] in note for note in file.notes)
 
 
 def test_units_of_the_page_are_known() -> None:
     """The documentation shows the first name of every unit, and each of them is known."""
-    of = {"a rate": "omega", "a velocity": "linear_velocity", "a length": "centre", "time": "time"}
+    of = {
+        "an angle": "zyx",
+        "a rate": "omega",
+        "a velocity": "linear_velocity",
+        "a length": "centre",
+        "time": "time",
+    }
     for kind, texts in _documented("## Units"):
         group = of.get(kind, "angular_impulse" if "m" in texts else "linear_impulse")
         assert all(in_brackets(text, group) is not None for text in texts.split())

@@ -109,6 +109,8 @@ scene {_SCENE}
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
   (default elsewhere)
+--attitude matrix|quaternion|zyx [matrix]  the form of the attitude: R row by row; q0 q1 q2 q3; or yaw,
+  pitch and roll in radians; default: matrix
 """,
     ),
     "check": (

@@ -17,9 +17,10 @@ import numpy as np
 
 from taylor_verify.records.faults import Faults, cut
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.choice import Candidates
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.columns.units import OWN, Unit
+from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.formats.column import Column, shown
 from taylor_verify.solvers.files.formats.epochs import is_epoch, seconds_in_log
 from taylor_verify.solvers.values import exact
@@ -60,7 +61,8 @@ def with_times(
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
     whole = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
-    clocks = [_Clock(column, scene) for column in _candidates(whole, asked)]
+    units = Candidates([Name(column) for column in read], {}, {})
+    clocks = [_Clock(c, scene, _unit(c, units)) for c in _candidates(whole, asked)]
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))
@@ -82,6 +84,13 @@ def _candidates(columns: Sequence[Column], asked: Sequence[str]) -> list[Column]
     names = [Name(column) for column in columns]
     called = [name.column for name in names if _is_called_a_time(name)]
     return called or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
+
+
+def _unit(column: Column, names: Candidates) -> Unit:
+    name = Name(column)
+    spelling = names.of_clock(name)
+    stated = in_brackets(spelling.unit, "time") if spelling else name.unit("time")
+    return stated or OWN
 
 
 def _is_called_a_time(name: Name) -> bool:
@@ -143,8 +152,10 @@ def _sums(
 class _Clock:
     """A column that may have the times."""
 
-    def __init__(self, column: Column, scene: Scene | None) -> None:
+    def __init__(self, column: Column, scene: Scene | None, unit: Unit) -> None:
         self.column, self._scene = column, scene
+        # The unit that the name states, or the program's manual, by which its numbers are multiplied.
+        self._unit = unit
 
     @cached_property
     def _is_calendar(self) -> bool:
@@ -162,11 +173,6 @@ class _Clock:
     def _first(self) -> Fraction:
         first = self._number(self.column.values[0]) if len(self.column.values) else None
         return first if isinstance(first, Fraction) else Fraction(0)
-
-    @cached_property
-    def _unit(self) -> Unit:
-        """The unit that the name states, which its numbers are multiplied by when they are read."""
-        return Name(self.column).unit("time") or OWN
 
     @cached_property
     def _factor(self) -> Fraction:

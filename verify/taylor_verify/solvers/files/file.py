@@ -22,6 +22,7 @@ from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
+from taylor_verify.solvers.files.columns.attitudes import one_attitude
 from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column
@@ -138,17 +139,18 @@ def from_columns(
     times = parts.times(place, faults)
     if faults.lines:
         raise Refused(faults.lines)
-    first, *others = [
-        TrajectoryFile(
-            place,
-            tuple(times[k] for k in part.places),
-            part.groups,
-            part.digits,
-            columns={**COLUMNS, **own},
-        )
-        for part in parts.of_rows(len(times))
-    ]
-    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes)
+    settled: list[str] = []
+    files = []
+    for part in parts.of_rows(len(times)):
+        groups, said = one_attitude(part.groups, selection, place, faults)
+        settled += said
+        instants = tuple(times[k] for k in part.places)
+        columns_of = {**COLUMNS, **own}
+        files.append(TrajectoryFile(place, instants, groups, part.digits, columns=columns_of))
+    if faults.lines:
+        raise Refused(faults.lines)
+    first, *others = files
+    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *settled)
     return replace(first, notes=sentences, apart=tuple(others))
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.records.faults import Faults, cut
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.selection import Taken
 from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.present import (
@@ -61,7 +61,8 @@ class Parts:
     @cached_property
     def _groups(self) -> Mapping[str, Sequence[str]]:
         """The names of the columns of each group that is there."""
-        every = {**COLUMNS, **self.own}
+        every = {**GROUPS, **self.own}
+        every.pop("time")
         return {group: names for group, names in every.items() if names[0] in self._columns}
 
     def _of(self, group: str) -> list[Column]:

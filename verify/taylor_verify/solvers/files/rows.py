@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any, Final, final, overload
+from typing import Any, Final, overload
 
 import gmpy2
 import numpy as np
@@ -33,7 +33,6 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 _NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
-@final
 class Rows(Sequence[tuple[Value, ...]]):
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
@@ -55,6 +54,10 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __len__(self) -> int:
         return self._count
 
+    @property
+    def width(self) -> int:
+        return len(self._columns)
+
     @overload
     def __getitem__(self, place: int) -> tuple[Value, ...]: ...
 
@@ -64,11 +67,15 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __getitem__(self, place: int | slice) -> Any:
         if isinstance(place, slice):
             return tuple(self[k] for k in range(self._count)[place])
-        return next(zip(*map(_exact, self._some([place])), strict=True))
+        return next(self.values_at([place]))
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
         for part in _chunks(self._count):
-            yield from zip(*map(_exact, self._some(part)), strict=True)
+            yield from self.values_at(part)
+
+    def values_at(self, places: Sequence[int]) -> Iterator[tuple[Value, ...]]:
+        """Yield some of the rows."""
+        return zip(*map(_exact, self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
