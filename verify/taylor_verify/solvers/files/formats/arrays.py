@@ -104,10 +104,10 @@ def _rows(arrays: Sequence[Array]) -> int:
 
 
 def _rows_of_one(array: Array, place: object) -> int:
-    """Return the number of rows of the only array: a matrix that is wider than long may be transposed."""
+    """Return the number of rows of the only array: its times say if a matrix is transposed."""
     length, *width = array.shape
-    if len(width) != 1 or length >= width[0] or not length:
-        return array.longest if length else 0
+    if len(width) != 1 or not min(array.shape):
+        return array.longest
     BYTES.check(prod(array.shape) * array.itemsize, place)
     values = array.load()
     is_transposed = _rises(values[0]) and not _rises(values[:, 0])

@@ -15,6 +15,7 @@ from taylor_verify.solvers.files.formats.column import Column, Table, check_size
 from taylor_verify.solvers.files.formats.content import Content
 
 _MOST_LINES: Final = 1000
+_MARKS: Final = ("\t", "")
 _END: Final = "endheader"
 _ELEMENTS: Final = {
     "double": (),
@@ -31,7 +32,7 @@ def read(file: Content, path: Path, part: str) -> Table:
     if below is None:
         raise refusal(f"a line `{_END}`", "none", path)
     said = {key.strip().lower(): text.strip() for key, _, text in (x.partition("=") for x in top)}
-    table = delimited.table(file, path, first=below + 1)
+    table = delimited.table(file, path, first=below + 1, marks=_MARKS)
     rows = len(table.columns[0].values) if table.columns else 0
     for key, count, what in (("nrows", rows, "rows"), ("ncolumns", len(table.columns), "columns")):
         if said.get(key, str(count)) != str(count):
