@@ -119,7 +119,7 @@ def _rises(line: np.ndarray[Any, Any]) -> bool:
 
 
 def _columns(array: Array, rows: int) -> Iterator[Column]:
-    values = np.moveaxis(array.load(), array.shape.index(rows), 0)
+    values: Any = np.moveaxis(array.load(), array.shape.index(rows), 0)
     if values.size == rows:
         yield Column(array.name, values.reshape(rows))
         return

@@ -163,6 +163,6 @@ def _of_one(file: Content, path: Path) -> Table:
     if header.dtype.kind not in "fiu" or not 1 <= len(header.shape) <= 2:
         got = f"shape {header.shape} of {header.dtype}"
         raise refusal("a matrix of numbers, a row for each time", got, path)
-    matrix = header.values(content).reshape(header.shape[0], -1)
+    matrix: Any = header.values(content).reshape(header.shape[0], -1)
     check_size(matrix.shape[1], matrix.shape[0], path)
     return Table([Column(str(k), column) for k, column in enumerate(matrix.T, start=1)])

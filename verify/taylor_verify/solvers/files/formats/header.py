@@ -150,8 +150,7 @@ def _above(first: Line, lines: Sequence[Line], mark: str) -> Head:
         return Head((), mark, first.number)
     # Of lines alike the first that is no comment, or the comment that is nearest to the numbers.
     lines_alike = [c for c in candidates if c.known == max(one.known for one in candidates)]
-    plain = [c for c in lines_alike if not c.line.is_comment]
-    chosen = plain[0] if plain else lines_alike[-1]
+    chosen = next((c for c in lines_alike if not c.line.is_comment), lines_alike[-1])
     notes = [*_passed([line for line in above if line.number < chosen.line.number])]
     if chosen.line.is_comment:
         notes.append(f"the columns are named in line {chosen.line.number}, a comment")

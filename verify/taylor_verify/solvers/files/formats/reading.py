@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.regular_file import regular_file
-from taylor_verify.solvers.files.formats import aem, rosbag
+from taylor_verify.solvers.files.formats import aem, oem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
@@ -51,7 +51,8 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".npy": Format("a matrix of NumPy, whose columns have numbers from 1", "binary"),
     ".parquet": Format("columns of numbers", "parquet", "pyarrow"),
     ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", "aem"),
-    ".kvn": Format("attitude ephemeris of the CCSDS, as text", "aem"),
+    ".kvn": Format("attitude or orbit ephemeris of the CCSDS, as text", "aem"),
+    ".oem": Format("orbit ephemeris of the CCSDS, as text", "oem"),
     ".xml": Format("attitude ephemeris of the CCSDS, as XML", "aem"),
     ".sto": Format("a table of OpenSim", "opensim"),
     ".mot": Format("a table of OpenSim", "opensim"),
@@ -98,6 +99,8 @@ def parted(file: str) -> tuple[Path, str]:
 
 def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
+    if oem.is_one(content):
+        return oem
     if aem.is_text(content):
         return aem
     known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)

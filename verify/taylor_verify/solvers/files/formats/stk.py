@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.formats.aem import is_turning
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, alike, refuse_part
 from taylor_verify.solvers.files.formats.content import Content
@@ -22,6 +23,7 @@ _DATA: Final[Mapping[str, tuple[str, ...]]] = {
     "attitudetimequatscalarfirst": ("q0", "q1", "q2", "q3"),
     "attitudetimequatangvels": (*_LAST, *(f"w{k} [deg/s]" for k in (1, 2, 3))),
 }
+_DIGITS: Final = str.maketrans("123", "xyz")
 _POINTS, _AXES, _FORMAT = "numberofattitudepoints", "coordinateaxes", "timeformat"
 _FIXED: Final = ("fixed", "fixednolibration", "ecf", "custom")
 
@@ -42,7 +44,7 @@ def read(file: Content, path: Path, part: str) -> Table:
                 rows.append(words)
                 ROWS.check(len(rows), path)
             elif word.startswith("attitudetime"):
-                names = _named(word, words[0], place)
+                names = _named(word, words[0], keywords.get("sequence", ""), place)
             else:
                 keywords[word] = rest
         else:
@@ -52,7 +54,7 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise Refused(faults.lines)
     columns = map(list, zip(*rows, strict=True)) if rows else ([] for _ in ("t", *names))
     read = [Column(name, values) for name, values in zip(("t", *names), columns, strict=True)]
-    note = f"q0 ... q3 take {cut(keywords.get(_AXES, 'the axes of the file'))} to body axes"
+    note = f"the attitude is that of body axes from {cut(keywords.get(_AXES, 'the axes of the file'))} "
     return Table(read, (note,))
 
 
@@ -62,9 +64,15 @@ def _lines(file: Content, path: Path) -> Iterator[tuple[str, list[str]]]:
             yield f"{path}, line {number}", words
 
 
-def _named(word: str, shown: str, place: str) -> tuple[str, ...]:
+def _named(word: str, shown: str, sequence: str, place: str) -> tuple[str, ...]:
+    axes = sequence.translate(_DIGITS)
+    if word == "attitudetimeeulerangles" and axes in FORMS:
+        return tuple(f"euler_{axes}_{k} [deg]" for k in (1, 2, 3))
     if word not in _DATA:
-        kinds = "AttitudeTimeQuaternions, AttitudeTimeQuatScalarFirst or AttitudeTimeQuatAngVels"
+        kinds = (
+            "AttitudeTimeQuaternions, AttitudeTimeQuatScalarFirst, AttitudeTimeQuatAngVels, or "
+            "AttitudeTimeEulerAngles below a Sequence such as 321"
+        )
         raise refusal(kinds, cut(shown), place, "write one of them, or a CSV file")
     return _DATA[word]
 
