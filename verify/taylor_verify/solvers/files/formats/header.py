@@ -1,7 +1,7 @@
 """The head of a table in text: the line that names its columns, and the mark between their cells.
 
 The first line of numbers tells the mark and the number of cells. Of the lines above it with as many cells,
-comments too, the header is the one with the most known names. A line of units below it belongs to the names.
+comments too, the header is the one with the most known names. A line of units below it belongs to them.
 What stands above the header is no part of the table.
 """
 
