@@ -110,12 +110,12 @@ def with_angles(
 
     Raises what judge.conventions.search.conventions does.
     """
-    if file.form not in SEQUENCES:
+    if file.form not in SEQUENCES or "quaternion" not in file.groups:
         return file, None
     for rows in reversed(beginnings(file)):
         finding, meaning = _explained(file, scene, rung, rows)
         if finding is not None:
-            return _read_by(file, meaning), finding
+            return _read_by(file, meaning) if finding.is_certain else file, finding
     return file, None
 
 
