@@ -13,7 +13,9 @@ import pytest
 from builders.trajectories import QUATERNION, VECTORS, columns_at, rows_of
 
 from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.faults import Refused
+from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.columns.programs import entries, spellings_of
 from taylor_verify.solvers.files.columns.readings import Name
