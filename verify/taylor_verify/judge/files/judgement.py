@@ -17,6 +17,7 @@ import numpy as np
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, are_known, causes_of_file
+from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
@@ -136,9 +137,12 @@ def judge_file(
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
+            compared, angles = with_angles(compared, scene, rung)
             explained = causes_of_file(compared, rung, known, judged)
             if scene.body.loads is None and (accept_conventions or not explained.is_motion):
                 known = conventions(compared, scene, rung)
+            if angles:
+                known = replace(known, findings=(angles, *known.findings))
             if accept_conventions:
                 answer = FileRows.of(compared, rung, known)
             if judged is None or (accept_conventions and known.findings):
@@ -161,6 +165,8 @@ def judge_file(
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
+    else:
+        explained = Explained()
     if judged.record is not None:
         notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings

@@ -23,14 +23,14 @@ from taylor_verify.records.observed_order import (
     convergence,
     local_orders,
 )
-from taylor_verify.records.quantities import COMPLETE, INITIAL, UNIT_QUATERNION
+from taylor_verify.records.quantities import COMPLETE, INITIAL, SOUND_ATTITUDE
 from taylor_verify.records.status import Status
 
 if TYPE_CHECKING:
     from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
-_NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, UNIT_QUATERNION)
+_NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, *SOUND_ATTITUDE)
 # The step of an integrator, in the sentences.
 STEP: Final = "h"
 # Without the suspect, three files are needed to show an order.

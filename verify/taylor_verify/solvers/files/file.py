@@ -67,7 +67,8 @@ class TrajectoryFile:
     one is binary or a fraction. ``notes`` say how the format was read, which columns were taken for
     which, and which were ignored. ``step`` is the integrator's step, where the file states it. ``columns``
     are the names of the columns of each group, states of the scene's own among them. ``apart`` are the
-    groups that have other rows than these: each with all of its own rows.
+    groups that have other rows than these: each with all of its own rows. ``form`` is that of an attitude
+    which was no quaternion nor a matrix.
     """
 
     name: str
@@ -78,6 +79,7 @@ class TrajectoryFile:
     step: FileStep | None = None
     columns: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: COLUMNS)
     apart: tuple[TrajectoryFile, ...] = ()
+    form: str = ""
 
     @cached_property
     def is_single_precision(self) -> bool:
@@ -142,11 +144,11 @@ def from_columns(
     settled: list[str] = []
     files = []
     for part in parts.of_rows(len(times)):
-        groups, said = one_attitude(part.groups, selection, place, faults)
+        groups, form, said = one_attitude(part.groups, selection, place, faults)
         settled += said
-        instants = tuple(times[k] for k in part.places)
-        columns_of = {**COLUMNS, **own}
-        files.append(TrajectoryFile(place, instants, groups, part.digits, columns=columns_of))
+        instants, every = tuple(times[k] for k in part.places), {**COLUMNS, **own}
+        file = TrajectoryFile(place, instants, groups, part.digits, columns=every, form=form)
+        files.append(file)
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files

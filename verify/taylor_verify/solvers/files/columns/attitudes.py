@@ -56,8 +56,8 @@ class _Description(NamedTuple):
 
 def one_attitude(
     groups: Groups, selection: Selection, place: str, faults: Faults
-) -> tuple[Groups, list[str]]:
-    """Return the groups with one description of the attitude, and sentences on how it was settled."""
+) -> tuple[Groups, str, list[str]]:
+    """Return the groups with one description of the attitude, its form, and how it was settled."""
     choices = [choice for choice in selection.attitudes if choice.group in groups]
     every = [
         description
@@ -75,7 +75,8 @@ def one_attitude(
             left["omega"] = MadeRows([left["omega"], first.rows], make, 3)
         else:
             notes.append("w1 w2 w3 are left in space axes: the file has no attitude")
-    return left, notes
+    form = first.choice.group if first and first.choice.group in FORMS else ""
+    return left, form, notes
 
 
 def _descriptions(choice: Choice, rows: Rows) -> Iterator[_Description]:

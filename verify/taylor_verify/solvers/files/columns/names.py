@@ -13,7 +13,7 @@ from typing import Final
 
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
-from taylor_verify.solvers.files.columns.programs import spellings_of_programs
+from taylor_verify.solvers.files.columns.programs import entries, spellings_of
 from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
 
 # Every group of columns, time and forms of the attitude among them, with the names that are ours.
@@ -109,7 +109,8 @@ _REMARKS: Final = {
 
 
 def _spellings() -> Iterator[Spelling]:
-    yield from spellings_of_programs(_REMARKS)
+    for entry in entries():
+        yield from spellings_of(entry, _REMARKS.get(entry["group"], ""))
     for group, names in GROUPS.items():
         yield Spelling(group, names, _REMARKS.get(group, ""))
     for group, stems in _STEMS.items():

@@ -25,22 +25,21 @@ def entries() -> Iterator[dict[str, str]]:
             yield dict(zip(FIELDS, fields, strict=True))
 
 
-def spellings_of_programs(remarks: Mapping[str, str]) -> Iterator[Spelling]:
-    """Yield a spelling for each entry; three or more for names with a star."""
-    for entry in entries():
-        together = [sign.split("+") for sign in entry["beside"].split()]
-        for names in _written_out(entry["names"].split(), entry["group"]):
-            yield Spelling(
-                group=entry["group"],
-                keys=tuple(map(_letters, names)),
-                remark="" if entry["turn"] else remarks.get(entry["group"], ""),
-                whose=entry["program"],
-                signs=tuple(tuple(map(_letters, signs)) for signs in together),
-                is_behind=names[0].startswith("_"),
-                unit=entry["unit"],
-                frame=Frame[entry["frame"].upper() or "UNSAID"],
-                turn=Turn(entry["turn"]),
-            )
+def spellings_of(entry: Mapping[str, str], remark: str = "") -> Iterator[Spelling]:
+    """Yield the spelling of an entry; three for names with a star."""
+    together = [sign.split("+") for sign in entry["beside"].split()]
+    for names in _written_out(entry["names"].split(), entry["group"]):
+        yield Spelling(
+            group=entry["group"],
+            keys=tuple(map(_letters, names)),
+            remark="" if entry["turn"] else remark,
+            whose=entry["program"],
+            is_behind=names[0].startswith("_"),
+            signs=tuple(tuple(map(_letters, signs)) for signs in together),
+            unit=entry["unit"],
+            frame=Frame[entry["frame"].upper() or "UNSAID"],
+            turn=Turn(entry["turn"]),
+        )
 
 
 def _written_out(names: Sequence[str], group: str) -> Iterator[Sequence[str]]:
