@@ -215,7 +215,7 @@ def test_a_document_type_is_refused_in_any_encoding(encoding: str, tmp_path: Pat
     file = tmp_path / "run.xml"
     file.write_bytes('<!DOCTYPE aem [<!ENTITY b "c">]><aem>&b;</aem>'.encode(encoding))
     with pytest.raises(
-        Refused, match="expected (XML without a document type|text in UTF-8|KEYWORD = value)"
+        Refused, match=r"expected (XML without a document type|text in UTF-8|KEYWORD = value)"
     ):
         read(file)
 

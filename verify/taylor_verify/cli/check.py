@@ -105,7 +105,7 @@ def _asked(
         try:
             return reading(*given)
         except (WrongCall, Refused) as error:
-            faults.append(str(error))
+            faults.extend(error.faults)
 
     steps = attempt(_steps, options)
     scene = attempt(read_scene, options.scene)
@@ -113,7 +113,7 @@ def _asked(
     names = dict.fromkeys(options.files)
     files = [attempt(lambda name: read(name, request(columns), scene), name) for name in names]
     if faults:
-        raise WrongCall("\n".join(faults))
+        raise WrongCall(*faults)
     return scene, files, steps
 
 
@@ -260,7 +260,8 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
     _print_files(page, judged)
     for one in judged.files:
         _print_peculiar(page, one, common)
-    page.line(f"\n{counts(judged.verdicts)}; `check` of one file alone says the reasons")
+    page.line()
+    page.line(f"{counts(judged.verdicts)}; `check` of one file alone says the reasons")
     return page.text()
 
 

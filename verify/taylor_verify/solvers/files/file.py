@@ -20,6 +20,7 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
@@ -112,8 +113,8 @@ def read(
     scene's own by their names. Usual other names are taken, and ``columns`` names what has any other name,
     by pairs of our name and the file's. Raises Refused with every fault of it.
     """
-    table = read_table(file)
-    trajectory = from_columns(table.columns, str(file), columns, table.notes, scene)
+    table, place = read_table(file), one_line(os.fspath(file))
+    trajectory = from_columns(table.columns, place, columns, table.notes, scene)
     return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 
 

@@ -11,7 +11,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.records.regular_file import regular_file
+from taylor_verify.solvers.files.formats.column import BYTES, Column
 from taylor_verify.solvers.files.formats.reading import parted
 from taylor_verify.solvers.values import exact
 
@@ -112,7 +113,7 @@ def _stated_in_head(
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".tsv", ".txt", ".json"):
         return
-    with path.open("rb") as file:
+    with regular_file(path, "a trajectory file", BYTES) as file:
         head = file.read(_HEAD_BYTES).decode("utf-8", errors="replace")
     if suffix == ".json":
         yield from key.finditer(head)

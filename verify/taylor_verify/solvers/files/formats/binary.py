@@ -11,7 +11,6 @@ import zipfile
 import zlib
 from io import BytesIO
 from itertools import islice
-from lzma import LZMAError
 from math import prod
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
@@ -20,7 +19,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
@@ -52,7 +51,6 @@ _BROKEN: Final = (
     OverflowError,
     zipfile.BadZipFile,
     zlib.error,
-    LZMAError,
     RuntimeError,
 )
 
@@ -106,6 +104,14 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 
 
+def _checked_method(info: zipfile.ZipInfo, path: Path) -> zipfile.ZipInfo:
+    """Refuse other methods than those of NumPy: zipfile unpacks them whole, whatever a member claims."""
+    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        place = f"{path}, member {cut(info.filename)}"
+        raise refusal("a member that is stored or deflated", f"method {info.compress_type}", place)
+    return info
+
+
 def _check_entries(file: Content, path: Path) -> None:
     """Count the entries of the directory, of which zipfile would make an object each."""
     with mmap(file.binary.fileno(), 0, access=ACCESS_READ) as content:
@@ -116,7 +122,7 @@ def _check_entries(file: Content, path: Path) -> None:
 
 def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Member:
     """Return a member with what its header says of it."""
-    with archive.open(info) as stream:
+    with archive.open(_checked_method(info, path)) as stream:
         start = stream.read(_LONGEST_HEADER)
     return _Member(info, _header(start, info.filename.removesuffix(".npy"), info.file_size, path))
 

@@ -1,15 +1,17 @@
 """Columns in a Parquet file, read with pyarrow; those in structs have dotted names.
 
-A list of numbers in each row is as many columns, numbered from 0, if all lists are equally long.
+A list of numbers in each row is as many columns, numbered from 0, if all lists are equally long. What can
+hold no numbers is not read: a page of text may be a thousand times its size in the file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections import Counter
+from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from taylor_verify.records.faults import Refused, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -21,6 +23,9 @@ from taylor_verify.solvers.files.formats.column import (
 )
 from taylor_verify.solvers.files.formats.content import Content
 
+# A million decimals of sixty characters.
+_TEXT_BYTES: Final = 2**26
+
 
 def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
@@ -30,8 +35,10 @@ def read(file: Content, path: Path, part: str) -> Table:
     try:
         footer = parquet.ParquetFile(file.binary)
         names, texts, left = _checked(footer, path)
+        long = _long_texts(footer, texts)
         reader = parquet.ParquetFile(file.binary, read_dictionary=texts)
-        table = _flat(reader.read(columns=names, use_threads=False))
+        wanted = [name for name in names if name not in long]
+        table = _flat(reader.read(wanted, use_threads=False))
         _check_texts(table, texts, path)
         table = _seconds(_without_lists(table, path))
     except MemoryError:
@@ -41,9 +48,12 @@ def read(file: Content, path: Path, part: str) -> Table:
             raise
         reason = str(error).splitlines()[0]
         raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
-    columns = (table.column(i).to_pylist() for i in range(table.num_columns))
-    notes = (f"not read, because they hold no numbers: {', '.join(left)}",) if left else ()
-    return Table(list(map(Column, table.column_names, columns)), notes)
+    columns = [Column(name, _values(table.column(i))) for i, name in enumerate(table.column_names)]
+    notes = [
+        f"not read, because it is longer than numbers are: column {cut(name)}" for name in long
+    ]
+    notes += [f"not read, because they hold no numbers: {cut(', '.join(left))}"] if left else []
+    return Table(columns, tuple(notes))
 
 
 def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
@@ -57,7 +67,11 @@ def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    chunks = (group.column(i) for group in groups for i in range(metadata.num_columns))
+    packing = {group.column(i).compression for group in groups for i in range(group.num_columns)}
+    if "BROTLI" in packing:
+        # It has no bound on what a page becomes, and the sizes in the footer are only said.
+        raise refusal("columns packed by snappy, gzip, lz4 or zstd", "brotli", path)
+    chunks = (group.column(i) for group in groups for i in range(group.num_columns))
     VALUES.check(sum(chunk.num_values for chunk in chunks), path)
     is_a = pa.types
     numbers = (
@@ -86,6 +100,30 @@ def _is_list(kind: Any) -> bool:
         is_such(kind)
         for is_such in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
     )
+
+
+def _long_texts(footer: Any, texts: Collection[str]) -> set[str]:
+    """Return the names of columns of text that have more bytes than numbers have."""
+    metadata, sizes = footer.metadata, Counter[str]()
+    for group in (metadata.row_group(i) for i in range(metadata.num_row_groups)):
+        for column in (group.column(i) for i in range(group.num_columns)):
+            sizes[column.path_in_schema] += column.total_uncompressed_size
+    return {name for name in texts if sizes[name] > _TEXT_BYTES}
+
+
+def _values(column: Any) -> Any:
+    """Return the entries: binary numbers as NumPy has them, and each text of a dictionary once."""
+    import pyarrow as pa
+
+    if pa.types.is_dictionary(column.type):
+        return [entry for chunk in column.chunks for entry in _texts(chunk)]
+    is_binary = pa.types.is_integer(column.type) or pa.types.is_float64(column.type)
+    return column.to_numpy() if is_binary and not column.null_count else column.to_pylist()
+
+
+def _texts(chunk: Any) -> Iterator[Any]:
+    texts = chunk.dictionary.to_pylist()
+    return (None if place is None else texts[place] for place in chunk.indices.to_pylist())
 
 
 def _flat(table: Any) -> Any:
