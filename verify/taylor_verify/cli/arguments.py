@@ -111,6 +111,8 @@ scene {_SCENE}
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
   (default elsewhere)
+--attitude matrix|quaternion|zyx [matrix]  the form of the attitude: R row by row; q0 q1 q2 q3; or yaw,
+  pitch and roll in radians; default: matrix
 """,
     ),
     "check": (
@@ -134,6 +136,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 {_TOLERANCE}
 --steps H,H,...  the steps of several files, in their order; default: what the files or their names say
   (run_h0.05.csv)
+--knob NAME  what differs between several files in place of the step: rtol, substeps, ...; its number is
+  read in their names (run_rtol1e-6.csv), or in a comment or key of each file
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),

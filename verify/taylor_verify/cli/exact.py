@@ -28,7 +28,8 @@ def answer(options: argparse.Namespace) -> Answer:
     scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
-            content = document(scene, solution(scene, options.route), times, options.digits)
+            motion = solution(scene, options.route)
+            content = document(scene, motion, times, options.digits, options.attitude)
     except NoClosedForm as reason:
         content = {
             "scene": scene.name,

@@ -44,7 +44,7 @@ def combined(turns: Iterable[Turn], parts: int = 10**DECIMALS) -> Quaternion:
     from mpmath import mp
 
     with mp.workprec(_BITS):
-        q = reduce(_product, map(_half_angle, turns))
+        q = reduce(times, map(_half_angle, turns))
         largest = max(q, key=abs)
         w, x, y, z = (Fraction(round(exact_value(part / largest) * parts), parts) for part in q)
     return (w, x, y, z)
@@ -112,7 +112,8 @@ def _half_angle(turn: Turn) -> _Parts:
     return (mp.cos(half), x, y, z)
 
 
-def _product(a: _Parts, b: _Parts) -> _Parts:
+def times(a: tuple[Any, ...], b: tuple[Any, ...]) -> _Parts:
+    """Return the product of two quaternions, scalar first, in any arithmetic."""
     (s, x, y, z), (t, u, v, w) = a, b
     return (
         s * t - x * u - y * v - z * w,

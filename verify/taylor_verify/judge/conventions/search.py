@@ -73,14 +73,22 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     Raises Unsettled if there is no exact motion, and NotRepresentable if the rung cannot represent the
     scene.
     """
-    searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
+    searches = [_Search(file, scene, rung, rows) for rows in beginnings(file)]
     if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
     # Shorter beginnings come first, and max takes the first of equal ranks.
     return max((search.conventions() for search in searches), key=attrgetter("rank"))
 
 
-def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
+def attitudes_at(file: TrajectoryFile, scene: Scene, rung: Rung, rows: tuple[int, ...]) -> Floats:
+    """Return the exact attitudes at some rows of a file, in doubles; NaN where they are out of reach."""
+    near, truth = _Search(file, scene, rung, rows)._truth(World(scene))
+    attitudes = np.full((len(rows), 3, 3), np.nan)
+    attitudes[near] = truth["attitude"] if near else attitudes[near]
+    return attitudes
+
+
+def beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
     """Return the finite rows of longer and longer beginnings of a file, the shortest first."""
     finite = np.flatnonzero(file.finite).tolist()
     longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
