@@ -116,6 +116,21 @@ def _lines(entries: Sequence[Entry]) -> int:
     return max(-(-len(entries) // _ABREAST), 1)
 
 
+def name_lines(axes: Axes) -> None:
+    """Write the names of the lines that have one, where they hide the fewest points."""
+    if not axes.get_legend_handles_labels()[0]:
+        return
+    axes.legend(
+        loc="best",
+        fontsize=SMALL - 1,
+        handlelength=2.0,
+        borderpad=0.2,
+        labelspacing=0.15,
+        framealpha=0.6,
+        edgecolor="none",
+    )
+
+
 def draw_legend(
     figure: Figure, entries: Sequence[Entry], note: str = "", free: Frame | None = None
 ) -> None:

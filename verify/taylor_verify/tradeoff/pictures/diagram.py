@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import Limits, number_axes, widened
-from taylor_verify.plotting.named import Named
 from taylor_verify.plotting.palette import INK, PAPER, QUIET, for_text
 from taylor_verify.plotting.sheet import (
     STRIP,
@@ -22,6 +21,7 @@ from taylor_verify.plotting.sheet import (
     foot_of,
     frames_of,
     free_place,
+    name_lines,
 )
 from taylor_verify.plotting.style import SMALL
 from taylor_verify.records.standing import Standing
@@ -49,8 +49,6 @@ def work_precision(
     ``floors`` are the attainable errors by rung, each drawn in panels with taylor on that rung. ``bars`` is
     True to draw the spread of times. ``note`` is a text below the marks.
     """
-    from taylor_verify.plotting.labels import write_names
-
     front = front_of(series for panel in panels for series in panel.drawn)
     strips = [[series for series in panel.drawn if series.border] for panel in panels]
     entries = _legend(panels, has_bars=bars, has_floors=bool(floors))
@@ -74,19 +72,18 @@ def work_precision(
             colour = panel.ladder[rung]
             axes.axhline(floor, color=colour, linewidth=0.6, dashes=(1, 2), gid="floor")
         for series in panel.drawn:
-            _draw_series(axes, series, bars)
+            _draw_series(axes, panel, series, bars)
             _draw_exact(axes, series)
-        spread = [((s.x, s.y), (s.x * s.spread, s.y)) for s in panel.sound] if bars else []
-        write_names(axes, _names_of(panel), [stairs, *spread])
+        name_lines(axes)
         top = _draw_strip(figure, frame, panel, strip, x_limits) if strip else axes
         top.set_title(panel.heading, pad=4)
     draw_legend(figure, entries, note, free_place(frames))
     return figure
 
 
-def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
+def _draw_series(axes: Axes, panel: Panel, series: Series, bars: bool) -> None:
     """Draw a line through each sequence of sound settings of a family, and bars for the spread of times."""
-    look = series.look
+    look, name = series.look, panel.label(series)
     for piece in series.pieces:
         x, y = [spot.x for spot in piece], [spot.y for spot in piece]
         if bars:
@@ -95,7 +92,9 @@ def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
                 x, y, xerr=beyond, fmt="none", ecolor=look.colour, elinewidth=0.5, alpha=0.6
             )
         # Thick lines below thin ones.
-        axes.plot(x, y, gid=series.family, zorder=4 - look.width / 10, **look.line)
+        axes.plot(x, y, gid=series.family, label=name, zorder=4 - look.width / 10, **look.line)
+        # One of its pieces has the name of a family.
+        name = None
 
 
 def _draw_exact(axes: Axes, series: Series) -> None:
@@ -105,18 +104,6 @@ def _draw_exact(axes: Axes, series: Series) -> None:
     for spot in series.spots:
         if spot.is_exact:
             axes.plot([spot.x], [0.0], transform=place, clip_on=False, gid="exact", **look)
-
-
-def _names_of(panel: Panel) -> list[Named]:
-    """Return the lines of a panel with their names."""
-    return [
-        Named(
-            panel.label(series),
-            series.look.colour,
-            [[(s.x, s.y) for s in p] for p in series.pieces],
-        )
-        for series in panel.drawn
-    ]
 
 
 def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
