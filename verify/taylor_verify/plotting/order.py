@@ -75,8 +75,8 @@ def _draw(axes: Axes, orders: Sequence[Order]) -> None:
     number_axes(axes)
     for i, order in enumerate(orders):
         look = look_of_line(i).line
-        named = {"gid": order.quantity, "label": _name(order)}
-        axes.plot(*zip(*errors[i], strict=True), zorder=3, **named, **look)
+        (line,) = axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
+        line.set_label(_name(order))
         least, most = order.smallest or 0.0, order.largest or 0.0
         read = [p for p in errors[i] if order.order is not None and least <= p[0] <= most]
         if read:

@@ -83,7 +83,8 @@ def work_precision(
 
 def _draw_series(axes: Axes, panel: Panel, series: Series, bars: bool) -> None:
     """Draw a line through each sequence of sound settings of a family, and bars for the spread of times."""
-    look, name = series.look, panel.label(series)
+    look = series.look
+    name: str | None = panel.label(series)
     for piece in series.pieces:
         x, y = [spot.x for spot in piece], [spot.y for spot in piece]
         if bars:
