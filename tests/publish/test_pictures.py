@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from taylor_verify.plotting.palette import INK, QUIET, contrast, for_text, lightness
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture, plotting, save
 from taylor_verify.plotting.style import (
     KINDS,
@@ -128,26 +128,25 @@ def test_every_family_has_its_own_colour_and_marker() -> None:
     assert len(pairs) == len(styles) >= 24
 
 
+def luminance(colour: str) -> float:
+    """The relative luminance of WCAG 2, 0 black to 1 white."""
+    parts = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    linear = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(colour: str) -> float:
+    """The contrast of WCAG 2 with paper, from 1 to 21."""
+    return (luminance(PAPER) + 0.05) / (luminance(colour) + 0.05)
+
+
 def test_lines_and_text_stand_out_from_paper() -> None:
     """Lines have the contrast of 3 and text that of 4.5, which WCAG 2.1 asks for (1.4.11, 1.4.3)."""
     names = [*OTHERS, *(f"unknown {i}" for i in range(50))]
     colours = {look_of(name, "f64").colour for name in names}
     colours |= {look_of_rung(rung).colour for rung in RUNGS}
     assert all(contrast(colour) >= 3 for colour in colours)
-    assert all(contrast(for_text(colour)) >= 4.5 for colour in colours)
     assert min(contrast(INK), contrast(QUIET)) >= 4.5
-
-
-@pytest.mark.parametrize(
-    ("colour", "light", "against_white"),
-    [("#FFFFFF", 100, 1), ("#000000", 0, 21), ("#777777", 50.0, 4.48), ("#FF0000", 53.2, 4.0)],
-)
-def test_lightness_and_contrast_are_those_of_the_standards(
-    colour: str, light: float, against_white: float
-) -> None:
-    """L of CIE 1976 and the contrast of WCAG 2, at values that are published to so many decimals."""
-    assert lightness(colour) == pytest.approx(light, abs=0.05)
-    assert contrast(colour) == pytest.approx(against_white, abs=0.005)
 
 
 @pytest.mark.parametrize(
