@@ -61,7 +61,7 @@ ASIDE = vector(1, -2, "1/2")
 
 by_motion = pytest.mark.parametrize("name", MOTIONS)
 of_each_regime = pytest.mark.parametrize(
-    "name", by_turns(MOTIONS, 4, lambda name: MOTIONS[name][2])
+    "name", by_turns(MOTIONS, 12, lambda name: MOTIONS[name][2])
 )
 
 
