@@ -349,7 +349,7 @@ def test_names_keep_apart_wherever_the_points_are(places: list[tuple[float, floa
 @pytest.mark.parametrize(
     ("kinds", "panels"),
     [
-        (["scipy"], 1),
+        pytest.param(["scipy"], 1, marks=pytest.mark.slow),
         pytest.param(["taylor", "scipy"], 2, marks=pytest.mark.slow),
         (["taylor", "scipy", "geometric"], 3),
     ],

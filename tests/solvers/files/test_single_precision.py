@@ -97,11 +97,14 @@ print(json.dumps({"t": times, **columns}))
 
 @pytest.mark.parametrize(
     ("kind", "form"),
-    [
-        ("np.float32", "float"),
-        ("np.float32", "lambda v: f'{v:.9g}'"),
-        ("np.float64", "lambda v: float(f'{v:.9g}')"),
-    ],
+    by_turns(
+        [
+            ("np.float32", "float"),
+            ("np.float32", "lambda v: f'{v:.9g}'"),
+            ("np.float64", "lambda v: float(f'{v:.9g}')"),
+        ],
+        2,
+    ),
 )
 def test_a_program_in_float32_has_the_hint(
     kind: str, form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
