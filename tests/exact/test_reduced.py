@@ -33,7 +33,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from random import Random
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from flint import arb, fmpq
 from mpmath import mp
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import exact_columns, write_csv
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.cli import main
