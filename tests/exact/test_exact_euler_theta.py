@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, spinning, turned
 from builders.scenes import vector
+from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
@@ -166,7 +167,7 @@ def test_extremes_agree_with_mpmath(name: str) -> None:
     agrees_with_mpmath(EXTREMES[name], times("7/3", -LONG))
 
 
-@pytest.mark.parametrize("name", SPINS)
+@pytest.mark.parametrize("name", by_turns(SPINS))
 def test_agrees_with_taylor(name: str) -> None:
     """The Taylor route, which knows no elliptic function, finds the same motion."""
     at = times("7/3", "-5/2", 11)

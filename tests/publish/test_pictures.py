@@ -319,7 +319,7 @@ def test_every_line_is_named(crowded: dict, name: str) -> None:
 @pytest.mark.parametrize(
     ("kinds", "panels"),
     [
-        (["scipy"], 1),
+        pytest.param(["scipy"], 1, marks=pytest.mark.slow),
         pytest.param(["taylor", "scipy"], 2, marks=pytest.mark.slow),
         (["taylor", "scipy", "geometric"], 3),
     ],

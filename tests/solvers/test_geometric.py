@@ -285,7 +285,7 @@ def faulty(name: str, **signs: float) -> dict[str, float | None]:
     return {verdict.quantity: verdict.max for verdict in judged.verdicts}
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", by_turns(METHODS))
 def test_a_reversed_sign_is_an_error_of_the_size_of_the_motion(name: str) -> None:
     """H x omega with its sign turned still conserves |H|^2, and is wrong altogether; a frame likewise."""
     sound = verdicts(PRINCIPAL, name, "0.05")
