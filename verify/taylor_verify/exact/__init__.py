@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import os
 
+    from taylor_verify.exact.events import Events
     from taylor_verify.scenes.motion import Motion
     from taylor_verify.scenes.scene import Scene
 
@@ -123,3 +124,45 @@ def enclose(
     digits, (first,) = check_digits(digits), exact_times([begin])
     elapsed = [time - first for time in exact_times(times)]
     return Field(field_of(rates, start, first)).motion(elapsed, digits)
+
+
+def events(
+    scene: Scene | str | os.PathLike[str], text: str, until: Any, digits: int = 30
+) -> Events:
+    """Return all times of an event between the start of a scene and a time, with proof that none is missed.
+
+    Parameters
+    ----------
+    scene
+        A Scene, a path, or the name of a shipped scene.
+    text
+        ``EXPRESSION = VALUE`` or ``extremum EXPRESSION``, in the expressions of loads: ``"w2 = 0"``,
+        ``"extremum r33"``. Names are those of loads, the scene's own, and T, H2 (euler) or T, F2, FG
+        (kirchhoff); x.y is the product of two vectors.
+    until
+        The end of the span, on the clock of the scene; it may be before the start.
+    digits
+        The number of significant digits of every time.
+
+    Returns
+    -------
+    exact.events.Events
+        The enclosed times, in the order of the motion. Each has ``t`` and ``radius``, an absolute bound:
+        there is exactly one event within it. ``undecided`` are intervals in which a zero may be touched,
+        or several may lie. ``passed`` says that there are none of these.
+
+    Raises
+    ------
+    records.faults.Refused
+        For a scene or a text that cannot be read, and for an expression that jumps.
+    exact.solution.Unsettled
+        Where the motion is not followed to the end of the span, or the expression has no value on the way.
+    ValueError
+        For what is no finite time, and no number of digits up to ten thousand.
+    """
+    from taylor_verify.exact.events import events_of
+    from taylor_verify.exact.request import check_digits, exact_times
+    from taylor_verify.scenes.reading.reader import as_scene
+
+    (end,) = exact_times([until])
+    return events_of(as_scene(scene), text, end, check_digits(digits))

@@ -152,6 +152,15 @@ class Walk:
             if self._pending:
                 self._check()
 
+    def steps(self) -> Iterator[tuple[Fraction, Step]]:
+        """The steps to the last time, each with the time at which it begins."""
+        while self._now != self._last:
+            step = self._step()
+            yield self._now, step
+            self._go(step)
+            if self._now != self._last:
+                self._check()
+
     # Rows.
 
     def _rows_within(self, step: Step) -> Iterator[tuple[Fraction, Row]]:

@@ -31,6 +31,12 @@ VECTORS: Final[Mapping[str, tuple[str, ...]]] = {
     "kirchhoff": ("force", "couple"),
     FIELD: (),
 }
+# What functions of the motion may name besides, in its order: kinetic energy and squares of momenta.
+INVARIANTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "euler": ("T", "H2"),
+    "kirchhoff": ("T", "F2", "FG"),
+    FIELD: (),
+}
 
 
 def names(model: str) -> frozenset[str]:
