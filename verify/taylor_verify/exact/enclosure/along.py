@@ -19,10 +19,11 @@ from taylor_verify.exact.enclosure.kinks import Kink
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step
-from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
+from taylor_verify.numbers.precision import float_text
 
 _HALVINGS: Final = 12
+_MOST_UNKNOWN: Final = 2
 # A bound of so many last bits of its function asks for no shorter part.
 _SPARE_BITS: Final = 24
 
@@ -42,10 +43,14 @@ class Function:
         """A ball of all values on a ball of s."""
         return value_at(self.polynomial, s) + arb(0, self.beside)
 
-    @property
-    def is_sharp(self) -> bool:
-        """True if the bound is some last bits of the function."""
+    def gains_little(self, before: Function | None) -> bool:
+        """True if the bound is some last bits of the function, or was not halved with the part."""
+        if before is not None and before.beside < 2 * self.beside:
+            return True
         return bool(self.beside <= self.size * arb(2) ** (_SPARE_BITS - ctx.prec))
+
+
+_UNKNOWN: Final = Function([], arb("inf"), arb(0))
 
 
 @dataclass(frozen=True)
@@ -64,28 +69,70 @@ class Part:
 def parts(begin: Fraction, step: Step) -> Iterator[Part]:
     """Yield the functions of a step that begins at a time, on the parts on which they are sharp.
 
-    Raises Domain where a function has no value.
+    On a short part they may be unknown, as beside a kink. Raises Domain where they are on several.
     """
-    tape = step.piece.functions
-    assert tape is not None
-    yield from _parts(tape, step, begin, step.length, step.state, _HALVINGS)
+    unknown = 0
+    for part in _Halves(step).parts(begin, step.length, step.state, _HALVINGS):
+        unknown = 0 if part.functions[0].polynomial else unknown + 1
+        if unknown > _MOST_UNKNOWN:
+            raise Domain(f"the expression may have no value near t = {float_text(part.begin)}")
+        yield part
 
 
-def _parts(
-    tape: Tape, step: Step, begin: Fraction, length: Fraction, rows: Rows, halvings: int
-) -> Iterator[Part]:
-    try:
-        functions = _functions(tape, step, begin, length, rows)
-    except (StepTooLong, Domain):
-        if not halvings:
-            raise Domain("the expression may have no value, or too large a rate,") from None
-        functions = []
-    if functions and (not halvings or all(each.is_sharp for each in functions)):
-        yield Part(begin, length, functions)
-        return
-    half = length / 2
-    yield from _parts(tape, step, begin, half, _shifted(rows, 0), halvings - 1)
-    yield from _parts(tape, step, begin + half, half, _shifted(rows, 1), halvings - 1)
+class _Halves:
+    """The functions of one step, on halves of it where it is too long for them."""
+
+    def __init__(self, step: Step) -> None:
+        assert step.piece.functions is not None
+        self._tape = step.piece.functions
+        self._around = step.tube.width.entries()
+
+    def parts(
+        self,
+        begin: Fraction,
+        length: Fraction,
+        rows: Rows,
+        halvings: int,
+        before: Sequence[Function] = (),
+    ) -> Iterator[Part]:
+        """Yield the functions on a part of the step, which has this series of the state."""
+        functions = self._functions(begin, length, rows)
+        if not halvings or _are_final(functions, before):
+            yield Part(begin, length, functions or [_UNKNOWN] * len(self._tape.outputs))
+            return
+        half = length / 2
+        for k, time in enumerate((begin, begin + half)):
+            yield from self.parts(time, half, _shifted(rows, k), halvings - 1, functions)
+
+    def _functions(self, begin: Fraction, length: Fraction, rows: Rows) -> list[Function]:
+        """The functions; none where one of them has no bound."""
+        try:
+            series = self._series(begin, length, rows)
+            with ctx.workprec(BOUND_BITS):
+                bounds = Bounds(series)
+                bounds.widen(self._around)
+                return [_function(bounds, place) for place in self._tape.outputs]
+        except (StepTooLong, Domain):
+            return []
+
+    def _series(self, begin: Fraction, length: Fraction, rows: Rows) -> Series:
+        flat: frozenset[int] = frozenset()
+        while True:
+            try:
+                return Series(self._tape, [], begin, length, len(rows) - 1, flat, rows)
+            except Kink as kink:
+                flat |= {kink.node}
+
+
+def _are_final(functions: Sequence[Function], before: Sequence[Function]) -> bool:
+    """True if no shorter part is asked for."""
+    pairs = zip(functions, before or [None] * len(functions), strict=True)
+    return bool(functions) and all(each.gains_little(earlier) for each, earlier in pairs)
+
+
+def _function(bounds: Bounds, place: int) -> Function:
+    size = bounds.without_cancelling(place, bounds.length).abs_upper()
+    return Function(bounds.series.forward[place], bounds.beside[place].abs_upper(), size)
 
 
 def _shifted(rows: Rows, which: int) -> Rows:
@@ -96,23 +143,3 @@ def _shifted(rows: Rows, which: int) -> Rows:
         entries = arb_poly(list(column))(inner).coeffs()
         halves.append([*entries, *[arb(0)] * (len(rows) - len(entries))])
     return [list(row) for row in zip(*halves, strict=True)]
-
-
-def _functions(
-    tape: Tape, step: Step, begin: Fraction, length: Fraction, rows: Rows
-) -> list[Function]:
-    flat: frozenset[int] = frozenset()
-    while True:
-        try:
-            series = Series(tape, [], begin, length, len(rows) - 1, flat, rows)
-            break
-        except Kink as kink:
-            flat |= {kink.node}
-    with ctx.workprec(BOUND_BITS):
-        bounds = Bounds(series)
-        bounds.widen(step.tube.width.entries())
-        sizes = [bounds.without_cancelling(place, bounds.length) for place in tape.outputs]
-    return [
-        Function(series.forward[place], bounds.beside[place].abs_upper(), size.abs_upper())
-        for place, size in zip(tape.outputs, sizes, strict=True)
-    ]

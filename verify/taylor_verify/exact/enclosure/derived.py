@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from taylor_verify.exact.enclosure.functions import Angle, Arctangent, Paired
-from taylor_verify.exact.enclosure.kinks import Absolute, Norm
+from taylor_verify.exact.enclosure.kinks import Absolute, Norm, Sign
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Bilinear, OfOne, Polynomial, State, Time
 from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
@@ -16,10 +16,7 @@ _TWO = Fraction(2)
 
 
 class Derived:
-    """Rates of expressions, by those of the components of the state.
-
-    That of an absolute value a' a/|a| has no value where a is zero.
-    """
+    """Rates of expressions, by those of the components of the state."""
 
     def __init__(self, graph: Graph, rates: Sequence[Sum]) -> None:
         self._graph, self._rates = graph, rates
@@ -61,6 +58,8 @@ class Derived:
             case Norm(nodes=nodes):
                 pairs = (product(_itself(a), self._node(a)) for a in nodes)
                 return self._quotient(total(pairs), v)
+            case Sign():
+                return Sum()
             case OfOne() as function:
                 return self._of_one(function, v)
             case other:
@@ -89,8 +88,8 @@ class Derived:
                 return self._quotient(rate, a)
             case Power(exponent=exponent):
                 return self._quotient(product(v, rate), a).times(exponent)
-            case Absolute():
-                return self._quotient(product(a, rate), v)
+            case Absolute(a=operand):
+                return product(self._graph.node(Sign(operand)), rate)
         raise TypeError(f"{type(function).__name__} has no rate")
 
 

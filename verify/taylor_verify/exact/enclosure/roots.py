@@ -123,11 +123,16 @@ class _Search:
             yield _Leaf(sign, sign)
         elif direction := sign_of(slope):
             yield self._monotone(low, high, direction)
-        elif slope.abs_upper() * radius <= arb(at_middle.rad()) or high - low < self._least:
+        elif not self._gains(slope * radius, at_middle) or high - low < self._least:
             yield _Leaf(self._sign(low), self._sign(high), self._time(whole))
         else:
             yield from self.leaves(low, middle)
             yield from self.leaves(middle, high)
+
+    @staticmethod
+    def _gains(change: arb, at_middle: arb) -> bool:
+        """True if halves of an interval may be known better than the value at its middle."""
+        return change.is_finite() and not change.abs_upper() <= arb(at_middle.rad())
 
     def _monotone(self, low: Fraction, high: Fraction, direction: int) -> _Leaf:
         begin, end = self._sign(low), self._sign(high)
