@@ -16,7 +16,7 @@ from flint import arb, arb_poly, ctx
 from taylor_verify.exact.enclosure.bounds import Bounds, value_at
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.kinks import Kink
-from taylor_verify.exact.enclosure.operations import Domain
+from taylor_verify.exact.enclosure.operations import ZERO, Domain
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
@@ -32,25 +32,27 @@ _SPARE_BITS: Final = 24
 class Function:
     """A function on a part of the motion, s in [0, 1]: within ``beside`` of its ``polynomial``.
 
-    ``size`` is that of its terms, none cancelled.
+    ``missed`` is what it would be within if the state were its polynomial, and ``size`` is that of its
+    terms, none cancelled.
     """
 
     polynomial: Sequence[arb]
     beside: arb
+    missed: arb
     size: arb
 
     def over(self, s: arb) -> arb:
         """A ball of all values on a ball of s."""
         return value_at(self.polynomial, s) + arb(0, self.beside)
 
-    def gains_little(self, before: Function | None) -> bool:
-        """True if the bound is some last bits of the function, or was not halved with the part."""
-        if before is not None and before.beside < 2 * self.beside:
-            return True
-        return bool(self.beside <= self.size * arb(2) ** (_SPARE_BITS - ctx.prec))
+    @property
+    def is_sharp(self) -> bool:
+        """True if halves of the part would be known little better."""
+        least = self.size * arb(2) ** (_SPARE_BITS - ctx.prec)
+        return bool(self.missed <= least or 2 * self.missed <= self.beside)
 
 
-_UNKNOWN: Final = Function([], arb("inf"), arb(0))
+_UNKNOWN: Final = Function([], arb("inf"), arb("inf"), arb(0))
 
 
 @dataclass(frozen=True)
@@ -87,22 +89,15 @@ class _Halves:
         self._tape = step.piece.functions
         self._around = step.tube.width.entries()
 
-    def parts(
-        self,
-        begin: Fraction,
-        length: Fraction,
-        rows: Rows,
-        halvings: int,
-        before: Sequence[Function] = (),
-    ) -> Iterator[Part]:
+    def parts(self, begin: Fraction, length: Fraction, rows: Rows, halvings: int) -> Iterator[Part]:
         """Yield the functions on a part of the step, which has this series of the state."""
         functions = self._functions(begin, length, rows)
-        if not halvings or _are_final(functions, before):
+        if not halvings or (functions and all(each.is_sharp for each in functions)):
             yield Part(begin, length, functions or [_UNKNOWN] * len(self._tape.outputs))
             return
         half = length / 2
         for k, time in enumerate((begin, begin + half)):
-            yield from self.parts(time, half, _shifted(rows, k), halvings - 1, functions)
+            yield from self.parts(time, half, _shifted(rows, k), halvings - 1)
 
     def _functions(self, begin: Fraction, length: Fraction, rows: Rows) -> list[Function]:
         """The functions; none where one of them has no bound."""
@@ -110,8 +105,11 @@ class _Halves:
             series = self._series(begin, length, rows)
             with ctx.workprec(BOUND_BITS):
                 bounds = Bounds(series)
+                bounds.widen([ZERO] * self._tape.size)
+                missed = [bounds.beside[place] for place in self._tape.outputs]
                 bounds.widen(self._around)
-                return [_function(bounds, place) for place in self._tape.outputs]
+            pairs = zip(self._tape.outputs, missed, strict=True)
+            return [_function(bounds, place, least) for place, least in pairs]
         except (StepTooLong, Domain):
             return []
 
@@ -124,15 +122,10 @@ class _Halves:
                 flat |= {kink.node}
 
 
-def _are_final(functions: Sequence[Function], before: Sequence[Function]) -> bool:
-    """True if no shorter part is asked for."""
-    pairs = zip(functions, before or [None] * len(functions), strict=True)
-    return bool(functions) and all(each.gains_little(earlier) for each, earlier in pairs)
-
-
-def _function(bounds: Bounds, place: int) -> Function:
-    size = bounds.without_cancelling(place, bounds.length).abs_upper()
-    return Function(bounds.series.forward[place], bounds.beside[place].abs_upper(), size)
+def _function(bounds: Bounds, place: int, missed: arb) -> Function:
+    size = bounds.without_cancelling(place, bounds.length)
+    limits = (bounds.beside[place], missed, size)
+    return Function(bounds.series.forward[place], *(limit.abs_upper() for limit in limits))
 
 
 def _shifted(rows: Rows, which: int) -> Rows:

@@ -48,7 +48,7 @@ def loads_of(scene: Scene) -> Loads:
 
 def _difference(text: str) -> str:
     left, equals, right = text.partition("=")
-    if not equals or not left.strip() or not right.strip() or re.search("[=<>]", left[-1:] + right):
+    if not equals or not left.strip() or not right.strip() or left[-1] in "<>!" or "=" in right:
         raise refusal(_FORM, f"`{text}`", FUNCTION)
     return f"{left}-({right})"
 
