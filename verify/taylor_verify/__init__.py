@@ -2,6 +2,8 @@
 
     load(scene)                     a scene file or shipped scene, in exact numbers
     exact(scene, times, digits)     the exact motion
+    events(scene, text, until)      all times of an event, none missed
+    enclose(rates, start, times)    the motion of equations of one's own, with proven error bounds
     solve(scene, solver, rung)      the trajectory of a solver, not yet judged
     run(scene, solver, rung)        solve, compare with the exact motion, judge
     run_many(scenes, solver, rungs) the same for many scenes on all cores
@@ -18,7 +20,7 @@ function: write `from taylor_verify.exact.route import solution`, never `taylor_
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
 from taylor_verify.check import check
-from taylor_verify.exact import exact
+from taylor_verify.exact import enclose, events, exact
 from taylor_verify.explain import explain
 from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
@@ -29,6 +31,8 @@ from taylor_verify.tradeoff import recommend, tradeoff
 __all__ = [
     "__version__",
     "check",
+    "enclose",
+    "events",
     "exact",
     "explain",
     "load",

@@ -33,6 +33,7 @@ _VERB: Final = "VERB"
 _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
+_TIMES: Final = ("--at", "--until")
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 # Name, whether it must be given, sign, value, default and help of an argument.
 _ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
@@ -106,7 +107,10 @@ scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or fol
         "exact euler/generic --at 0,10,1e9 --digits 40",
         f"""
 scene {_SCENE}
---at!* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--at* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--event TEXT  in place of --at: all times at which `EXPRESSION = VALUE` or `extremum EXPRESSION` happens, in
+  the names of the scene's loads, T, H2, F2 and x.y: "w2 = 0", "extremum r33"
+--until T  the end of the span in which the events are, which begins at the start of the scene
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
@@ -278,8 +282,8 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
     """Write ``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
     attached: list[str] = []
     for word in arguments:
-        if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
-            attached[-1] = f"--at={word}"
+        if attached and attached[-1] in _TIMES and _NEGATIVE_TIME.match(word):
+            attached[-1] += f"={word}"
         else:
             attached.append(word)
     return attached

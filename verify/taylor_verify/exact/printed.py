@@ -173,6 +173,17 @@ def _rounded_up(bound: mpf) -> str:
         )
 
 
+def enclosed_number(value: Any, error: mpf, digits: int, least: int) -> tuple[str, str]:
+    """Return a number as text, and a bound of its error with the rounding of the text.
+
+    It has the digits that its error leaves, at most ``digits``, and not less than ``least``.
+    """
+    with mp.workprec(_BOUND_BITS):
+        count = max(least, _proven_digits(value, error, digits))
+        rounding = abs(mp.convert(value)) * mpf(10) ** (1 - count) / 2
+        return _entry(value, count), _rounded_up(rounding + error)
+
+
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
     """Return the initial state by name, as rationals; a zero of the start is exactly zero."""
     initial, kind = scene.initial, kind_of(scene.body)
