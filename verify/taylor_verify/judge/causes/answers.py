@@ -274,22 +274,39 @@ def material_of_file(
     names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
     if not names:
         return None
-    has_momenta = given.model == "kirchhoff" and names[0] == MOMENTA[given.model]
-    attitudes = _attitudes(file, given, conventions)
+    read = [
+        _read_by(file, given, conventions, names[0], attitudes, verdicts, every)
+        for attitudes in _attitudes(file, given, conventions)
+    ]
+    # Where the file's own attitude is wrong, the exact one may be that of its space axes.
+    known = [answer for answer in read if answer is not None]
+    return min(known, key=lambda each: max(each.worst[g] for g in each.groups), default=None)
+
+
+def _read_by(
+    file: TrajectoryFile,
+    given: Scene,
+    conventions: Conventions,
+    names: tuple[str, ...],
+    attitudes: Floats | None,
+    verdicts: Iterable[Verdict],
+    every: int,
+) -> Answer | None:
+    """Return a file as material, its space axes taken to body axes by these attitudes."""
+    has_momenta = given.model == "kirchhoff" and names == MOMENTA[given.model]
     v, noise, units = [], [], half_units(file)
-    for name in names[0]:
+    for name in names:
         rows = _read(file, name, conventions, attitudes)
         v.append(rows)
         noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
     frame, q, c = _frame_of(file), None, None
-    if attitudes is not None and frame:
-        q = steady_signs(quaternion_columns(attitudes))
+    if frame:
+        q = steady_signs(quaternion_columns(_own_attitudes(file, frame, conventions)))
     if "centre" in file.groups:
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
     motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
-    decimals = _decimals(file.times)
-    return material(given, motion, has_momenta, noises, verdicts, decimals, every)
+    return material(given, motion, has_momenta, noises, verdicts, _decimals(file.times), every)
 
 
 def _frame_of(file: TrajectoryFile) -> str:
@@ -342,16 +359,17 @@ def _read(
     return reading.read(rows, R)
 
 
-def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> Floats | None:
-    """Return the file's attitudes; the exact ones if it has none and its omega is in space axes."""
-    if group := _frame_of(file):
-        reading = conventions.readings.get(group, readings(group)[0])
-        read = reading.read(file.groups[group].doubles(), np.empty(0))
-        return rotations(read) if group == "quaternion" else read
-    if not conventions.readings:
-        return None
-    tracked = replace(given, track=frozenset({"attitude"}))
-    exact: Floats = (
-        solution(tracked).evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)
-    )
-    return exact
+def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> list[Floats | None]:
+    """Return the attitudes that may take space axes to body axes: the file's own and the exact ones."""
+    group, has_readings = _frame_of(file), bool(_MOVING & set(conventions.readings))
+    own = [_own_attitudes(file, group, conventions)] if group else []
+    if not has_readings:
+        return [*own, None][:1]
+    exact = solution(replace(given, track=frozenset({"attitude"})))
+    return [*own, exact.evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)]
+
+
+def _own_attitudes(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:
+    reading = conventions.readings.get(group, readings(group)[0])
+    read = reading.read(file.groups[group].doubles(), np.empty(0))
+    return rotations(read) if group == "quaternion" else read

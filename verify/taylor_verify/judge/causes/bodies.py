@@ -14,6 +14,7 @@ from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.fault import Fault, Sizes, linear
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.terms import load_names
 
 _SAME: Final = 1e-9
 # Entries whose ratios differ by less than this are unchanged together.
@@ -133,6 +134,26 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
     yield _of_coriolis(right, "three masses in the Munk moment alone", masses, munk)
     yield _of_body(right, "mass matrix", entries[: len(entries) - lacks])
     yield _of_coriolis(right, "mass matrix of the Coriolis terms alone", entries)
+    yield from _single_terms(right)
+
+
+def _single_terms(right: Equations) -> Iterator[Family]:
+    """Yield the terms that a diagonal mass matrix has in the Coriolis terms: one alone, and all."""
+    own, zeros, pairs = coriolis_of(right.mass), np.zeros_like, right.basis.pairs
+    scale, names = float(np.max(np.abs(right.mass))), load_names(6)
+    labels, along, values = list[str](), list[Floats](), list[float]()
+    for i, column in np.argwhere(coriolis_of(np.diag([1.0, 2, 3, 4, 5, 6]))):
+        unit = zeros(own)
+        unit[i, column] = 1.0
+        text = right.basis.texts[right.basis.groups["products"]][column]
+        labels.append(f"{text} in {names[i]} (C_{i + 1}{max(pairs[column]) + 1})")
+        along.append(right.basis.factors(products=unit))
+        values.append(float(own[i, column]))
+    kind, name = "Coriolis matrix", "single terms of the Coriolis matrix"
+    for k, label in enumerate(labels):
+        one = slice(k, k + 1)
+        yield linear(right, label, kind, scale, values[one], (label,), extra=along[one])
+    yield linear(right, name, kind, scale, values, tuple(labels), extra=along)
 
 
 def _with_another_centre(mass: Floats, p: Floats) -> Changes:

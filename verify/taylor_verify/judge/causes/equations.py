@@ -37,7 +37,8 @@ class Equations:
     ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts, of which each
     piece between ``switches`` is smooth; they are read ``late`` by so much time, and their velocities are
     those of ``scene_mass``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is
-    omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates.
+    omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
+    takes v for components in space axes, into which the loads are turned.
     """
 
     mass: Floats
@@ -56,6 +57,7 @@ class Equations:
     turns: Floats | None = None
     ahead: Any = 0.0
     late: Any = 0.0
+    in_world: bool = False
 
     @classmethod
     def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
@@ -80,7 +82,11 @@ class Equations:
     @property
     def coupled(self) -> int:
         """Number of components of the state that the rates of v depend on."""
-        return self.size + max(4 * (not _FRAMED.isdisjoint(self._columns)), self.reads)
+        return self.size + max(4 * self._reads_frame, self.reads)
+
+    @property
+    def _reads_frame(self) -> bool:
+        return self.in_world or not _FRAMED.isdisjoint(self._columns)
 
     @property
     def sets(self) -> int:
@@ -174,7 +180,7 @@ class Equations:
     def _expressions(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the values of the expressions that have an effect, (parameters, columns, arcs)."""
         R = loads = None
-        if not _FRAMED.isdisjoint(self._columns):
+        if self._reads_frame:
             R = _rotations(z[:, self.size : self.size + 4])
         if not {"loads", "turned loads"}.isdisjoint(self._columns):
             loads = self._loads(time, z, nu)
@@ -197,7 +203,7 @@ class Equations:
             "velocities": lambda: nu,
             "squares": lambda: np.abs(nu) * nu,
             "frame": lambda: R,
-            "loads": lambda: loads,
+            "loads": lambda: _to_space(R, loads) if self.in_world else loads,
             "turned loads": lambda: _to_body(R, loads),
         }
         return np.asarray(own[name]()[:, columns])
@@ -241,6 +247,12 @@ def _rotations(q: Floats) -> Floats:
     """Return the entries of R(q) of quaternions of any length, (parameters, 9, arcs)."""
     unit = q / np.sqrt(np.sum(q * q, axis=1, keepdims=True))
     return np.stack([entry for row in rotation(parts(unit)) for entry in row], axis=1)
+
+
+def _to_space(R: Floats, vectors: Floats) -> Floats:
+    """Return R v for vectors of three components."""
+    turned = [sum(R[:, 3 * i + k] * vectors[:, k] for k in range(3)) for i in range(3)]
+    return np.stack([np.asarray(component) for component in turned], axis=1)
 
 
 def _to_body(R: Floats, vectors: Floats) -> Floats:
