@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.printed import half_units
@@ -66,8 +67,7 @@ _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 def are_known(body: Body) -> bool:
     """Return True if every part of the body has its terms in the search."""
-    own = body.loads is not None and bool(body.loads.states or any(body.loads.rotor))
-    return body.others <= _WITH_TERMS and body.manufactured is None and not own
+    return body.others <= _WITH_TERMS and body.manufactured is None
 
 
 @dataclass(frozen=True)
@@ -207,14 +207,10 @@ def material(
     rows = _rows(elapsed, file)
     if len(rows) < 2 or not failed:
         return None
-    needs_centre = file.c is not None or right.reads > 4
-    track = {"attitude", *["centre"] * needs_centre}
-    exact = solution(replace(given, track=frozenset(track)))
+    exact = ExactMotion(given, file.c is not None or right.reads > 4)
     instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
-    motion = exact.evaluate(instants, _DIGITS)
-    truth = _truth(given, motion, has_momenta).at(np.s_[1:])
-    start = _truth(given, motion, has_momenta=False).at(np.s_[:1])
-    has_closed_form = exact.route != "taylor"
+    truth = exact.at(instants, has_momenta).at(np.s_[1:])
+    start = exact.at(instants[:1], has_momenta=False)
     compared = file.at(rows)
     return Answer(
         right,
@@ -224,9 +220,10 @@ def material(
         truth,
         (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
-        Budget(_BUDGET * right.size if has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
+        Budget(_BUDGET * right.size if exact.has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
         every * np.array(rows),
         decimals,
+        scene=given,
     )
 
 
@@ -247,14 +244,6 @@ def _rows(elapsed: Floats, file: Motion) -> list[int]:
             flawed |= ~np.all(np.isfinite(part) & (np.abs(part) < 1e100), axis=1)
     bad = np.flatnonzero(flawed[side])
     return [int(k) for k in (side[: bad[0]] if len(bad) else side)]
-
-
-def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
-    v = np.hstack([exact[name].astype(float) for name in MOMENTA[given.model]])
-    if given.model == "kirchhoff" and not has_momenta:
-        v = v @ np.array(given.body.energy_matrix, dtype=float).T
-    q = steady_signs(quaternion_columns(exact["attitude"].astype(float)))
-    return Motion(v, q, exact["centre"].astype(float) if "centre" in exact else None)
 
 
 def material_of_file(

@@ -20,6 +20,7 @@ from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.own_states import cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import wrong_rows
@@ -45,6 +46,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     if undone:
         return undone
     by_group = readings(answer)
+    if answer.has_states:
+        return list(by_group.values()) or cause_in_states(answer)
     undone = _attitude_undone(answer, by_group) or _omega_undone(answer, by_group)
     if undone:
         return undone
@@ -57,7 +60,8 @@ def causes_of(answer: Answer) -> list[Cause]:
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
-        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+        of_motion = _of_motion(answer, moving, "attitude" in left)
+        return of_motion or _in_space(answer) or cause_in_states(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
