@@ -12,6 +12,7 @@ import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.proof import ROUNDINGS, may_leave
@@ -34,16 +35,21 @@ class _Changed:
 
 
 def cause_in_states(answer: Answer) -> list[Cause]:
-    """Return the first change of states, or of held loads, whose scene moves as the answer does."""
-    scene = answer.scene
+    """Return the change of states, or of held loads, whose scene moves as the answer does.
+
+    Other changes with the same motion stand beside it.
+    """
+    scene, proven = answer.scene, list[Cause]()
     if scene is None or scene.body.loads is None or not answer.moving:
         return []
-    for changed in _candidates(scene.body.loads, answer):
-        # A change may leave a text that no scene may have, such as a jump by the state.
-        with suppress(ValueError, ArithmeticError, Unsettled):
-            if leaves := _leaves(answer, changed):
-                return [Cause(changed.name, "states", leaves)]
-    return []
+    with suppress(Spent):
+        for changed in _candidates(scene.body.loads, answer):
+            # A change may leave a text that no scene may have, such as a jump by the state.
+            with suppress(ValueError, ArithmeticError, Unsettled):
+                if leaves := _leaves(answer, changed):
+                    proven.append(Cause(changed.name, "states", leaves))
+    alike = tuple(cause.name for cause in proven[1:])
+    return [replace(cause, alike=alike) for cause in proven[:1]]
 
 
 def _leaves(answer: Answer, changed: _Changed) -> dict[str, float]:
