@@ -158,7 +158,11 @@ def failures(scene: Scene, file: Path) -> tuple[set[str], list[str]]:
 
 
 # The likely causes of the twins that have one; of the others none is said.
-CAUSES = {"space axes": ["moment in space axes"], "potential twice": ["moment twice"]}
+CAUSES = {
+    "space axes": ["moment in space axes"],
+    "potential twice": ["moment twice"],
+    "sign": ["moment 1 with the other sign"],
+}
 
 
 @pytest.mark.parametrize("scene", [RIGID, SOLID, BY_CLOCK], ids=["rigid", "solid", "clock"])

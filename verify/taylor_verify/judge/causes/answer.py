@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.models.frame import rotation
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.scene import Scene
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 
@@ -71,6 +72,13 @@ class Answer:
     decimals: int | None = None
     own_attitudes: Floats | None = None
     begins: float = 0.0
+    scene: Scene | None = None
+
+    @property
+    def has_states(self) -> bool:
+        """True if the scene has states of its own, which no row of the search has."""
+        loads = None if self.scene is None else self.scene.body.loads
+        return loads is not None and bool(loads.states or any(loads.rotor))
 
     @property
     def n(self) -> int:

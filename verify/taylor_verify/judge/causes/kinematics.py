@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -12,12 +13,14 @@ import numpy as np
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.equations import Equations, parts
 from taylor_verify.judge.causes.fit import Family
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
+from taylor_verify.models.algebra import apply
+from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
@@ -128,6 +131,28 @@ def _wrong(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[
         changed = right.changed({"turns": np.array(weights)})
         left = _apart(ends, _turned(changed, arcs)) / size
         yield _Tried(name, "kinematics", left, partial(_weighted, changed))
+    assert arcs.answer.file.q is not None
+    by_space = np.einsum("aij,aj->ia", _by_space(right, arcs), arcs.answer.file.q[arcs.first])
+    name = "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
+    yield _Tried(name, "kinematics", _apart(ends, by_space) / size, partial(_by_space, right))
+
+
+def _by_space(right: Equations, arcs: Arcs) -> Floats:
+    """Return the maps of q by q' = q omega / 2 with the components of the true omega in space axes."""
+    n, truth = arcs.answer.n, arcs.answer.truth.q
+    assert truth is not None
+    true = np.broadcast_to(truth[arcs.first].T, (4, 4, len(arcs.first)))
+    own = with_units(arcs.begin(n)[0])
+    begin = np.concatenate([own[:, :n], true, own[:, n:]], axis=1)
+
+    def rates(time: Floats, z: Floats) -> Floats:
+        omega, R = _omega(right, z[:, :n]), rotation(parts(z[:, n : n + 4]))
+        in_space = apply(R, parts(omega))
+        turned = np.stack(attitude_rate(parts(z[:, n + 4 :]), in_space), axis=1)
+        return np.concatenate([right.rates(time, z[:, : n + 4]), turned], axis=1)
+
+    ends = flow(rates, begin, arcs.since, arcs.spans, arcs.steps)
+    return np.asarray(ends[:, n + 4 :].transpose(2, 1, 0))
 
 
 def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
@@ -207,18 +232,26 @@ def _updated(
     right: Equations, update: Any, begin: Floats, arcs: Arcs, steps: int, method: Any
 ) -> Floats:
     """Return q, not of unit length, after the arcs in so many updates."""
-    answer, n, h = arcs.answer, arcs.answer.n, arcs.spans / steps
-    v, q = begin[:, :n], begin[:, n:]
-    for k in range(steps):
-        since = arcs.since + k * h
-        if method:
-            after = replay(answer, method[0], right, v, since, h, 1)
-        else:
-            inner = max(1, -(-arcs.steps // steps))
-            after = moved(answer, right, v, since, h, inner)
-        q = update(q, _omega(right, v), _omega(right, after), h)
-        v = after
+    n, h = arcs.answer.n, arcs.spans / steps
+    rates, q = _rates(right, begin[:1, :n], arcs, steps, method), begin[:, n:]
+    for before, after in itertools.pairwise(rates):
+        q = update(q, before, after, h)
     return np.asarray(q)
+
+
+def _rates(right: Equations, v: Floats, arcs: Arcs, steps: int, method: Any) -> list[Floats]:
+    """Return omega at the begin of the arcs and after each of so many steps."""
+    answer, h, rows = arcs.answer, arcs.spans / steps, [v]
+    if method:
+        for k in range(steps):
+            rows.append(replay(answer, method[0], right, rows[-1], arcs.since + k * h, h, 1))
+    else:
+        spans = np.outer(np.arange(1, steps + 1), h).ravel()
+        ends = moved(
+            answer, right, np.tile(v, steps), np.tile(arcs.since, steps), spans, arcs.steps
+        )
+        rows += np.split(ends, steps, axis=2)
+    return [_omega(right, each) for each in rows]
 
 
 def _omega(right: Equations, v: Floats) -> Floats:

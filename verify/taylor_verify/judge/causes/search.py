@@ -18,7 +18,9 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.own_states import cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import wrong_rows
@@ -44,6 +46,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     if undone:
         return undone
     by_group = readings(answer)
+    if answer.has_states:
+        return list(by_group.values()) or cause_in_states(answer)
     undone = _attitude_undone(answer, by_group) or _omega_undone(answer, by_group)
     if undone:
         return undone
@@ -56,7 +60,8 @@ def causes_of(answer: Answer) -> list[Cause]:
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
-        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+        of_motion = _of_motion(answer, moving, "attitude" in left)
+        return of_motion or _in_space(answer) or cause_in_states(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
@@ -202,7 +207,9 @@ def _omega_undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     if "omega" not in by_group and answer.error["omega"][0] <= allowed:
         return []
     part = answer.groups["omega"]
-    for name, rows in _conventions(answer, answer.file.v[:, part]):
+    is_read = "omega" in by_group
+    right = [("", answer.truth.v[:, part])]
+    for name, rows in right if is_read else _conventions(answer, answer.file.v[:, part]):
         apart = np.linalg.norm(rows[0] - answer.truth.v[0, part]) / answer.sizes[part][0]
         if apart <= allowed:
             read = _with_omega(answer, rows)
@@ -220,15 +227,20 @@ def _with_omega(answer: Answer, rows: Floats) -> Answer:
 
 
 def _in_space(answer: Answer) -> list[Cause]:
-    """Return omega in space axes with the causes that the motion has then, where nothing else is proven."""
-    if answer.file.q is None or answer.n == 6 or "omega" not in answer.failed:
+    """Return causes of a motion whose omega, or whose equations, are in space axes."""
+    q, start = answer.file.q, answer.start.q
+    if q is None or start is None or answer.n == 6 or "omega" not in answer.failed:
         return []
     name, rows = _conventions(answer, answer.file.v)[0]
+    convention = Cause(f"omega {name}", "convention", {})
     if np.array_equal(rows, answer.file.v):
         return []
     read = _with_omega(answer, rows)
     causes = _of_motion(read, list(read.moving), "attitude" in answer.failed)
-    return _beside(Cause(f"omega {name}", "convention", {}), causes)
+    if causes:
+        return _beside(convention, causes)
+    in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
+    return _beside(convention, in_world(answer, answer.file.v)) or in_world(answer, in_space)
 
 
 def _conventions(answer: Answer, omega: Floats) -> list[tuple[str, Floats]]:
