@@ -6,7 +6,6 @@ Bodies drawn at random are compared in test_two_routes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -344,19 +343,3 @@ def test_exact_zeros_survive() -> None:
     ):
         enclosure = free_rotation(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
         assert [w.is_zero() for w in enclosure["omega"][0]] == [w == 0 for w in omega]
-
-
-# The scene
-
-
-def test_route_and_regime_are_named() -> None:
-    """The route is arb, and the word of the regime is the one the other route prints."""
-    for name, spin in SPINS.items():
-        exact = enclosed(scene(spin))
-        assert (exact.route, exact.regime) == ("arb", name.split(",")[0])
-
-
-def test_only_what_is_tracked_is_answered() -> None:
-    """A scene that does not track its attitude gets omega alone."""
-    untracked = replace(scene(SPINS["max-axis"]), track=frozenset())
-    assert set(enclosed(untracked).motion([Fraction(1)], 20).quantities) == {"omega"}
