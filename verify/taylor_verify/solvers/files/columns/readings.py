@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES, Spelling
+from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.spelling import Spelling
 from taylor_verify.solvers.files.columns.units import (
     OWN,
     Unit,
