@@ -87,8 +87,8 @@ def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[R
             rates = f"{together} are rates of Euler angles, roll' pitch' yaw', and no body rates"
             yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis))
     if about.dimension == "rate" and spacing:
-        words = f"{together} are turns between two rows, in radians for each {float(spacing):.6g}"
-        yield Reading((words,), partial(_read_turns, frames.body, spacing))
+        turns = f"{together} are turns between two rows, in radians for each {float(spacing):.6g}"
+        yield Reading((turns,), partial(_read_turns, frames.body, spacing))
 
 
 def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array, R: Array) -> Array:
