@@ -459,11 +459,12 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
-def test_a_full_disk_under_stdout_is_one_message() -> None:
+@pytest.mark.parametrize("words", [["list", "--json"], ["--help"], ["--version"]])
+def test_a_full_disk_under_stdout_is_one_message(words: list[str]) -> None:
     """Exit 2 and the system's reason."""
     with open("/dev/full", "w") as full:
         done = subprocess.run(
-            command("list", "--json"), env=environment(), stdout=full, stderr=subprocess.PIPE
+            command(*words), env=environment(), stdout=full, stderr=subprocess.PIPE
         )
     assert done.returncode == 2
     assert done.stderr.count(b"\n") == 1

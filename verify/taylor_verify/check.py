@@ -37,6 +37,7 @@ def check(
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
+    knob: str = "",
 ) -> FilesJudgement: ...
 def check(
     scene: Scene | str | PathLike[str],
@@ -48,6 +49,7 @@ def check(
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
+    knob: str = "",
 ) -> Judgement:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
@@ -81,6 +83,9 @@ def check(
     steps
         The step that the solver took in each answer of a list, in the scene's unit of time. Without it the
         files say their steps, or their names do (``run_h0.05.csv``).
+    knob
+        What differs between the answers of a list in place of the step, such as ``"rtol"``: its number is
+        read in the names of the files (``run_rtol1e-6.csv``).
 
     Returns
     -------
@@ -115,9 +120,10 @@ def check(
     scene = as_scene(scene)
     if isinstance(solve_or_file, list | tuple):
         options = (rung, accept_conventions, partial, tolerance, columns)
-        return judge_files(solve_or_file, steps, lambda file: check(scene, file, *options))
-    if steps is not None:
-        raise ValueError("expected a list of files with steps, got one answer @ steps")
+        return judge_files(solve_or_file, steps, lambda file: check(scene, file, *options), knob)
+    if steps is not None or knob:
+        given = "steps" if steps is not None else "knob"
+        raise ValueError(f"expected a list of files with {given}, got one answer @ {given}")
     wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
     is_path = isinstance(solve_or_file, str | PathLike)

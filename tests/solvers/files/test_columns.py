@@ -328,10 +328,6 @@ def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
         ("t w1 w2 W_3x", r"got no w3 @ mine \(did you mean `W_3x`\? --columns w3=W_3x\)"),
         ("t w1 w2 wz", r"got no w3 @ mine \(did you mean `wz`\? --columns w3=wz\)"),
         ("w1 w2 w3 epoch", "expected a column `t` of times, got none .*the columns are .*`epoch`"),
-        (
-            "stamp.sec stamp.nanosec w1 w2 w3",
-            "expected one column of times, got `stamp.sec` `stamp.nano",
-        ),
         ("t Wx wx wy wz", "`Wx` `wx` are alike"),
     ],
 )
@@ -403,18 +399,17 @@ def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) 
         taylor_verify.check(SCENE, file)
 
 
-@pytest.mark.parametrize(("encoding", "mark"), [("utf-16", "UTF-16"), ("utf-16-be", "other bytes")])
-def test_a_file_in_utf_16_is_refused_by_that_name(encoding: str, mark: str, tmp_path: Path) -> None:
-    """A spreadsheet's Unicode text is told from broken bytes."""
+@pytest.mark.parametrize("encoding", ["utf-16-be", "latin-1"])
+def test_text_in_another_encoding_is_refused(encoding: str, tmp_path: Path) -> None:
+    """Text that is not UTF-8 and has no byte order mark is never guessed at."""
     (tmp_path / "mine.csv").write_bytes("t,w1,w2,w3\n0,é,2,3\n".encode(encoding))
-    with pytest.raises(Refused, match=f"expected text in UTF-8, got {mark}"):
+    with pytest.raises(Refused, match="expected text in UTF-8, got other bytes"):
         read(tmp_path / "mine.csv")
 
 
 @pytest.mark.parametrize(
     ("cell", "expected"),
     [
-        ("0,4", "a number with a decimal point"),
         ("2 deg/s", "a number alone (a unit belongs to the name of the column: `wx [deg/s]`)"),
         ("", 'a number (an integer, a decimal or "a/b")'),
     ],
@@ -422,7 +417,7 @@ def test_a_file_in_utf_16_is_refused_by_that_name(encoding: str, mark: str, tmp_
 def test_a_cell_that_is_no_number_is_told_how_to_be_one(
     cell: str, expected: str, tmp_path: Path
 ) -> None:
-    """A decimal comma and a unit in the cell are named as such."""
+    """A unit in the cell is named as such."""
     file = tmp_path / "mine.csv"
     file.write_text(f"t;w1;w2;w3\n0;1;{cell};3\n")
     with pytest.raises(Refused) as refused:

@@ -26,7 +26,9 @@ from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.batch.lock import Occupied, alone_in
-from taylor_verify.records.json_text import converted
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.json_text import DOCUMENT, converted
+from taylor_verify.records.regular_file import bounded_bytes
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
@@ -49,10 +51,10 @@ class Unfinished:
         """
         file = self._file(job)
         try:
-            return from_bytes(file.read_bytes())
+            return from_bytes(bounded_bytes(file, "stored judgements", DOCUMENT))
         except OSError:
             return None
-        except ValueError:
+        except (ValueError, Refused):
             _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.name, file)
             with suppress(OSError):
                 file.unlink()

@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib import import_module
@@ -22,9 +23,10 @@ from typing import Any, Final, NoReturn
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
+from taylor_verify.cli.streams import print_out
 from taylor_verify.cli.verbs import add, described, package_of, verbs
 from taylor_verify.records.version import __version__
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import one_line
 
 _VERB: Final = "VERB"
 # What this distribution publishes is not on the first page of help.
@@ -134,6 +136,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 {_TOLERANCE}
 --steps H,H,...  the steps of several files, in their order; default: what the files or their names say
   (run_h0.05.csv)
+--knob NAME  what differs between several files in place of the step: rtol, substeps, ...; its number is
+  read in their names (run_rtol1e-6.csv), or in a comment or key of each file
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
@@ -297,10 +301,17 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
+    """A parser whose message is one harmless line: it repeats words that may be names of files."""
 
-    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        super().exit(status, message and escaped(message))
+    def error(self, message: str) -> NoReturn:
+        super().error(one_line(message))
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help and version as any answer: argparse says nothing of a disk that is full."""
+        if file is sys.stderr:
+            super()._print_message(message, file)
+        else:
+            print_out(message.removesuffix("\n"))
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:

@@ -12,7 +12,7 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import escaped, one_line
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 PIPED_WIDTH = 140
@@ -39,7 +39,7 @@ class EscapingConsole(Console):
 
 def bold(text: str, colour: str = "") -> Text:
     """Return a text in bold type."""
-    return Text(text, f"bold {colour}".rstrip())
+    return Text(one_line(text), f"bold {colour}".rstrip())
 
 
 class Page:
@@ -56,7 +56,8 @@ class Page:
 
     def line(self, *parts: str | Text) -> None:
         """Print one line; a pipe takes any length."""
-        self.console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+        lines = [one_line(part) if isinstance(part, str) else part for part in parts]
+        self.console.print(Text.assemble(*lines), soft_wrap=not sys.stdout.isatty())
 
     def indented(self, label: str, *texts: str) -> None:
         """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
@@ -80,7 +81,7 @@ def print_table(
     A column whose heading begins with ``>`` stands to the right. The first column may hold cells of any
     length, such as paths, and is folded. No other cell is.
     """
-    cells = [[cell if isinstance(cell, Text) else Text(escaped(cell)) for cell in r] for r in rows]
+    cells = [[cell if isinstance(cell, Text) else Text(one_line(cell)) for cell in r] for r in rows]
     columns = zip(*cells, strict=True) if cells else ([] for _ in headings)
     widths = [
         max(cell_len(heading.removeprefix(">")), *(cell.cell_len for cell in column), 0)

@@ -51,7 +51,8 @@ def _text(content: Mapping[str, Any]) -> str:
     how = f"(route {content['route']}, {content['evidence']})"
     page.line(bold(content["scene"]), f": {content['regime']} {how}")
     for row in content["rows"]:
-        page.line(f"\nt = {row['t']}   (relative radius {row['radius']})")
+        page.line()
+        page.line(f"t = {row['t']}   (relative radius {row['radius']})")
         for name, value in row.items():
             if name not in ("t", "radius", "absolute"):
                 _print_quantity(page, name, value)

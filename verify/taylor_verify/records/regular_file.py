@@ -33,9 +33,7 @@ def regular_file(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
     not regular, and for one that cannot be opened or read.
     """
     try:
-        _check(_status(path, expected), path, expected, most)
-        with open(path, "rb", opener=_open_without_waiting) as file:
-            _check(os.fstat(file.fileno()), path, expected, most)
+        with _opened(path, expected, most) as file:
             yield file
     except FileNotFoundError:
         raise Refused([f"expected {expected}, got no such file @ {path}"]) from None
@@ -47,10 +45,28 @@ def regular_file(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
 def read_bytes(path: Path, expected: str, most: Limit) -> bytes:
     """Return the whole content. Raises Refused as `regular_file` does, and for a file that grows."""
     with regular_file(path, expected, most) as file:
-        content = file.read(most.most + 1)
+        return _whole(file, path, most)
+
+
+def bounded_bytes(path: Path, expected: str, most: Limit) -> bytes:
+    """Return the whole content as `read_bytes` does, but raise OSError for what cannot be opened."""
+    with _opened(path, expected, most) as file:
+        return _whole(file, path, most)
+
+
+def _whole(file: BinaryIO, path: Path, most: Limit) -> bytes:
+    content = file.read(most.most + 1)
     if len(content) > most.most:
         raise most.refusal("more", path)
     return content
+
+
+@contextmanager
+def _opened(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
+    _check(_status(path, expected), path, expected, most)
+    with open(path, "rb", opener=_open_without_waiting) as file:
+        _check(os.fstat(file.fileno()), path, expected, most)
+        yield file
 
 
 def _status(path: Path, expected: str) -> os.stat_result:

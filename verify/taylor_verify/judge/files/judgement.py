@@ -31,6 +31,7 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
+from taylor_verify.judge.files.parts import in_parts
 from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds
 from taylor_verify.judge.floor.angles import with_angles_rounded
@@ -113,17 +114,22 @@ def judge_file(
     accept_conventions: bool = False,
     partial: bool = False,
     tolerances: Tolerances = NO_TOLERANCES,
+    elsewhere: Sequence[str] = (),
 ) -> FileJudgement:
     """Judge a file as a result of arithmetic on the rung.
 
     solvers.files defines the columns. Times are absolute, in the scene's unit, and each row is compared
     at its own time. With ``accept_conventions`` the file's conventions are corrected before it is judged.
     If the file lacks a part of what the scene asks, there is a row `complete`: undecided, or vacuous if
-    ``partial`` answers are accepted. ``tolerances`` replace the bounds. Raises Refused if nothing can be
-    compared.
+    ``partial`` answers are accepted. ``tolerances`` replace the bounds. Groups ``elsewhere`` are judged in
+    another part of the file. Raises Refused if nothing can be compared.
     """
+    if file.apart:
+        options = (rung, accept_conventions, partial, tolerances)
+        return in_parts(file, lambda part, others: judge_file(part, scene, *options, others))
     groups = comparable(file, scene)
-    asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
+    asked, has = scene, [*groups, *elsewhere]
+    notes = (*file.notes, *coverage_notes(file, has, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({scene.known_groups[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
@@ -144,7 +150,7 @@ def judge_file(
                 judged = _judged_within_reach(answer, known, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
         notes += tuple(span_notes(answer.scene, answer.times, extent))
-        lack = list(not_judged(extent, missing_groups(groups, asked)))
+        lack = list(not_judged(extent, missing_groups(has, asked)))
         if lack and judged.record is not None:
             row = complete_verdict(scene, file.name, rung, lack, partial)
             judged = replace(judged, verdicts=(*judged.verdicts, row))

@@ -56,10 +56,13 @@ def with_times(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
 ) -> Times:
     """Return the columns with times that count from the scene's start, and ask for the one that fits."""
-    read, notes = _added(columns, place, faults)
+    sums = list(_sums_of_seconds(columns, place, faults))
+    notes = [each.note for each in sums]
+    read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
+    whole = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
     units = Candidates([Name(column) for column in read], {}, {})
-    clocks = [_Clock(c, scene, _unit(c, units)) for c in _candidates(read, asked)]
+    clocks = [_Clock(c, scene, _unit(c, units)) for c in _candidates(whole, asked)]
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))
@@ -69,7 +72,7 @@ def with_times(
         notes.append(f"`{cut(chosen.column.name)}` fits the scene's times better than {named}")
     column, note = chosen.counted(place, faults)
     read = [column if each is chosen.column else each for each in read]
-    if others or column.name not in _OURS:
+    if others or sums or column is not chosen.column or not _is_called_a_time(Name(column)):
         wanted = [*(pair for pair in wanted if pair[0] not in _OURS), ("t", column.name)]
     return Times(read, wanted, (*notes, *note))
 
@@ -103,20 +106,28 @@ def _is_calendar(value: object) -> bool:
 # Seconds beside their fractions.
 
 
-def _added(columns: Sequence[Column], place: str, faults: Faults) -> tuple[list[Column], list[str]]:
-    """Return the columns, each of whole seconds with its fractions added, and notes."""
+class _Sum(NamedTuple):
+    """A column of whole seconds, that of their fractions, and the column of their sums."""
+
+    whole: Column
+    fractions: Column
+    column: Column
+
+    @property
+    def note(self) -> str:
+        return f"`{cut(self.fractions.name)}` is added to `{cut(self.whole.name)}`"
+
+
+def _sums_of_seconds(columns: Sequence[Column], place: str, faults: Faults) -> Iterator[_Sum]:
+    """Yield the sums of whole seconds and of fractions that have a column of their own."""
     by_key = {Name(column).key: column for column in columns}
-    read, notes = list(columns), list[str]()
     for key, fractions in by_key.items():
         end = next((end for end in _FRACTIONS if key.endswith(end)), None)
         stem = key.removesuffix(end or "")
         whole = next((by_key[stem + s] for s in _SECONDS if end and stem + s in by_key), None)
-        if whole is None or end is None:
-            continue
-        values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
-        read = [whole._replace(values=values) if each is whole else each for each in read]
-        notes.append(f"`{cut(fractions.name)}` is added to `{cut(whole.name)}`")
-    return read, notes
+        if whole is not None and end is not None:
+            values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
+            yield _Sum(whole, fractions, whole._replace(values=values))
 
 
 def _sums(
@@ -223,8 +234,7 @@ class _Clock:
                 return self.column, []
             values = [time / self._unit.factor for time in self.times]
         except ValueError:
-            self._find_fault(place, faults)
-            return self.column._replace(values=range(len(self.column.values))), []
+            return self._without_faults(place, faults), []
         name = Name(self.column)
         bare = self.column.name.replace(name.unit_text, "").strip(" []()") or "t"
         first = shown(self.column.values[0]).strip("'")
@@ -232,15 +242,16 @@ class _Clock:
         note = f"t counts from {first} of `{cut(self.column.name)}`{parts}, the first row"
         return Column(bare if name.unit_text else self.column.name, values), [note]
 
-    def _find_fault(self, place: str, faults: Faults) -> None:
-        """Add the first time of a calendar that is none."""
+    def _without_faults(self, place: str, faults: Faults) -> Column:
+        """Return the column; the first time of a calendar that is none is a fault, and no second one."""
         for row, value in enumerate(self.column.values if self._is_calendar else (), start=1):
             try:
                 seconds_in_log(str(value))
             except ValueError as error:
                 at = f"{place}, row {row}, column {cut(self.column.name)}"
                 faults.add(str(error), shown(value), at)
-                return
+                return self.column._replace(values=range(len(self.column.values)))
+        return self.column
 
 
 def _fitting(clocks: Sequence[_Clock]) -> _Clock | None:

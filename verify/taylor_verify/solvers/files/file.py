@@ -20,6 +20,7 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
@@ -30,6 +31,7 @@ from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.numbered import by_number
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
 from taylor_verify.solvers.files.parts import Parts
+from taylor_verify.solvers.files.planar import with_zeros
 from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.files.single_precision import are_single_precision
 from taylor_verify.solvers.files.step import FileStep, step_inside
@@ -111,8 +113,8 @@ def read(
     scene's own by their names. Usual other names are taken, and ``columns`` names what has any other name,
     by pairs of our name and the file's. Raises Refused with every fault of it.
     """
-    table = read_table(file)
-    trajectory = from_columns(table.columns, str(file), columns, table.notes, scene)
+    table, place = read_table(file), one_line(os.fspath(file))
+    trajectory = from_columns(table.columns, place, columns, table.notes, scene)
     return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 
 
@@ -129,7 +131,7 @@ def from_columns(
     and times that tell which of two clocks is meant. Raises Refused with every fault.
     """
     faults = Faults()
-    named = _named_once(columns, place, faults)
+    named, planar = with_zeros(_named_once(columns, place, faults), scene)
     clock = with_times(named, by_number(named, wanted, scene, place), scene, place, faults)
     own, asked = own_columns(scene), clock.wanted
     beside, left, asked = apart(clock.columns, asked, own, place, faults)
@@ -151,7 +153,7 @@ def from_columns(
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files
-    sentences = (*notes, *clock.notes, *selection.notes, *parts.notes, *settled)
+    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *settled)
     return replace(first, notes=sentences, apart=tuple(others))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -140,7 +140,7 @@ class Parts:
         places = {g: [k for k in self._first if rows[k]] for g, rows in present.items()}
         return {group: rows for group, rows in places.items() if rows}
 
-    def _part(self, places: Sequence[int], names: Iterator[str] | Sequence[str]) -> Part:
+    def _part(self, places: Sequence[int], names: Iterable[str]) -> Part:
         columns = {
             name: entries_at(self._columns[name], places)
             for group in names

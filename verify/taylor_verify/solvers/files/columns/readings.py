@@ -104,6 +104,9 @@ class Name:
             whole = (Reading(*place, "", OWN) for place in _places(plain(self.text), ""))
             readings = {(reading.spelling, reading.component): reading for reading in whole}
         for path, name, is_behind in _tails(self._parts[0]):
+            # The T of IMU.T is a temperature.
+            if path and name == "t" and self.text.endswith("T"):
+                continue
             every = (r for r in self._of(path, name) if r.spelling.is_behind is is_behind)
             here = [r for r in every if r.spelling.group not in matched or is_behind]
             for reading in here:

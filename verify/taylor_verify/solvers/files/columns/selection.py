@@ -34,7 +34,6 @@ from taylor_verify.solvers.files.step import STEP_COLUMNS
 _SILENT: Final = ("radius", *STEP_COLUMNS)
 # In the order in which a description of the attitude is taken.
 ATTITUDES: Final = ("quaternion", "attitude", *FORMS)
-_NANOSECONDS: Final = ("nanosec", "nsec", "nsecs", "nanosecs", "nanoseconds")
 
 
 class Taken(NamedTuple):
@@ -186,7 +185,7 @@ class _Chooser:
             self.faults.add("each column once", got, self.place, f"say which: --columns {ours}")
 
     def _refuse_odd(self, choice: Choice) -> None:
-        """Refuse unknown units, numbered states beside our own names, and halves of a time."""
+        """Refuse unknown units, and numbered states beside our own names."""
         ours = GROUPS[choice.group]
         for own, name, unit in zip(ours, choice.names, choice.units, strict=True):
             if unit is None:
@@ -202,15 +201,6 @@ class _Chooser:
             got = f"{shown_names(others)} beside them: are they the components of a state?"
             mend = f"say which: --columns {','.join(f'{own}={own}' for own in ours)}"
             self.faults.add(f"{' '.join(ours)} alone", got, self.place, mend)
-        if choice.group == "time" and choice.rank is not Rank.ASKED:
-            # Seconds whose fractions stand in a column of their own.
-            (clock,) = choice.names
-            stem = clock.key.removesuffix("s").removesuffix("sec")
-            for name in self.candidates.free:
-                if name is not clock and name.key in {f"{stem}{end}" for end in _NANOSECONDS}:
-                    got = f"{choice.shown} {shown_names([name])}"
-                    mend = "write their sum into one column, t"
-                    self.faults.add("one column of times", got, self.place, mend)
 
     def _refuse_incomplete(self, group: str) -> None:
         ours, used = GROUPS[group], self.used

@@ -7,10 +7,13 @@ from collections.abc import Iterator
 from functools import cached_property
 from io import TextIOWrapper
 from pathlib import Path
-from typing import BinaryIO, final
+from typing import BinaryIO, Final, final
 
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import LINE, LINES, no_utf8
+
+_BEGINNING: Final = 4096
+_CONTROL: Final = frozenset({*range(32), 127}) - frozenset(b"\t\n\r\f")
 
 
 @final
@@ -33,6 +36,12 @@ class Content:
     def beginning(self, count: int) -> bytes:
         """Return the first bytes."""
         return self.binary.read(count)
+
+    @property
+    def looks_like_text(self) -> bool:
+        """True if the beginning is not empty and has no control characters but those of lines."""
+        start = self.beginning(_BEGINNING)
+        return bool(start.strip()) and not _CONTROL.intersection(start)
 
     def whole(self, most: Limit) -> bytes:
         """Return all bytes. Raises Refused if there are more than the limit."""

@@ -21,7 +21,7 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.header import MOST_LINES, Head, Line, head, is_rule
+from taylor_verify.solvers.files.formats.header import MARKS, MOST_LINES, Head, Line, head, is_rule
 
 _ROWS_AT_ONCE: Final = 1000
 _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
@@ -36,10 +36,10 @@ def read(file: Content, path: Path, part: str) -> Table:
     return table(file, path, first=1)
 
 
-def table(file: Content, path: Path, first: int) -> Table:
+def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
     """Return the columns of the table that stands from the ``first`` line on."""
     try:
-        top = head(list(islice(_lines(file, first, with_comments=True), MOST_LINES)))
+        top = head(list(islice(_lines(file, first, with_comments=True), MOST_LINES)), marks)
         if top is None:
             raise refusal("a header line and rows", "an empty file", path)
         names, columns = _columns(file, top, path)

@@ -1,8 +1,8 @@
 """The head of a table in text: the line that names its columns, and the mark between their cells.
 
-The first line of numbers tells the mark and the number of cells. Of the lines above it with as many cells,
-comments too, the header is the one with the most known names. A line of units below it belongs to them.
-What stands above the header is no part of the table.
+The first line of numbers tells the mark and the number of cells. Of the lines above it that have as many,
+comments too, the header is the one with the most known names. A line of units below it belongs to its
+names. What stands above the header is no part of the table.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from taylor_verify.solvers.values import is_number
 MOST_LINES: Final = 200
 COMMENTS: Final = ("#", "%")
 _BLANKS: Final = ""
-_MARKS: Final = (";", "\t", "|", ",", _BLANKS)
+MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
@@ -92,23 +92,23 @@ def is_rule(line: str) -> bool:
     return ("--" in line or "==" in line) and _OF_RULES.issuperset(line)
 
 
-def head(lines: Sequence[Line]) -> Head | None:
+def head(lines: Sequence[Line], marks: Sequence[str] = MARKS) -> Head | None:
     """Return the head of a table whose first lines these are; None where there is no line at all."""
     rows = [line for line in lines if not line.is_comment and not is_rule(line.text)]
     if not rows:
         return None
-    first = _first_of_numbers(rows)
+    first = _first_of_numbers(rows, marks)
     if first is None:
         # Nothing but the first line can be the header; faults are found below it.
-        mark = next((mark for mark in _MARKS if mark in rows[0].text), _BLANKS)
+        mark = next((mark for mark in marks if mark in rows[0].text), _BLANKS)
         return Head(tuple(_cells(rows[0].text, mark)), mark, rows[0].number + 1)
-    return _above(first, lines)
+    return _above(first, lines, _mark(first.text, marks) or _BLANKS)
 
 
-def _first_of_numbers(rows: Sequence[Line]) -> Line | None:
+def _first_of_numbers(rows: Sequence[Line], marks: Sequence[str]) -> Line | None:
     """Return the first line of numbers that the line below resembles."""
     for line, below in pairwise((*rows, None)):
-        if line is None or (mark := _mark(line.text)) is None:
+        if line is None or (mark := _mark(line.text, marks)) is None:
             continue
         width = len(_cells(line.text, mark))
         if below is None or len(_cells(below.text, mark)) == width:
@@ -116,9 +116,9 @@ def _first_of_numbers(rows: Sequence[Line]) -> Line | None:
     return None
 
 
-def _mark(text: str) -> str | None:
+def _mark(text: str, marks: Sequence[str]) -> str | None:
     """Return the mark that makes the most numbers of a line; None if most cells are no numbers."""
-    shares = {mark: _share(_cells(text, mark)) for mark in _MARKS if mark in text}
+    shares = {mark: _share(_cells(text, mark)) for mark in marks if mark in text}
     mark = max(shares, key=lambda mark: shares[mark])
     return mark if shares[mark] > _MOSTLY else None
 
@@ -139,17 +139,18 @@ class _Names(NamedTuple):
     known: int
 
 
-def _above(first: Line, lines: Sequence[Line]) -> Head:
-    mark = _mark(first.text) or _BLANKS
+def _above(first: Line, lines: Sequence[Line], mark: str) -> Head:
     row = _cells(first.text, mark)
     above = [line for line in lines if line.number < first.number and not is_rule(line.text)]
     candidates = [names for line in above if (names := _names(line, mark, row))]
+    if not candidates and (plain := [line for line in above if not line.is_comment]):
+        # As many names as there are, so that lines of another length are the fault.
+        return Head(tuple(_cells(plain[-1].text, mark)), mark, plain[-1].number + 1)
     if not candidates:
-        return Head((), mark, first.number, tuple(_passed(above)))
+        return Head((), mark, first.number)
     # Of lines alike the first that is no comment, or the comment that is nearest to the numbers.
     lines_alike = [c for c in candidates if c.known == max(one.known for one in candidates)]
-    plain = [c for c in lines_alike if not c.line.is_comment]
-    chosen = plain[0] if plain else lines_alike[-1]
+    chosen = next((c for c in lines_alike if not c.line.is_comment), lines_alike[-1])
     notes = [*_passed([line for line in above if line.number < chosen.line.number])]
     if chosen.line.is_comment:
         notes.append(f"the columns are named in line {chosen.line.number}, a comment")
@@ -184,7 +185,7 @@ def _names(line: Line, mark: str, row: Sequence[str]) -> _Names | None:
 
 def _ways(text: str, mark: str) -> Iterator[list[str]]:
     """Yield the cells of a header by each mark, that of the rows first."""
-    for each in (mark, *(other for other in _MARKS if other != mark)):
+    for each in (mark, *(other for other in MARKS if other != mark)):
         yield _cells(text, each)
     yield [cell.strip() for cell in _WIDE_BLANKS.split(text.strip())]
 

@@ -6,6 +6,7 @@ Chunks are unpacked here and not by the library, which unpacks as much as they c
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
@@ -17,11 +18,12 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats import messages
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.column import BYTES, CHUNK_BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.messages import Topic
+from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES, Topic
 from taylor_verify.solvers.files.formats.package import unbroken
 
+_OF_NO_SIZE: Final = re.compile(rb"\[[\s<=]*0+\s*\]")
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
 
 
@@ -77,6 +79,7 @@ class _Recording(NamedTuple):
         }
         for record in _records(self.file, path):
             if isinstance(record, Message) and record.channel_id in decoders:
+                MESSAGE_BYTES.check(len(record.data), path)
                 yield decoders[record.channel_id](record.data)
 
 
@@ -85,6 +88,8 @@ def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
         return _from_json
     from mcap_ros2.decoder import DecoderFactory
 
+    if _OF_NO_SIZE.search(schema.data if schema else b""):
+        raise ValueError("an array of no elements, of which a message could hold any number")
     # It prints a definition that it cannot read before it raises.
     with redirect_stderr(StringIO()):
         decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
@@ -125,7 +130,8 @@ def _records(file: Content, path: Path) -> Iterator[Any]:
     stream: Any = _Bounded(file)
     for record in StreamReader(stream, emit_chunks=True, record_size_limit=BYTES.most).records:
         if isinstance(record, Chunk):
-            data = _unpacked(record, BYTES.most - unpacked + 1)
+            data = _unpacked(record, CHUNK_BYTES.most + 1)
+            CHUNK_BYTES.check(len(data), path)
             unpacked += len(data)
             BYTES.check(unpacked, path)
             yield from _in_chunk(data)

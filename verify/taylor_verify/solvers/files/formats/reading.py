@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.regular_file import regular_file
-from taylor_verify.solvers.files.formats import aem, rosbag
+from taylor_verify.solvers.files.formats import aem, oem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
@@ -42,12 +42,21 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".csv": Format("a header line and rows", "delimited"),
     ".tsv": Format("a header line and rows, with tabs", "delimited"),
     ".txt": Format("a header line and rows, with blanks; or an AEM", "delimited"),
-    ".json": Format("an object of arrays", "documents"),
+    ".json": Format(
+        "an object of arrays, a list of objects, or an object in each line", "documents"
+    ),
+    ".jsonl": Format("an object in each line", "documents"),
+    ".ndjson": Format("an object in each line", "documents"),
     ".npz": Format("named arrays of NumPy", "binary"),
+    ".npy": Format("a matrix of NumPy, whose columns have numbers from 1", "binary"),
     ".parquet": Format("columns of numbers", "parquet", "pyarrow"),
     ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", "aem"),
-    ".kvn": Format("attitude ephemeris of the CCSDS, as text", "aem"),
+    ".kvn": Format("attitude or orbit ephemeris of the CCSDS, as text", "aem"),
+    ".oem": Format("orbit ephemeris of the CCSDS, as text", "oem"),
     ".xml": Format("attitude ephemeris of the CCSDS, as XML", "aem"),
+    ".sto": Format("a table of OpenSim", "opensim"),
+    ".mot": Format("a table of OpenSim", "opensim"),
+    ".a": Format("attitudes of STK", "stk"),
     ".h5": Format("datasets of numbers", "hdf5", "h5py"),
     ".hdf5": Format("datasets of numbers", "hdf5", "h5py"),
     ".nc": Format("NetCDF 4, which is HDF5", "hdf5", "h5py"),
@@ -56,6 +65,9 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".bag": Format("a topic of a rosbag of ROS 1", "rosbag", "rosbags"),
     ".db3": Format("a topic of a rosbag of ROS 2; its folder is read too", "rosbag", "rosbags"),
 }
+
+# A file of any other name that is text.
+_TEXT: Final = FORMATS[".txt"]
 
 
 def read_table(file: str | os.PathLike[str]) -> Table:
@@ -87,9 +99,11 @@ def parted(file: str) -> tuple[Path, str]:
 
 def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
+    if oem.is_one(content):
+        return oem
     if aem.is_text(content):
         return aem
-    known = FORMATS.get(path.suffix.lower())
+    known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
         expected = f"a file that ends in {', '.join(FORMATS)}"
         raise refusal(expected, path.suffix or "no suffix", path)
