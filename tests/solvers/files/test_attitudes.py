@@ -125,6 +125,42 @@ def test_descriptions_that_differ_are_refused() -> None:
         described(0, change=0.02)
 
 
+# Several frames of one quantity.
+
+
+@pytest.mark.parametrize(
+    ("names", "taken", "left"),
+    [
+        ("omega_BN_N* omega_BN_B*", "omega_BN_B", "in space axes"),
+        ("omega_world_* omega_*", "omega_", "in space axes"),
+        ("roll_rate pitch_rate yaw_rate w*", "w", "perhaps rates of Euler angles"),
+        ("P Q R P_{inertial} Q_{inertial} R_{inertial}", "P_{inertial}", "the turning earth"),
+    ],
+)
+def test_body_axes_and_space_as_the_frame_come_first(names: str, taken: str, left: str) -> None:
+    """Of one rate in several frames the one of the equations of motion is taken, the others are named."""
+    every = " ".join(
+        " ".join(name.replace("*", c) for c in "xyz") if "*" in name else name
+        for name in names.split()
+    )
+    file = of_rows(np.tile(np.arange(6.0), (3, 1)), every)
+    assert any(
+        f"`{taken}" in note and "taken as w1 w2 w3, body axes" in note for note in file.notes
+    )
+    assert any(f"not taken: {left}" in note or left in note for note in file.notes)
+
+
+def test_a_rate_in_space_axes_is_turned_by_the_attitude_of_its_file() -> None:
+    """It is R^T omega, and without an attitude it stays as it is, and a note says so."""
+    rates = np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9]])
+    names = "omega_world_x omega_world_y omega_world_z"
+    file = of_rows(np.column_stack([rates, TURNS.as_euler("ZYX")]), f"{names} yaw pitch roll")
+    assert np.max(np.abs(file.groups["omega"].doubles() - TURNS.inv().apply(rates))) < 10 * ROUNDED
+    alone = of_rows(rates, names)
+    assert np.array_equal(alone.groups["omega"].doubles(), rates)
+    assert any("left in space axes" in note for note in alone.notes)
+
+
 # Objects.
 
 

@@ -84,6 +84,11 @@ class Name:
         """All letters and digits of the name, the unit left out."""
         return letters(self._parts[0])
 
+    @cached_property
+    def whole_key(self) -> str:
+        """All letters and digits of the name, those in brackets too."""
+        return letters(plain(self.text[:_LONGEST]))
+
     def unit(self, group: str) -> Unit | None:
         """Return the unit of a column that is of this group, by its brackets or the end of its name."""
         name, brackets = self._parts
