@@ -104,10 +104,9 @@ class Name:
             return ()
         readings: dict[tuple[Spelling, int], Reading] = {}
         matched: set[str] = set()
-        if self._parts[1] is not None:
-            # Brackets may belong to the name: P_{inertial}.
-            whole = (Reading(*place, "", OWN) for place in _places(plain(self.text), ""))
-            readings = {(reading.spelling, reading.component): reading for reading in whole}
+        if self._parts[1] is not None and self.whole_key in PLACES:
+            # The brackets belong to the name: P_{inertial}.
+            return tuple(Reading(*place, "", OWN) for place in _places(self.whole_key, ""))
         for path, name, is_behind in _tails(self._parts[0]):
             # The T of IMU.T is a temperature.
             if path and name == "t" and self.text.endswith("T"):
