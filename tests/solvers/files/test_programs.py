@@ -74,7 +74,7 @@ def test_a_file_of_a_program_is_read_whole(entry: Mapping[str, str]) -> None:
 
 
 # Files of which the names say all: no habit is needed.
-PLAIN = {"mss-names-degrees", "simulink-euler", "plotjuggler", "ros2-odometry"}
+PLAIN = {"mss-names-degrees", "simulink-euler", "plotjuggler", "ros2-odometry", "bagpy-imu"}
 
 
 # The spoilings of a column: a sign, an order, a unit.
