@@ -115,8 +115,7 @@ scene {_SCENE}
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
   (default elsewhere)
---attitude matrix|quaternion|zyx [matrix]  the form of the attitude: R row by row; q0 q1 q2 q3; or yaw,
-  pitch and roll in radians; default: matrix
+--attitude matrix|quaternion|zyx [matrix]  R row by row (default), q0 q1 q2 q3, or yaw pitch roll in rad
 """,
     ),
     "check": (
@@ -129,8 +128,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
   and a note says so. All other columns are ignored, and a note names them. Several files are the answers
   of one solver at several steps: their order of convergence is shown too
---columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); a
-  comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); or
+  its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the

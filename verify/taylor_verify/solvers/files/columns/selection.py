@@ -133,13 +133,13 @@ class _Chooser:
 
     def _of_best_frame(self, choices: Sequence[Choice]) -> list[Choice]:
         """Return the choices relative to the best frame, with a note on the others."""
-        best = min((choice.spelling.frame for choice in choices), default=None)
+        best = min((choice.spelling.precedence for choice in choices), default=None)
         self.notes += [
-            f"{choice.shown} not taken: {choice.spelling.frame.words}"
+            f"{choice.shown} not taken: {choice.spelling.relation}"
             for choice in choices
-            if choice.spelling.frame != best
+            if choice.spelling.precedence != best
         ]
-        return [choice for choice in choices if choice.spelling.frame == best]
+        return [choice for choice in choices if choice.spelling.precedence == best]
 
     def _doubt_one(self, choice: Choice) -> None:
         got = f"{choice.shown}: {choice.doubt}"
@@ -160,14 +160,14 @@ class _Chooser:
         sure = [choice for choice in every if not choice.doubt]
         is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
         best = min((choice.rank for choice in sure), default=Rank.USUAL)
-        kept = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
+        strongest = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
         for choice in every:
             if choice.doubt and not sure:
                 del self.chosen[choice.group]
                 self._doubt_one(choice)
-            elif choice not in kept and not (choice.doubt and is_usual):
+            elif choice not in strongest and not (choice.doubt and is_usual):
                 del self.chosen[choice.group]
-        if len(kept) > 1 and best is Rank.OURS:
+        if len(strongest) > 1 and best is Rank.OURS:
             got = "q0 q1 q2 q3 and r11 ... r33"
             self.faults.add("the attitude once", got, self.place, "keep one of them")
 

@@ -83,6 +83,8 @@ def _segments(file: Content, path: Path) -> Iterator[_Segment]:
             block = "COVARIANCE"
         elif equals and block == "META":
             segment.metadata[word.upper()] = value
+        elif block == "META":
+            raise refusal("KEYWORD = value", repr(cut(line)), place)
         elif not equals and not block:
             cells = line.split()
             if len(cells) not in _LENGTHS:
