@@ -85,14 +85,16 @@ class Parts:
         if repeated := len(times) - len(self._first):
             self.notes.append(repeated_note(repeated))
         _refuse_disorder(times, self._first, f"{place}, row {{}}, column {cut(clock.name)}", faults)
-        return tuple(time * self.taken["t"].factor for time in times)
+        factor = self.taken["t"].factor
+        return tuple(times) if factor == 1 else tuple(time * factor for time in times)
 
     def _checked(self, place: str, faults: Faults) -> dict[str, Flags]:
         """Return True for the entries of each column that are finite numbers."""
         none = {name: np.zeros(len(c.values), dtype=bool) for name, c in self._columns.items()}
+        self._blank = {g: blank_rows(self._of(g)) for g in self._groups if not faults.lines}
         blank = dict(none)
-        for group, names in self._groups.items() if not faults.lines else ():
-            blank |= dict.fromkeys(names, blank_rows(self._of(group)))
+        for group, rows in self._blank.items():
+            blank |= dict.fromkeys(self._groups[group], rows)
         return {
             name: check_numbers(column, place, faults, blank[name])
             for name, column in self._columns.items()
@@ -133,7 +135,7 @@ class Parts:
             group: np.asarray(np.logical_and.reduce([self._finite[name] for name in names]))
             for group, names in self._groups.items()
         }
-        present = rows_of_groups({group: self._of(group) for group in self._groups}, finite)
+        present = rows_of_groups({g: self._of(g) for g in self._groups}, self._blank, finite)
         for group, rows in present.items():
             if note := rows_note(self._groups[group], int(rows.sum()), count):
                 self.notes.append(note)
@@ -141,8 +143,9 @@ class Parts:
         return {group: rows for group, rows in places.items() if rows}
 
     def _part(self, places: Sequence[int], names: Iterable[str]) -> Part:
+        is_whole = len(places) == len(self._finite["t"])
         columns = {
-            name: entries_at(self._columns[name], places)
+            name: self._columns[name] if is_whole else entries_at(self._columns[name], places)
             for group in names
             for name in self._groups[group]
         }

@@ -34,11 +34,11 @@ def blanks(values: Sequence[Any]) -> Flags:
 
 def first_of_equal(times: Sequence[Value], columns: Sequence[Sequence[Any]]) -> list[int]:
     """Return the places of the rows that do not repeat the row before, time and numbers."""
-    kept: list[int] = []
+    first: list[int] = []
     for k, time in enumerate(times):
-        if not (kept and time == times[kept[-1]] and _are_equal(columns, kept[-1], k)):
-            kept.append(k)
-    return kept
+        if not (first and time == times[first[-1]] and _are_equal(columns, first[-1], k)):
+            first.append(k)
+    return first
 
 
 def _are_equal(columns: Sequence[Sequence[Any]], before: int, now: int) -> bool:
@@ -61,12 +61,15 @@ def repeated_note(count: int) -> str:
 
 
 def rows_of_groups(
-    groups: Mapping[str, Sequence[Column]], finite: Mapping[str, Flags]
+    groups: Mapping[str, Sequence[Column]], blank: Mapping[str, Flags], finite: Mapping[str, Flags]
 ) -> dict[str, Flags]:
-    """Return True for the rows that each group has; ``finite`` are those whose numbers are all finite."""
+    """Return True for the rows that each group has.
+
+    ``blank`` are those without a number, and ``finite`` those whose numbers are all finite.
+    """
     if not groups:
         return {}
-    there = {group: ~blank_rows(columns) for group, columns in groups.items()}
+    there = {group: ~blank[group] for group in groups}
     nan = {g: there[g] & _of_nan(columns, there[g] & ~finite[g]) for g, columns in groups.items()}
     sparse = [group for group in groups if _is_sparse(finite[group], nan[group])]
     elsewhere = np.zeros_like(next(iter(there.values())))

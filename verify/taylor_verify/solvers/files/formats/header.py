@@ -39,7 +39,7 @@ class Line(NamedTuple):
 
     @property
     def is_comment(self) -> bool:
-        return self.text.lstrip().startswith(COMMENTS)
+        return is_comment(self.text)
 
     @property
     def bare(self) -> str:
@@ -90,6 +90,11 @@ def is_value(cell: str) -> bool:
 def is_rule(line: str) -> bool:
     """Return True for a line of dashes, such as stands below a header."""
     return ("--" in line or "==" in line) and _OF_RULES.issuperset(line)
+
+
+def is_comment(text: str) -> bool:
+    """Return True for a line that begins with the mark of a comment."""
+    return text.lstrip().startswith(COMMENTS)
 
 
 def head(lines: Sequence[Line], marks: Sequence[str] = MARKS) -> Head | None:
