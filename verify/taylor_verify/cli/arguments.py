@@ -125,8 +125,9 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
   and a note says so. All other columns are ignored, and a note names them. Several files are the answers
   of one solver at several steps: their order of convergence is shown too
---columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); a
-  comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro), or
+  its first and last column (zyx_deg=5:7, mrp=2:4, rotvec=2:4: angles and vectors of the attitude); a comma
+  belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the

@@ -9,7 +9,7 @@ its principal moments.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import pi, remainder
@@ -97,10 +97,7 @@ def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, .
     return tuple(remarks)
 
 
-_Parts = tuple[Any, Any, Any, Any]
-
-
-def _half_angle(turn: Turn) -> _Parts:
+def _half_angle(turn: Turn) -> Sequence[Any]:
     """Return the quaternion of one turn at the ambient precision of mpmath."""
     from mpmath import mp
 
@@ -112,7 +109,7 @@ def _half_angle(turn: Turn) -> _Parts:
     return (mp.cos(half), x, y, z)
 
 
-def times(a: tuple[Any, ...], b: tuple[Any, ...]) -> _Parts:
+def times(a: Sequence[Any], b: Sequence[Any]) -> Sequence[Any]:
     """Return the product of two quaternions, scalar first, in any arithmetic."""
     (s, x, y, z), (t, u, v, w) = a, b
     return (

@@ -75,7 +75,8 @@ class Meaning:
         for axis, k in zip(self.sequence, self.places, strict=True):
             turn = np.zeros_like(q)
             turn[0], turn[1 + "xyz".index(axis)] = np.cos(turns[:, k] / 2), np.sin(turns[:, k] / 2)
-            q = np.array(times(*((turn, q) if self.is_fixed else (q, turn))))
+            first, then = (turn, q) if self.is_fixed else (q, turn)
+            q = np.array(times(list(first), list(then)))
         return q.T
 
     @property

@@ -34,6 +34,7 @@ from taylor_verify.judge.files.coverage import (
 from taylor_verify.judge.files.parts import in_parts
 from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds
+from taylor_verify.judge.floor.angles import with_angles_rounded
 from taylor_verify.judge.floor.inputs import input_rounding
 from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
@@ -194,7 +195,12 @@ def _judged(answer: FileRows, tolerances: Tolerances) -> Judgement:
         problem = adopt(side.scene, side.rung, side.instants)
         solver = Recorded(side, setting=side.file.name, carries_velocities=side.has_velocities)
         run = Run(problem, solver, solver.solve(problem), tolerances)
-        inputs = input_rounding(problem.given, side.rung, problem.scene)
+        inputs = with_angles_rounded(
+            input_rounding(problem.given, side.rung, problem.scene),
+            side.file,
+            side.places,
+            float(side.rung.unit_roundoff),
+        )
         of_side = gates_of(run, Steps(0), Costs(), inputs)
         records.append(run_record(run, [gate.record for gate in of_side]))
         for gate in of_side:

@@ -90,7 +90,8 @@ class Candidates:
 
     @cached_property
     def _keys(self) -> set[str]:
-        return {name.key for name in self.names}
+        """The names without their units, and whole, for brackets that are a part of a name."""
+        return {key for name in self.names for key in (name.key, name.whole_key)}
 
     @cached_property
     def cells(self) -> Mapping[tuple[Spelling, str], Cells]:

@@ -48,7 +48,7 @@ def _exact(parts: Sequence[Any]) -> list[Value]:
     return [Fraction(int(above), int(below)) for above, below in ratios]
 
 
-def _half_turn(axis: Sequence[Any], angle: Any) -> tuple[Any, ...]:
+def _half_turn(axis: Sequence[Any], angle: Any) -> Sequence[Any]:
     sine, cosine = gmpy2.sin_cos(angle / 2)
     return (cosine, *(sine * part for part in axis))
 

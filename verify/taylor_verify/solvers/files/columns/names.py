@@ -14,7 +14,7 @@ from typing import Final
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.programs import entries, spellings_of
-from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
+from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
 
 # Every group of columns, time and forms of the attitude among them, with the names that are ours.
 GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -61,6 +61,11 @@ _STEMS: Final = {
     **{name: f"euler{name} euler{name}angle" for name in SEQUENCES},
 }
 _OF_ANGLES: Final = ("euler", "eulerangle", "eulerangles", "eul", "att", "attitude", "angle")
+# Names that say that the components are along axes of space.
+_IN_SPACE: Final = (
+    "omegaworld omegaspace worldomega spaceomega angvelworld angularvelocityworld "
+    "angularvelocityspace worldangularvelocity"
+)
 # Other names of all components, in our order.
 _WORDS: Final = {
     "centre": ("xpos ypos zpos",),
@@ -116,6 +121,8 @@ def _spellings() -> Iterator[Spelling]:
     for group, stems in _STEMS.items():
         for stem, triple in product(stems.split(), _TRIPLES):
             yield Spelling(group, tuple(stem + c for c in triple), _REMARKS.get(group, ""))
+    for stem, triple in product(_IN_SPACE.split(), _TRIPLES):
+        yield Spelling("omega", tuple(stem + c for c in triple), turn=Turn.SPACE_AXES)
     for group, spelled in _WORDS.items():
         for words in spelled:
             frame = Frame.ANGLES if words.startswith("roll") else Frame.UNSAID

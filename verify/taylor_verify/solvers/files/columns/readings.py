@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES, Spelling
+from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.spelling import Spelling
 from taylor_verify.solvers.files.columns.units import (
     OWN,
     Unit,
@@ -83,6 +84,11 @@ class Name:
         """All letters and digits of the name, the unit left out."""
         return letters(self._parts[0])
 
+    @cached_property
+    def whole_key(self) -> str:
+        """All letters and digits of the name, those in brackets too."""
+        return letters(plain(self.text[:_LONGEST]))
+
     def unit(self, group: str) -> Unit | None:
         """Return the unit of a column that is of this group, by its brackets or the end of its name."""
         name, brackets = self._parts
@@ -98,10 +104,9 @@ class Name:
             return ()
         readings: dict[tuple[Spelling, int], Reading] = {}
         matched: set[str] = set()
-        if self._parts[1] is not None:
-            # Brackets may belong to the name: P_{inertial}.
-            whole = (Reading(*place, "", OWN) for place in _places(plain(self.text), ""))
-            readings = {(reading.spelling, reading.component): reading for reading in whole}
+        if self._parts[1] is not None and self.whole_key in PLACES:
+            # The brackets belong to the name: P_{inertial}.
+            return tuple(Reading(*place, "", OWN) for place in _places(self.whole_key, ""))
         for path, name, is_behind in _tails(self._parts[0]):
             # The T of IMU.T is a temperature.
             if path and name == "t" and self.text.endswith("T"):

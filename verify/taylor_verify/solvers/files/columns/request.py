@@ -95,8 +95,8 @@ def _of_group(
     if group == "time":
         return [("t", theirs)]
     ours, ends = GROUPS[group], theirs.split(":")
-    places = [_place(end, names) for end in ends]
-    if len(ends) == 2 and None not in places:
+    places = [place for end in ends if (place := _place(end, names)) is not None]
+    if len(ends) == len(places) == 2:
         texts = [name.text for name in names[places[0] : places[1] + 1]]
         if len(texts) == len(ours):
             return list(zip(ours, texts, strict=True))

@@ -133,13 +133,13 @@ class _Chooser:
 
     def _of_best_frame(self, choices: Sequence[Choice]) -> list[Choice]:
         """Return the choices relative to the best frame, with a note on the others."""
-        best = min((choice.spelling.frame for choice in choices), default=None)
+        best = min((choice.spelling.precedence for choice in choices), default=None)
         self.notes += [
-            f"{choice.shown} not taken: {choice.spelling.frame.words}"
+            f"{choice.shown} not taken: {choice.spelling.relation}"
             for choice in choices
-            if choice.spelling.frame != best
+            if choice.spelling.precedence != best
         ]
-        return [choice for choice in choices if choice.spelling.frame == best]
+        return [choice for choice in choices if choice.spelling.precedence == best]
 
     def _doubt_one(self, choice: Choice) -> None:
         got = f"{choice.shown}: {choice.doubt}"

@@ -66,3 +66,13 @@ class Spelling:
     unit: str = ""
     frame: Frame = Frame.UNSAID
     turn: Turn = Turn.NONE
+
+    @property
+    def precedence(self) -> tuple[Frame, bool]:
+        """The place among spellings of one quantity: relative to space and in body axes first."""
+        return self.frame, self.turn is Turn.SPACE_AXES
+
+    @property
+    def relation(self) -> str:
+        """A phrase on the frame, or on the axes."""
+        return str(self.turn) if self.turn is Turn.SPACE_AXES else self.frame.words
