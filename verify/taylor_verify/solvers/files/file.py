@@ -144,7 +144,7 @@ def from_columns(
         raise Refused(faults.lines)
     settled: list[str] = []
     files = []
-    for part in parts.of_rows(len(times)):
+    for part in parts.of_rows(times, place, faults):
         groups, form, said = one_attitude(part.groups, selection, place, faults)
         settled += said
         instants, every = tuple(times[k] for k in part.places), {**COLUMNS, **own}

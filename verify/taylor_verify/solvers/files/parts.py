@@ -84,7 +84,6 @@ class Parts:
         self._first = first_of_equal(times, every)
         if repeated := len(times) - len(self._first):
             self.notes.append(repeated_note(repeated))
-        _refuse_disorder(times, self._first, f"{place}, row {{}}, column {cut(clock.name)}", faults)
         factor = self.taken["t"].factor
         return tuple(times) if factor == 1 else tuple(time * factor for time in times)
 
@@ -114,12 +113,12 @@ class Parts:
 
     # The parts.
 
-    def of_rows(self, count: int) -> list[Part]:
+    def of_rows(self, times: Sequence[Fraction], place: str, faults: Faults) -> list[Part]:
         """Return the rows that all groups have as a part, and each group that has others in all its rows.
 
-        Where groups have no rows in common, each is a part.
+        Where groups have no rows in common, each is a part. Times that do not go on are a fault.
         """
-        places = self._places(count)
+        places, count = self._places(len(times)), len(times)
         rest = list(places)
         common = set.intersection(*(set(rows) for rows in places.values())) if places else set()
         parts = []
@@ -127,7 +126,11 @@ class Parts:
             first = sorted(common) if places else self._first
             parts.append(self._part(first, places))
             rest = [group for group in places if len(places[group]) > len(common)]
-        return parts + [self._part(places[group], [group]) for group in rest]
+        parts += [self._part(places[group], [group]) for group in rest]
+        at = f"{place}, row {{}}, column {cut(self._columns['t'].name)}"
+        for part in parts if not faults.lines else ():
+            _refuse_disorder(times, part.places, at, faults)
+        return parts
 
     def _places(self, count: int) -> dict[str, list[int]]:
         """Return the places of the rows that each group has, and note where these are not all."""

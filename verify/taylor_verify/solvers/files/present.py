@@ -19,7 +19,8 @@ from taylor_verify.solvers.values import Value, exact
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-_BLANK: Final = ("", None)
+# R writes NA, and other programs null.
+_BLANK: Final = ("", "NA", "null", None)
 
 
 def blanks(values: Sequence[Any]) -> Flags:
@@ -27,7 +28,8 @@ def blanks(values: Sequence[Any]) -> Flags:
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
         return np.zeros(len(values), dtype=bool)
     if isinstance(values, np.ndarray) and values.dtype.kind == "T":
-        return np.asarray(np.strings.str_len(np.strings.strip(values)) == 0)
+        texts = np.strings.strip(values)
+        return np.logical_or.reduce([texts == blank for blank in _BLANK[:-1]])
     cells = (value.strip() if isinstance(value, str) else value for value in values)
     return np.fromiter((cell in _BLANK for cell in cells), dtype=bool, count=len(values))
 

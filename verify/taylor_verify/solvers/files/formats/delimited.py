@@ -90,6 +90,9 @@ def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]
 
         def sound() -> Iterator[list[str]]:
             for row in rows:
+                if not any(row) or not any(map(str.strip, row)):
+                    # Spreadsheets end in rows of nothing.
+                    continue
                 if len(row) == width + 1 and not row[-1].strip():
                     row.pop()
                 if len(row) == width:

@@ -26,6 +26,8 @@ COMMENTS: Final = ("#", "%")
 _BLANKS: Final = ""
 MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
+# A name with its unit in brackets, between blanks.
+_WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _MOSTLY: Final = 0.5
@@ -193,6 +195,7 @@ def _ways(text: str, mark: str) -> Iterator[list[str]]:
     for each in (mark, *(other for other in MARKS if other != mark)):
         yield _cells(text, each)
     yield [cell.strip() for cell in _WIDE_BLANKS.split(text.strip())]
+    yield _WITH_UNIT.findall(text)
 
 
 def _fitting(cells: Sequence[str], row: Sequence[str]) -> list[str]:
