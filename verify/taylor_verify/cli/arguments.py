@@ -139,8 +139,7 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 {_TOLERANCE}
 --steps H,H,...  the steps of several files, in their order; default: what the files or their names say
   (run_h0.05.csv)
---knob NAME  what differs between several files in place of the step: rtol, substeps, ...; its number is
-  read in their names (run_rtol1e-6.csv), or in a comment or key of each file
+--knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
