@@ -225,7 +225,11 @@ class _Dynamics:
         rests = [self._across(basis, defects) for basis in bases]
         for i, k in combinations(range(len(few)), 2):
             count = few[i].family.count + few[k].family.count
-            if classes[i] == classes[k] or count > _PAIR_NUMBERS or few[i].left > 0.97:
+            if (
+                classes[i] == classes[k]
+                or count > _PAIR_NUMBERS
+                or min(few[i].left, few[k].left) > 0.97
+            ):
                 continue
             basis = _basis(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
             left = float(np.linalg.norm(self._across(basis, rests[i]))) / size
