@@ -38,7 +38,8 @@ class Equations:
     piece between ``switches`` is smooth; they are read ``late`` by so much time, and their velocities are
     those of ``scene_mass``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is
     omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
-    takes v for components in space axes, into which the loads are turned.
+    takes v for components in space axes, into which the loads are turned. ``texts`` are the entries of
+    the loads in the scene, beside a weight if ``is_hung``; they may name the inertia or the momenta.
     """
 
     mass: Floats
@@ -58,6 +59,9 @@ class Equations:
     ahead: Any = 0.0
     late: Any = 0.0
     in_world: bool = False
+    texts: tuple[str, ...] = ()
+    is_hung: bool = False
+    names_mass: bool = False
 
     @classmethod
     def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
