@@ -353,7 +353,8 @@ class _Dynamics:
             mass = nearest_factor(right, changes["mass"])
             words = with_numbers(candidate.name, *entries(right.mass, mass))
             return words, {"mass": mass}
-        words = structure(candidate.family, candidate.numbers) if candidate.family else ""
+        family, numbers = candidate.family, candidate.numbers
+        words = "" if family is None or numbers is None else structure(family, numbers)
         return ": ".join(filter(None, (words, candidate.text))), changes
 
 

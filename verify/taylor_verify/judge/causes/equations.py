@@ -9,7 +9,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -110,7 +110,7 @@ class Equations:
         right = {name: getattr(self, name) for name in names}
         if "turns" in names and self.turns is None:
             right["turns"] = np.array([0.0, 1.0])
-        stacked = {
+        stacked: dict[str, Any] = {
             name: np.array([changes.get(name, right[name]) for changes in sets], dtype=float)
             for name in names
         }
@@ -201,8 +201,8 @@ class Equations:
     def _values(self, name: str, nu: Floats, R: Any, loads: Any, columns: Any) -> Floats:
         if name == "products":
             j, k = np.transpose(self.basis.pairs)[:, columns]
-            return nu[:, j] * nu[:, k]
-        own = {
+            return np.asarray(nu[:, j] * nu[:, k])
+        own: dict[str, Callable[[], Floats]] = {
             "constants": lambda: np.ones((1, 1, 1)),
             "velocities": lambda: nu,
             "squares": lambda: np.abs(nu) * nu,
@@ -214,7 +214,8 @@ class Equations:
 
     def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads of the scene, (parameters, components, arcs)."""
-        constant = self.load if np.ndim(self.load) == 3 else self.load[None, :, None]
+        load = np.asarray(self.load)
+        constant: Floats = load if load.ndim == 3 else load[None, :, None]
         if self.acting is None:
             return constant
         n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
@@ -223,7 +224,7 @@ class Equations:
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
         stacked = values if n == 3 else np.concatenate(values, axis=-1)
-        return constant + np.asarray(stacked).transpose(0, 2, 1)
+        return np.asarray(constant + np.asarray(stacked).transpose(0, 2, 1))
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
         right = attitude_rate(q, W)

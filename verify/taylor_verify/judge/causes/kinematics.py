@@ -14,7 +14,7 @@ from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.equations import Equations, parts
-from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.fault import linear
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
@@ -156,23 +156,12 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
 
 
 def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
-    omega, one = arcs.answer.truth.v[:, -3:], np.ones(1)
+    omega = arcs.answer.truth.v[:, -3:]
     pace = 1.0 if right.has_momenta else float(np.max(np.linalg.norm(omega, axis=1)))
+    turns, name = right.changed({"turns": np.array([0.0, 1.0])}), "attitude turns by a factor"
     families = (
-        Family(
-            "attitude by the rate of another moment",
-            "late rate",
-            0 * one,
-            one * 0.1 / pace,
-            lambda p: {"ahead": p[0]},
-        ),
-        Family(
-            "attitude turns by a factor",
-            "kinematics",
-            one,
-            one,
-            lambda p: {"turns": np.array([0.0, p[0]])},
-        ),
+        linear(right, "attitude by the rate of another moment", "late rate", 0.1 / pace, ahead=[1]),
+        linear(turns, name, "kinematics", 1.0, [1], turns=[[0, 1]]),
     )
     for family in families:
         numbers = family.right.copy()
