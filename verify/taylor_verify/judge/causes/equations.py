@@ -215,7 +215,7 @@ class Equations:
     def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads of the scene, (parameters, components, arcs)."""
         load = np.asarray(self.load)
-        constant: Floats = load if load.ndim == 3 else load[None, :, None]
+        constant = np.asarray(load if load.ndim == 3 else load[None, :, None], dtype=float)
         if self.acting is None:
             return constant
         n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
