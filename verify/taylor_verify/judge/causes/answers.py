@@ -46,8 +46,7 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
 NOT_LOOKED_FOR: Final = (
-    "likely causes are not looked for: this body has terms or states of its own that the search "
-    "does not know"
+    "likely causes are not looked for: this body has terms of its own that the search does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
 # Other bodies that are conventions of a scene's text: judge.conventions.worlds reads a file by them.
