@@ -25,6 +25,8 @@ VECTOR: Final = 3.0
 ATTITUDE: Final = 4.0
 # A quantity is wrong if its error is this many times the rounding of the file.
 _WRONG: Final = 30.0
+# The search itself is no better.
+_ARITHMETIC: Final = 1e-12
 _SAME_START: Final = 10.0
 
 
@@ -164,7 +166,7 @@ class Answer:
             name
             for name, error in self.error.items()
             if self.quantity(name) in self.quantities
-            and np.max(error) > _WRONG * self.roundings[name]
+            and np.max(error) > max(_WRONG * self.roundings[name], _ARITHMETIC)
         )
 
     @property

@@ -30,11 +30,14 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify.words.causes import sentence
@@ -43,8 +46,7 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
 NOT_LOOKED_FOR: Final = (
-    "likely causes are not looked for: this body has terms or states of its own that the search "
-    "does not know"
+    "likely causes are not looked for: this body has terms of its own that the search does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
 # Other bodies that are conventions of a scene's text: judge.conventions.worlds reads a file by them.
@@ -53,6 +55,8 @@ _OTHER_BODIES: Final = frozenset(
 )
 _WITH_TERMS: Final = frozenset({"rotor"})
 _MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
+# Names in the texts of loads whose values are those of another body if the mass changes.
+_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
 _DIGITS: Final = 20
 # R^T R of printed digits is off by less.
 _NO_ROTATION: Final = 1e-5
@@ -182,9 +186,20 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     return replace(
         equations,
         acting=Acting(given, loads),
+        texts=_texts(loads),
+        is_hung=bool(loads.hung),
+        names_mass=not loads.inputs.isdisjoint(_OF_MASS),
         reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
         switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
         current=np.array(loads.current, dtype=float) if any(loads.current) else None,
+    )
+
+
+def _texts(loads: Loads) -> tuple[str, ...]:
+    """Return the entries of the loads as texts."""
+    entries = dict(loads.vectors)
+    return tuple(
+        str(entry) for name in VECTORS[loads.model] for entry in entries.get(name, ZERO_VECTOR)
     )
 
 

@@ -37,7 +37,7 @@ class Basis:
 
     @property
     def count(self) -> int:
-        return self.groups["turned loads"].stop
+        return int(self.groups["turned loads"].stop)
 
     def factors(self, **blocks: Any) -> Floats:
         """Return the matrix (n, expressions) with these blocks and zeros elsewhere."""
@@ -92,7 +92,7 @@ def coriolis(gyro: Floats, turn: Any = 0.0, munk: Any = 0.0) -> Floats:
 
 
 def _crossed(matrix: Floats) -> Floats:
-    return np.einsum("ijk,...jl->...ilk", EPSILON, matrix)
+    return np.asarray(np.einsum("ijk,...jl->...ilk", EPSILON, matrix))
 
 
 def coriolis_of(mass: Floats) -> Floats:

@@ -146,7 +146,7 @@ def _single_terms(right: Equations) -> Iterator[Family]:
         unit = zeros(own)
         unit[i, column] = 1.0
         text = right.basis.texts[right.basis.groups["products"]][column]
-        labels.append(f"{text} in {names[i]} (C_{i + 1}{max(pairs[column]) + 1})")
+        labels.append(f"{text} in {names[i]} ({_entries_with(i, pairs[column])})")
         along.append(right.basis.factors(products=unit))
         values.append(float(own[i, column]))
     kind, name = "Coriolis matrix", "single terms of the Coriolis matrix"
@@ -154,6 +154,12 @@ def _single_terms(right: Equations) -> Iterator[Family]:
         one = slice(k, k + 1)
         yield linear(right, label, kind, scale, values[one], (label,), extra=along[one])
     yield linear(right, name, kind, scale, values, tuple(labels), extra=along)
+
+
+def _entries_with(i: int, pair: tuple[int, int]) -> str:
+    """Return the entries of the Coriolis matrix that have a product in row i: one, or two alike."""
+    columns = [k for k in pair if i > 2 or k > 2]
+    return " or ".join(f"C_{i + 1}{k + 1}" for k in columns)
 
 
 def _with_another_centre(mass: Floats, p: Floats) -> Changes:

@@ -20,20 +20,29 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if not changes or _NO_SCENE & set(changes):
         return ""
     other, lines, n = right.changed(changes), list[str](), right.size
+    is_other = "mass" in changes and right.names_mass
+    if is_other or (right.is_hung and _changes_loads(other)):
+        return ""
     if "mass" in changes:
         key = "inertia" if n == 3 else "mass_matrix"
-        lines.append(f"{key} = {_list([_list(map(number, row)) for row in other.mass])}")
+        lines.append(
+            f"{key} = {_list([_list(map(number, row)) for row in _symmetric(other.mass)])}"
+        )
     if "rotor" in changes and np.any(right.rotor):
         lines.append(f"rotor = {_list(map(number, other.rotor))}")
     if "damping" in changes:
         lines.append(f"damping = {number(float(other.damping))}")
     if "extra" in changes:
-        if right.acting is not None:
-            return ""
         texts = _loads(other)
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
             lines.append(f"{key} = {_list(texts[first : first + 3])}")
     return "; ".join(lines)
+
+
+def _symmetric(matrix: Floats) -> Floats:
+    """Return a symmetric matrix without what rounding left in it."""
+    size = float(np.max(np.abs(matrix)))
+    return np.where(np.abs(matrix) > 1e-13 * size, (matrix + matrix.T) / 2, 0.0)
 
 
 def number(value: float) -> str:
@@ -46,25 +55,54 @@ def _list(parts: Iterable[str]) -> str:
     return f"[{', '.join(parts)}]"
 
 
+def _changes_loads(other: Equations) -> bool:
+    return bool(np.any(other.extra[:, other.basis.groups["loads"].start :]))
+
+
 def _loads(other: Equations) -> list[str]:
     """Return each component of the loads: a number, or the text of an expression in quotes."""
+    factors, words = _of_texts(other) if other.texts else _of_numbers(other)
+    largest = float(np.max(np.abs(factors)))
+    return [_text(row, words, largest) for row in factors]
+
+
+def _of_numbers(other: Equations) -> tuple[Floats, tuple[str, ...]]:
+    """Return the factors of each expression where the loads of the scene are numbers."""
     basis, groups, extra, load = other.basis, other.basis.groups, other.extra.copy(), other.load
     extra[:, 0] += load + extra[:, groups["loads"]] @ load
     vectors = np.repeat(load.reshape(-1, 3), 3, axis=0)
     axes = np.tile(np.eye(3), (other.size // 3, 1))
     in_space = np.einsum("jk,ji->jki", vectors, axes).reshape(-1, 9)
     extra[:, groups["frame"]] += extra[:, groups["turned loads"]] @ in_space
-    largest = float(np.max(np.abs(extra[:, : len(basis.texts)])))
-    return [_text(row, basis.texts, largest) for row in extra]
+    return extra[:, : len(basis.texts)], basis.texts
+
+
+def _of_texts(other: Equations) -> tuple[Floats, tuple[str, ...]]:
+    """Return the factors of each expression where the loads of the scene are texts."""
+    n, groups, texts, extra = other.size, other.basis.groups, other.texts, other.extra.copy()
+    extra[:, groups["loads"]] += np.eye(n)
+    turned = []
+    for j in range(n):
+        first = j - j % 3
+        terms = [(f"r{k + 1}{j % 3 + 1}", texts[first + k]) for k in range(3)]
+        turned.append(" + ".join(f"{r}*({text})" for r, text in terms if text != "0"))
+    words = (*other.basis.texts, *(f"({text})" for text in texts), *(f"({t})" for t in turned))
+    extra[:, [k for k, word in enumerate(words) if word in ("(0)", "()")]] = 0.0
+    return extra, words
 
 
 def _text(row: Floats, words: Sequence[str], largest: float) -> str:
     large = [
-        (value, word)
-        for value, word in zip(row, words, strict=False)
+        (float(value), word)
+        for value, word in zip(row, words, strict=True)
         if abs(value) > _NOTHING * largest
     ]
     if not any(word for _, word in large):
-        return number(float(large[0][0])) if large else "0.0"
-    written = " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in large)
+        return number(large[0][0]) if large else "0.0"
+    written = " + ".join(map(_term, large))
     return '"' + written.replace("+ -", "- ") + '"'
+
+
+def _term(of: tuple[float, str]) -> str:
+    value, word = of
+    return word if word and value == 1 else f"{number(value)}{'*' if word else ''}{word}"

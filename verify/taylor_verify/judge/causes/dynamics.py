@@ -225,7 +225,11 @@ class _Dynamics:
         rests = [self._across(basis, defects) for basis in bases]
         for i, k in combinations(range(len(few)), 2):
             count = few[i].family.count + few[k].family.count
-            if classes[i] == classes[k] or count > _PAIR_NUMBERS or few[i].left > 0.97:
+            if (
+                classes[i] == classes[k]
+                or count > _PAIR_NUMBERS
+                or min(few[i].left, few[k].left) > 0.97
+            ):
                 continue
             basis = _basis(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
             left = float(np.linalg.norm(self._across(basis, rests[i]))) / size
@@ -349,7 +353,8 @@ class _Dynamics:
             mass = nearest_factor(right, changes["mass"])
             words = with_numbers(candidate.name, *entries(right.mass, mass))
             return words, {"mass": mass}
-        words = structure(candidate.family, candidate.numbers) if candidate.family else ""
+        family, numbers = candidate.family, candidate.numbers
+        words = "" if family is None or numbers is None else structure(family, numbers)
         return ": ".join(filter(None, (words, candidate.text))), changes
 
 

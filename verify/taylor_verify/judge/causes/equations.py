@@ -9,7 +9,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -38,7 +38,8 @@ class Equations:
     piece between ``switches`` is smooth; they are read ``late`` by so much time, and their velocities are
     those of ``scene_mass``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is
     omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
-    takes v for components in space axes, into which the loads are turned.
+    takes v for components in space axes, into which the loads are turned. ``texts`` are the entries of
+    the loads in the scene, beside a weight if ``is_hung``; they may name the inertia or the momenta.
     """
 
     mass: Floats
@@ -58,6 +59,9 @@ class Equations:
     ahead: Any = 0.0
     late: Any = 0.0
     in_world: bool = False
+    texts: tuple[str, ...] = ()
+    is_hung: bool = False
+    names_mass: bool = False
 
     @classmethod
     def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
@@ -106,7 +110,7 @@ class Equations:
         right = {name: getattr(self, name) for name in names}
         if "turns" in names and self.turns is None:
             right["turns"] = np.array([0.0, 1.0])
-        stacked = {
+        stacked: dict[str, Any] = {
             name: np.array([changes.get(name, right[name]) for changes in sets], dtype=float)
             for name in names
         }
@@ -197,8 +201,8 @@ class Equations:
     def _values(self, name: str, nu: Floats, R: Any, loads: Any, columns: Any) -> Floats:
         if name == "products":
             j, k = np.transpose(self.basis.pairs)[:, columns]
-            return nu[:, j] * nu[:, k]
-        own = {
+            return np.asarray(nu[:, j] * nu[:, k])
+        own: dict[str, Callable[[], Floats]] = {
             "constants": lambda: np.ones((1, 1, 1)),
             "velocities": lambda: nu,
             "squares": lambda: np.abs(nu) * nu,
@@ -210,7 +214,8 @@ class Equations:
 
     def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads of the scene, (parameters, components, arcs)."""
-        constant = self.load if np.ndim(self.load) == 3 else self.load[None, :, None]
+        load = np.asarray(self.load)
+        constant = np.asarray(load if load.ndim == 3 else load[None, :, None], dtype=float)
         if self.acting is None:
             return constant
         n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
@@ -219,7 +224,7 @@ class Equations:
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
         stacked = values if n == 3 else np.concatenate(values, axis=-1)
-        return constant + np.asarray(stacked).transpose(0, 2, 1)
+        return np.asarray(constant + np.asarray(stacked).transpose(0, 2, 1))
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
         right = attitude_rate(q, W)

@@ -35,12 +35,12 @@ def in_world(answer: Answer, omega: Floats) -> list[Cause]:
 
 def _in_space_axes(answer: Answer, omega: Floats) -> Answer:
     """Return a rigid body's answer with omega, and the equations, in space axes."""
-    true, start = answer.truth, answer.start
-    assert true.q is not None
-    assert start.q is not None
-    turned, first = (
-        replace(each, v=np.einsum("nij,nj->ni", matrices(each.q), each.v)) for each in (true, start)
-    )
+    turned, first = map(_with_omega_in_space, (answer.truth, answer.start))
     right = answer.right.changed({"in_world": True, "turns": np.array([1.0, 0.0])})
     file = Motion(omega, answer.file.q)
     return replace(answer, right=right, start=first, truth=turned, file=file)
+
+
+def _with_omega_in_space(motion: Motion) -> Motion:
+    assert motion.q is not None
+    return replace(motion, v=np.einsum("nij,nj->ni", matrices(motion.q), motion.v))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -14,7 +14,7 @@ from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.equations import Equations, parts
-from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.fault import linear
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
@@ -24,7 +24,7 @@ from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
-_ARCS: Final = 48
+_ARCS: Final = 16
 _CLEAR: Final = 20.0
 # What a hypothesis without numbers leaves of the defects.
 _REPLAYED: Final = 1e-2
@@ -156,23 +156,12 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
 
 
 def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
-    omega, one = arcs.answer.truth.v[:, -3:], np.ones(1)
+    omega = arcs.answer.truth.v[:, -3:]
     pace = 1.0 if right.has_momenta else float(np.max(np.linalg.norm(omega, axis=1)))
+    turns, name = right.changed({"turns": np.array([0.0, 1.0])}), "attitude turns by a factor"
     families = (
-        Family(
-            "attitude by the rate of another moment",
-            "late rate",
-            0 * one,
-            one * 0.1 / pace,
-            lambda p: {"ahead": p[0]},
-        ),
-        Family(
-            "attitude turns by a factor",
-            "kinematics",
-            one,
-            one,
-            lambda p: {"turns": np.array([0.0, p[0]])},
-        ),
+        linear(right, "attitude by the rate of another moment", "late rate", 0.1 / pace, ahead=[1]),
+        linear(turns, name, "kinematics", 1.0, [1], turns=[[0, 1]]),
     )
     for family in families:
         numbers = family.right.copy()
@@ -196,23 +185,23 @@ def _replays(
     n = arcs.answer.n
     if right.coupled > n:
         return
-    begin, size = arcs.begin(n + 4), _apart(ends, exact)
+    q, size = arcs.begin(n + 4)[:, n:], _apart(ends, exact)
     unit = exact / np.linalg.norm(exact, axis=0)
+    rates = cache(partial(_rates, right, arcs, method))
     for name, (order, update) in UPDATES.items():
 
         def apart(rows: Floats, steps: int, update: Any = update) -> float:
-            return _apart(rows, _updated(right, update, begin, arcs, steps, method)[0])
-
-        def left(steps: int, apart: Any = apart) -> float:
-            return float(apart(ends, steps) / size)
+            return _apart(rows, _updated(update, q, rates(steps), arcs.spans / steps)[0])
 
         steps = method[1] if method else _steps(order, partial(apart, unit), size)
-        tried = {k: left(k) for k in ({steps} if method else {max(1, steps - 1), steps, steps + 1})}
+        some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
+        tried = {k: apart(ends, k) / size for k in some}
         best = min(tried, key=lambda k: tried[k])
         h = float(np.median(np.abs(arcs.spans))) / best
         words = f"attitude {name}" + ("" if method else f", h = {h:.6g}")
-        maps = partial(_maps, right, update, best, method)
-        yield _Tried(words, "attitude step", tried[best], maps)
+        yield _Tried(
+            words, "attitude step", tried[best], partial(_maps, right, update, best, method)
+        )
 
 
 def _steps(order: int, error: Callable[[int], float], size: float) -> int:
@@ -228,28 +217,24 @@ def _steps(order: int, error: Callable[[int], float], size: float) -> int:
     return steps
 
 
-def _updated(
-    right: Equations, update: Any, begin: Floats, arcs: Arcs, steps: int, method: Any
-) -> Floats:
-    """Return q, not of unit length, after the arcs in so many updates."""
-    n, h = arcs.answer.n, arcs.spans / steps
-    rates, q = _rates(right, begin[:1, :n], arcs, steps, method), begin[:, n:]
+def _updated(update: Any, q: Floats, rates: list[Floats], h: Floats) -> Floats:
+    """Return q, not of unit length, after an update from each of the rates to the next."""
     for before, after in itertools.pairwise(rates):
         q = update(q, before, after, h)
-    return np.asarray(q)
+    return q
 
 
-def _rates(right: Equations, v: Floats, arcs: Arcs, steps: int, method: Any) -> list[Floats]:
+def _rates(right: Equations, arcs: Arcs, method: Any, steps: int) -> list[Floats]:
     """Return omega at the begin of the arcs and after each of so many steps."""
-    answer, h, rows = arcs.answer, arcs.spans / steps, [v]
+    answer, h = arcs.answer, arcs.spans / steps
+    v = arcs.begin(answer.n)
+    rows = [v]
     if method:
         for k in range(steps):
             rows.append(replay(answer, method[0], right, rows[-1], arcs.since + k * h, h, 1))
     else:
-        spans = np.outer(np.arange(1, steps + 1), h).ravel()
-        ends = moved(
-            answer, right, np.tile(v, steps), np.tile(arcs.since, steps), spans, arcs.steps
-        )
+        spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
+        ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)
         rows += np.split(ends, steps, axis=2)
     return [_omega(right, each) for each in rows]
 
@@ -260,5 +245,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
 
 def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
-    begin = with_units(arcs.begin(arcs.answer.n)[0])
-    return _updated(right, update, begin, arcs, steps, method).transpose(2, 1, 0)
+    n = arcs.answer.n
+    q = with_units(arcs.begin(n)[0])[:, n:]
+    rates = _rates(right, arcs, method, steps)
+    return _updated(update, q, rates, arcs.spans / steps).transpose(2, 1, 0)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,7 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
 _RATES: Final = tuple(Fraction(f) for f in ("2", "1/2", "4", "1/4", "5", "1/5", "10", "1/10"))
+_WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 # What a candidate leaves of the error at the first wrong row, at most; that is so many roundings large.
 _NEAR: Final = 0.01
 _CLEAR: Final = 300.0
@@ -89,29 +91,33 @@ def _first_wrong(answer: Answer) -> int:
 
 
 def _candidates(loads: Loads, answer: Answer) -> Iterator[_Changed]:
-    def with_states(name: str, change: Callable[[State], State]) -> _Changed:
-        return _Changed(name, replace(loads, states=tuple(map(change, loads.states))))
-
-    held = loads.held_states
+    held, own = loads.held_states, [s for s in loads.states if isinstance(s, Continuous)]
     for state in held:
         yield from _without_delay(loads, state)
         yield _late(loads, state)
     if held:
         yield _continuous(loads, held)
-    names = " and ".join(state.name for state in held)
-    for factor in _RATES if held else ():
-        every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
-        name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
-        yield with_states(name, lambda state, f=factor: _slower(state, f))  # type: ignore[misc]
-    for own in loads.states:
-        if isinstance(own, Continuous):
-            for words, factor in (("stands still", 0), ("has the rate of the other sign", -1)):
-                yield with_states(
-                    f"{own.name} {words}",
-                    lambda state, o=own, f=factor: _rated(state, f) if state is o else state,  # type: ignore[misc]
-                )
+        yield from _at_other_rates(loads, held)
+    for each, (words, factor) in product(own, _WRONG_RATES):
+        rate = tuple(f"{factor}*({entry})" for entry in each.rate)
+        yield _Changed(f"{each.name} {words}", _with(loads, each, replace(each, rate=rate)))
     if not loads.states:
         yield from _held(loads, answer)
+
+
+def _with(loads: Loads, old: State, *new: State) -> Loads:
+    """Return the loads with other states in the place of one."""
+    states = tuple(s for each in loads.states for s in (new if each is old else (each,)))
+    return replace(loads, states=states)
+
+
+def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[_Changed]:
+    for factor in _RATES:
+        every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
+        names = " and ".join(state.name for state in held)
+        states = tuple(_slower(state, factor) for state in loads.states)
+        name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
+        yield _Changed(name, replace(loads, states=states))
 
 
 def _ratio(factor: Fraction) -> str:
@@ -124,18 +130,12 @@ def _slower(state: State, factor: Fraction) -> State:
     return replace(state, every=factor * state.every, offset=factor * state.offset)
 
 
-def _rated(state: State, factor: int) -> State:
-    assert isinstance(state, Continuous)
-    return replace(state, rate=tuple(f"{factor}*({entry})" for entry in state.rate))
-
-
 def _without_delay(loads: Loads, state: Held) -> Iterator[_Changed]:
     """Yield a state that only repeats another one, without its delay."""
     for other in loads.held_states:
         if other is not state and state.value == other.components:
             taken = replace(other, name=state.name, start=state.start)
-            states = tuple(taken if each is state else each for each in loads.states)
-            yield _Changed(f"{state.name} without its delay", replace(loads, states=states))
+            yield _Changed(f"{state.name} without its delay", _with(loads, state, taken))
 
 
 def _late(loads: Loads, state: Held) -> _Changed:
@@ -143,9 +143,8 @@ def _late(loads: Loads, state: Held) -> _Changed:
     now = replace(state, name=f"{state.name}_now")
     start = state.start or (Fraction(0),) * len(state.components)
     late = replace(state, start=start, value=now.components)
-    states = [new for each in loads.states for new in ((now, late) if each is state else (each,))]
     name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
-    return _Changed(name, replace(loads, states=tuple(states)))
+    return _Changed(name, _with(loads, state, now, late))
 
 
 def _continuous(loads: Loads, held: tuple[Held, ...]) -> _Changed:

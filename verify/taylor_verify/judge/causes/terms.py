@@ -97,8 +97,8 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     family, factors = partial(linear, right), right.basis.factors
     yield family("clock", "clock", 1.0, [1], clock=[1])
     word = "gyroscopic term" if n == 3 else "Coriolis terms"
-    along = {"extra": [factors(products=coriolis_of(right.mass))], "rotor": [right.rotor]}
-    yield family(f"factor of the {word}", "gyroscopic term", 1.0, [1], **along)
+    title, extra = f"factor of the {word}", [factors(products=coriolis_of(right.mass))]
+    yield family(title, "gyroscopic term", 1.0, [1], extra=extra, rotor=[right.rotor])
     if np.any(right.rotor):
         size, unit = float(np.linalg.norm(right.rotor)), np.eye(3)
         yield family("factor of the wheels", "wheels", 1.0, [1], rotor=right.rotor[None])
@@ -106,9 +106,8 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
             yield family(f"wheel {i + 1}", "wheels", size, right.rotor[[i]], rotor=unit[[i]])
         yield family("wheels", "wheels", size, right.rotor, rotor=unit)
     if right.has_loads:
-        noun = "moment" if n == 3 else "loads"
-        along = {"extra": [factors(loads=np.eye(n))]}
-        yield family(f"factor of the {noun}", "load", 1.0, [1], **along)
+        title = f"factor of the {'moment' if n == 3 else 'loads'}"
+        yield family(title, "load", 1.0, [1], extra=[factors(loads=np.eye(n))])
     if right.acting is not None:
         yield family("loads late", "load", 0.1 / sizes.pace, late=[1])
     yield from _loads(right, sizes)
@@ -116,8 +115,8 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     yield from _drags(right, sizes)
     yield from _damping_steps(right)
     for name, rows in _coriolis_terms(right):
-        along = {"extra": [factors(products=rows)]}
-        yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], **along)
+        extra = [factors(products=rows)]
+        yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
 
 
 def _loads(right: Equations, sizes: Sizes) -> Iterator[Family]:
