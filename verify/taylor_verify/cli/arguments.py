@@ -139,6 +139,18 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
+    "certify": (
+        "bound the error of a dense answer for all times",
+        "certify dense.json --scene euler/generic --tolerance 1e-6",
+        """
+file FILE  pieces of polynomials as JSON, {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..] for each
+  component] for each piece]}} with powers of t - break; or a trajectory file, with --interpolation
+--scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
+--tolerance E  the error that is allowed: relative, and in radians for the attitude
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples: lines, the cubic
+  spline of SciPy's CubicSpline, or cubics with the slopes of the scene's equations
+""",
+    ),
     "explain": (
         "show the equations of a scene, its orbit in numbers, and how each bound is computed",
         "explain kirchhoff/screw --rung f80",
