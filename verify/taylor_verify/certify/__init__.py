@@ -66,7 +66,8 @@ def certify(
     from taylor_verify.scenes.reading.reader import as_scene
 
     scene = as_scene(scene)
-    tolerances(tolerance, [scene])
+    if tolerances(tolerance, [scene]).each:
+        raise ValueError("expected one number for all quantities, got several @ tolerance")
     pieces = pieces_of(answer, scene, degree, nodes, interpolation)
     given = pose_as_stored(scene, rung("f64")).given
     certificate = certificate_of(given, pieces, tolerance)

@@ -25,6 +25,7 @@ from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.stopping import Coarse
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.records.certificate import Certificate, Gap, GapKind
+from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import Measure
 from taylor_verify.scenes.scene import Scene
 
@@ -47,7 +48,8 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
         Gap(GapKind.NOT_COVERED, "time", float(a), float(b)) for a, b in between(pieces, begin, end)
     ]
     if not measured:
-        return Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
+        needed = " ".join(column for group in scene.groups for column in group.columns)
+        raise refusal(f"columns of the scene ({needed})", " ".join(pieces.columns), "answer")
     try:
         errors, found, nodes = _settled(scene, pieces, measured)
     except (Unsettled, Domain) as doubt:

@@ -129,6 +129,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
+--event TEXT  judge the times of an event, the column or list `events` of the file, in place of its states:
+  how many digits are right, which are missed, which are invented; TEXT as in `exact`: "w2 = 0"
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the
   quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
 --partial  accept a file that lacks tracked columns or a part of the time; without this option the answer

@@ -81,14 +81,15 @@ class Certificate:
 
     @property
     def is_undecided(self) -> bool:
-        """True if nothing is proven, or a bound is beyond the tolerance and no error is known to be."""
-        if self.because:
-            return True
-        if self.tolerance is None or self.passed or not self.bound:
-            return False
-        beyond = [name for name, bound in self.bound.items() if not bound <= self.tolerance]
-        is_whole = all(gap.kind is GapKind.JUMP for gap in self.gaps)
-        return is_whole and not any(self.largest[name] > self.tolerance for name in beyond)
+        """True if it does not pass, and nothing is known to be wrong.
+
+        Wrong is an error beyond the tolerance, or without one a jump.
+        """
+        if self.tolerance is None:
+            is_wrong = any(gap.kind is GapKind.JUMP for gap in self.gaps)
+        else:
+            is_wrong = any(error > self.tolerance for error in self.largest.values())
+        return not (self.passed or is_wrong)
 
     def __str__(self) -> str:
         from taylor_verify.words.certificate import certificate_text
