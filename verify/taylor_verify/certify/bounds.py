@@ -50,8 +50,11 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
     if not measured:
         needed = " ".join(column for group in scene.groups for column in group.columns)
         raise refusal(f"columns of the scene ({needed})", " ".join(pieces.columns), "answer")
+    until = _reached(scene, pieces, scene.clock.instants[-1])
+    if until == scene.clock.start:
+        return Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
     try:
-        errors, found, nodes = _settled(scene, pieces, measured)
+        errors, found, nodes = _settled(scene, pieces, measured, until)
     except (Unsettled, Domain) as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
         return Certificate(
@@ -72,11 +75,10 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
 
 
 def _settled(
-    scene: Scene, pieces: Pieces, measured: Sequence[Measured]
+    scene: Scene, pieces: Pieces, measured: Sequence[Measured], until: Fraction
 ) -> tuple[Mapping[tuple[str, int], Errors], Mapping[str, Largest], Nodes]:
     """Return errors and their largest values, at a precision at which the truth is narrow enough."""
-    bits, stuck, last = _FIRST_BITS, False, scene.clock.instants[-1]
-    until = _reached(scene, pieces, last)
+    bits, stuck = _FIRST_BITS, False
     while True:
         try:
             with ctx.workprec(bits):

@@ -28,9 +28,9 @@ QUATERNION: Final = COLUMNS["quaternion"]
 ROTATION: Final = COLUMNS["attitude"]
 # Coefficients that are together below this share of a polynomial are a part of its bound.
 _NEGLIGIBLE: Final = 2.0**-36
-# A rounding to float64, and no number below the normal ones.
+# A rounding to float64, and what keeps squares from underflow.
 _ROUNDED: Final = 2.0**-50
-_LEAST: Final = 1e-290
+_LEAST: Final = 1e-140
 _SHARES: Final = tuple(arb(k) / 8 for k in range(9))
 
 
