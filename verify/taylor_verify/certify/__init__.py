@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import os
 
-    from taylor_verify.records.certificate import Certificate
+    from taylor_verify.certify.certificate import Certificate
     from taylor_verify.scenes.scene import Scene
 
 
@@ -45,7 +45,7 @@ def certify(
 
     Returns
     -------
-    records.certificate.Certificate
+    certify.certificate.Certificate
         The bound of each quantity and the time near which it is reached; gaps, jumps and what else is wrong
         with the pieces.
 

@@ -9,6 +9,7 @@ from typing import Final
 
 from flint import ctx
 
+from taylor_verify.certify.certificate import Certificate
 from taylor_verify.certify.faults import Nodes, findings, nodes_of
 from taylor_verify.certify.largest import Largest, largest
 from taylor_verify.certify.motion import (
@@ -24,7 +25,7 @@ from taylor_verify.certify.pieces import Pieces
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.stopping import Coarse
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.records.certificate import Certificate, Gap, GapKind
+from taylor_verify.records.certificate import Gap, GapKind
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import Measure
 from taylor_verify.scenes.scene import Scene

@@ -7,7 +7,7 @@ from typing import Final
 
 from taylor_verify.certify.pieces import Pieces
 from taylor_verify.numbers.precision import rung
-from taylor_verify.records.certificate import Certificate
+from taylor_verify.records.certificate import Certified
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.scene import Scene
 
@@ -16,7 +16,7 @@ _LARGE: Final = 1e-3
 _MOST_ROWS: Final = 60
 
 
-def check_conventions(scene: Scene, pieces: Pieces, certificate: Certificate) -> None:
+def check_conventions(scene: Scene, pieces: Pieces, certificate: Certified) -> None:
     """Raise Refused if values of a wrong answer at its nodes fit the scene by another convention."""
     if not any(bound > _LARGE for bound in certificate.bound.values()):
         return

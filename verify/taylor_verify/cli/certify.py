@@ -7,12 +7,12 @@ from functools import partial
 from typing import Any
 
 from taylor_verify.certify import certify
+from taylor_verify.certify.certificate import Certificate
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
-from taylor_verify.records.certificate import Certificate
-from taylor_verify.words.certificate import certificate_text, finding_sentence
+from taylor_verify.words.certificate import certificate_lines, finding_sentence
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -40,7 +40,7 @@ def _status(certificate: Certificate) -> int:
 def _text(file: str, certificate: Certificate) -> str:
     page = Page()
     page.line(bold(file), f" against {certificate.scene}")
-    for line in certificate_text(certificate).splitlines():
+    for line in certificate_lines(certificate):
         page.line(line)
     return page.text()
 

@@ -82,10 +82,14 @@ def judge_events(
     """
     given = pose_as_stored(scene, rung).given
     true = events_of(given, text, given.clock.instants[-1], _DIGITS)
-    left = [time for time in sorted(times) if not any(_is_within(time, u) for u in true.undecided)]
-    answered, missed = [], []
-    for event, window in zip(true.times, _windows(true), strict=True):
-        near = [time for time in left if _distance(time, event) < window]
+    left, answered, missed = sorted(times), list[Answered](), list[EventTime]()
+    windows = _windows(true)
+    for event in true.undecided:
+        # It is not known how many events there are.
+        limit = event.radius + windows[event.t]
+        left = [time for time in left if not _distance(time, event) <= limit]
+    for event in true.times:
+        near = [time for time in left if _distance(time, event) < windows[event.t]]
         if not near:
             missed.append(event)
             continue
@@ -95,16 +99,11 @@ def judge_events(
     return EventsJudgement(scene.name, true, tuple(answered), tuple(missed), tuple(left), tolerance)
 
 
-def _windows(true: Events) -> list[mpf]:
+def _windows(true: Events) -> dict[mpf, mpf]:
     """How near a time must be to answer each event."""
-    every = sorted(event.t for event in true.times)
-    gaps = [b - a for a, b in pairwise(every)]
-    widest = gaps or [_mpf(abs(true.until) or Fraction(1))]
-    windows = []
-    for event in true.times:
-        k = every.index(event.t)
-        windows.append(min(gaps[max(0, k - 1) : k + 1] or widest) / _NEAR)
-    return windows
+    every = sorted(event.t for event in (*true.times, *true.undecided))
+    gaps = [b - a for a, b in pairwise(every)] or [_mpf(abs(true.until) or Fraction(1))]
+    return {t: min(gaps[max(0, k - 1) : k + 1]) / _NEAR for k, t in enumerate(every)}
 
 
 def _answered(event: EventTime, time: Fraction) -> Answered:
@@ -116,10 +115,6 @@ def _answered(event: EventTime, time: Fraction) -> Answered:
 def _distance(time: Fraction, event: EventTime) -> mpf:
     with mp.workdps(2 * _DIGITS):
         return abs(_mpf(time) - event.t)
-
-
-def _is_within(time: Fraction, interval: EventTime) -> bool:
-    return bool(_distance(time, interval) <= interval.radius)
 
 
 def _mpf(value: Fraction) -> mpf:

@@ -1,10 +1,11 @@
-"""A certificate: proven bounds of the error of a dense answer for all times, and what was found out."""
+"""Proven bounds of the error of a dense answer for all times, and what was found out."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
 
 class GapKind(Enum):
@@ -46,7 +47,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Certificate:
+class Certified:
     """What is proven of a dense answer of a scene, for all times of the span that it covers.
 
     ``bound`` and ``at`` are by quantity: the largest error, in the measures of the judge (relative to the
@@ -91,7 +92,15 @@ class Certificate:
             is_wrong = any(error > self.tolerance for error in self.largest.values())
         return not (self.passed or is_wrong)
 
-    def __str__(self) -> str:
-        from taylor_verify.words.certificate import certificate_text
-
-        return certificate_text(self)
+    def rows(self) -> list[dict[str, Any]]:
+        """Return a row for each quantity."""
+        return [
+            {
+                "quantity": name,
+                "bound": bound,
+                "at": self.at[name],
+                "largest": self.largest[name],
+                "rounding": self.rounding[name],
+            }
+            for name, bound in self.bound.items()
+        ]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from taylor_verify.records.certificate import Certificate, Fault, Finding, Gap, GapKind
+from taylor_verify.records.certificate import Certified, Fault, Finding, Gap, GapKind
 
 
-def certificate_text(certificate: Certificate) -> str:
+def certificate_lines(certificate: Certified) -> list[str]:
     """Return the lines of a certificate: bounds first, then what was found out."""
     lines = [certificate.because] if certificate.because else []
     for name, bound in certificate.bound.items():
@@ -16,8 +16,7 @@ def certificate_text(certificate: Certificate) -> str:
         if certificate.tolerance is not None:
             lines[-1] += f"; {_verdict(bound, certificate.tolerance)}"
     lines += [finding_sentence(finding) for finding in certificate.findings]
-    lines += gap_sentences(certificate.gaps)
-    return "\n".join(lines)
+    return [*lines, *gap_sentences(certificate.gaps)]
 
 
 def _verdict(bound: float, tolerance: float) -> str:
