@@ -13,9 +13,9 @@ from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous
 from taylor_verify.scenes.loads.vocabulary import FIELD, names
-from taylor_verify.scenes.reading.loads import entry, is_name
+from taylor_verify.scenes.reading.loads import ENTRY, is_name
 from taylor_verify.scenes.reading.states import MOST_COMPONENTS
-from taylor_verify.scenes.reading.table import Table, exact_number
+from taylor_verify.scenes.reading.table import Number, Table, exact_number
 
 _TAKEN: Final = frozenset((*names(FIELD), *ALL_FUNCTIONS, *keyword.kwlist))
 
@@ -62,8 +62,7 @@ def _states(
 def _state(texts: Table, numbers: Table, name: str) -> Continuous:
     if is_name(texts, str(name)) and name in _TAKEN:
         texts.fault("a name that is free", f"`{name}`", name)
-    rate = texts.number(name, number=lambda value: entry(_written(value)))
-    start = numbers.number(name, number=lambda value: exact_number(_written(value)))
+    rate, start = texts.number(name, reader=_RATE), numbers.number(name, reader=_START)
     return Continuous(name, (start or Fraction(0),), (rate or Fraction(0),), is_vector=False)
 
 
@@ -75,3 +74,7 @@ def _written(value: Any) -> Any:
         case Fraction():
             return str(value)
     return value
+
+
+_RATE: Final = Number(lambda value: ENTRY.read(_written(value)), ENTRY.stand_in)
+_START: Final = Number(lambda value: exact_number(_written(value)))
