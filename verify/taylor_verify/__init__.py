@@ -7,6 +7,7 @@
     solve(scene, solver, rung)      the trajectory of a solver, not yet judged
     run(scene, solver, rung)        solve, compare with the exact motion, judge
     run_many(scenes, solver, rungs) the same for many scenes on all cores
+    certify(scene, answer)          proven bounds of the error of a dense answer, for all times
     check(scene, solve_or_file)     judge a solver, or a trajectory, of one's own
     explain(scene, rung)            the equations, the orbit and the terms of each bound
     tradeoff(scene)                 time against error for every setting
@@ -19,6 +20,7 @@ function: write `from taylor_verify.exact.route import solution`, never `taylor_
 
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
+from taylor_verify.certify import certify
 from taylor_verify.check import check
 from taylor_verify.exact import enclose, events, exact
 from taylor_verify.explain import explain
@@ -30,6 +32,7 @@ from taylor_verify.tradeoff import recommend, tradeoff
 
 __all__ = [
     "__version__",
+    "certify",
     "check",
     "enclose",
     "events",

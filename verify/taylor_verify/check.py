@@ -10,6 +10,7 @@ from taylor_verify.numbers.working_precision import in_turn
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from taylor_verify.judge.events import EventsJudgement
     from taylor_verify.judge.judgement import Judgement
     from taylor_verify.judge.series.files import FilesJudgement
     from taylor_verify.judge.tolerances import Tolerance, Tolerances
@@ -28,6 +29,15 @@ def check(
     tolerance: Tolerances | Tolerance = None,
     columns: Mapping[str, str] | None = None,
 ) -> Judgement: ...
+@overload
+def check(
+    scene: Scene | str | PathLike[str],
+    solve_or_file: Any,
+    rung: Rung | str = "f64",
+    *,
+    tolerance: Tolerances | Tolerance = None,
+    event: str,
+) -> EventsJudgement: ...
 @overload
 def check(
     scene: Scene | str | PathLike[str],
@@ -53,7 +63,8 @@ def check(
     *,
     steps: Sequence[float] | None = None,
     knob: str = "",
-) -> Judgement:
+    event: str | None = None,
+) -> Judgement | EventsJudgement:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
@@ -89,13 +100,18 @@ def check(
     knob
         What differs between the answers of a list in place of the step, such as ``"rtol"``: its number is
         read in the names of the files (``run_rtol1e-6.csv``).
+    event
+        Judge the times of this event in place of the states: ``"w2 = 0"``, as in `events`. The answer is
+        then a list of times, an OdeResult with the ``t_events`` of one event, or a file with a column or
+        list ``events``.
 
     Returns
     -------
     judge.judgement.Judgement
         The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has
         the conventions of the file that are not the scene's; that of a list a
-        judge.series.files.FilesJudgement, which has the order of convergence of each quantity.
+        judge.series.files.FilesJudgement, which has the order of convergence of each quantity. With
+        ``event`` it is a judge.events.EventsJudgement: answered, missed and invented times.
 
     Raises
     ------
@@ -105,6 +121,8 @@ def check(
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
         `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
+    if event is not None:
+        return _of_events(scene, solve_or_file, event, rung, tolerance)
     if callable(solve_or_file):
         if columns:
             raise ValueError("expected `columns` with a trajectory, got them with a callable")
@@ -134,3 +152,24 @@ def check(
         read(solve_or_file, wanted, scene) if is_path else trajectory(solve_or_file, scene, wanted)
     )
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
+
+
+def _of_events(
+    scene: Scene | str | PathLike[str],
+    answer: Any,
+    event: str,
+    rung: Rung | str,
+    tolerance: Tolerances | Tolerance,
+) -> EventsJudgement:
+    from taylor_verify.exact.request import exact_times
+    from taylor_verify.judge.events import given_times, judge_events
+    from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.files.events import read_events
+
+    scene = as_scene(scene)
+    is_path = isinstance(answer, str | PathLike)
+    times = read_events(answer) if is_path else exact_times(given_times(answer))
+    asked = tolerances(tolerance, [scene]).every
+    return judge_events(scene, event, times, rung_named(rung), asked)

@@ -132,6 +132,8 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
+--event TEXT  judge the times of an event, the column or list `events` of the file, in place of its states:
+  how many digits are right, which are missed, which are invented; TEXT as in `exact`: "w2 = 0"
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the
   quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
 --partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
@@ -142,6 +144,18 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 --knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
+    ),
+    "certify": (
+        "bound the error of a dense answer for all times",
+        "certify dense.json --scene euler/generic --tolerance 1e-6",
+        """
+file FILE  pieces of polynomials as JSON, {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..] for each
+  component] for each piece]}} with powers of t - break; or a trajectory file, with --interpolation
+--scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
+--tolerance E  the error that is allowed: relative, and in radians for the attitude
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples: lines, the cubic
+  spline of SciPy's CubicSpline, or cubics with the slopes of the scene's equations
+""",
     ),
     "explain": (
         "show the equations of a scene, its orbit in numbers, and how each bound is computed",

@@ -65,6 +65,10 @@ _NUMBERS: Final = (
 def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
     (options.rung,) = known_rungs([options.rung])
+    if options.event is not None:
+        from taylor_verify.cli.check_events import answer as answer_of_events
+
+        return answer_of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)

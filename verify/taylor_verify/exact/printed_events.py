@@ -15,11 +15,12 @@ def events_document(events: Events) -> dict[str, Any]:
     """Return the events of `exact --json`: each time with a bound of its error, absolute."""
     return {
         "digits": events.digits,
-        "events": [_row(time, events.digits) for time in events.times],
-        "undecided": [_row(time, events.digits) for time in events.undecided],
+        "events": [event_row(time, events.digits) for time in events.times],
+        "undecided": [event_row(time, events.digits) for time in events.undecided],
     }
 
 
-def _row(time: EventTime, digits: int) -> dict[str, str]:
+def event_row(time: EventTime, digits: int) -> dict[str, str]:
+    """Return a time to at most so many digits, and a bound of its error."""
     text, radius = enclosed_number(time.t, time.radius, digits, _LEAST_DIGITS)
     return {"t": text, "radius": radius}

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from taylor_verify.records.faults import Refused, brief, refusal
-from taylor_verify.scenes.loads.grammar import Unread
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.piece import FUNCTION, PieceReader
 from taylor_verify.scenes.scene import Scene
@@ -59,23 +58,15 @@ def _sum_of_products(match: re.Match[str]) -> str:
 
 
 def _check(loads: Loads, expression: str) -> None:
-    faults: list[str] = []
     reader = PieceReader(loads, is_scan=True)
-    try:
-        reader.entries((expression,), FUNCTION)
-    except Unread:
-        faults = [
-            f"expected {fault.expected}, got {fault.got} @ {_place(fault.place)}, column {fault.column}"
-            for fault in reader.faults()
-        ]
+    reader.look_at((expression,), FUNCTION, is_vector=False)
     jumps = sorted(reader.reads().intersection(loads.held_values))
-    if reader.jumps or jumps:
-        got = ", ".join(f"`{name}`" for name in jumps) or "a jump by the time"
+    got = ", ".join(f"`{name}`" for name in jumps) or ("a jump by the time" if reader.jumps else "")
+    faults = [
+        f"expected {fault.expected}, got {fault.got} @ {fault.place}, column {fault.column}"
+        for fault in reader.faults()
+    ]
+    if got:
         faults.append(f"expected an expression that does not jump, got {got} @ {FUNCTION}")
     if faults:
         raise Refused(faults)
-
-
-def _place(place: str) -> str:
-    """Return the place without the number of the only function."""
-    return place.removesuffix("[0]") if place.startswith(FUNCTION) else place

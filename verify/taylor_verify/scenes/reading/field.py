@@ -15,7 +15,7 @@ from taylor_verify.scenes.loads.states import Continuous
 from taylor_verify.scenes.loads.vocabulary import FIELD, names
 from taylor_verify.scenes.reading.loads import ENTRY, is_name
 from taylor_verify.scenes.reading.states import MOST_COMPONENTS
-from taylor_verify.scenes.reading.table import EXACT, Number, Table
+from taylor_verify.scenes.reading.table import Number, Table, exact_number
 
 _TAKEN: Final = frozenset((*names(FIELD), *ALL_FUNCTIONS, *keyword.kwlist))
 
@@ -66,10 +66,6 @@ def _state(texts: Table, numbers: Table, name: str) -> Continuous:
     return Continuous(name, (start or Fraction(0),), (rate or Fraction(0),), is_vector=False)
 
 
-def _after_writing(reader: Number) -> Number:
-    return Number(lambda value: reader.read(_written(value)), reader.stand_in)
-
-
 def _written(value: Any) -> Any:
     """Return a binary or rational number as a scene would write it; any other value as it is."""
     match value:
@@ -80,5 +76,5 @@ def _written(value: Any) -> Any:
     return value
 
 
-_RATE: Final = _after_writing(ENTRY)
-_START: Final = _after_writing(EXACT)
+_RATE: Final = Number(lambda value: ENTRY.read(_written(value)), ENTRY.stand_in)
+_START: Final = Number(lambda value: exact_number(_written(value)))
