@@ -142,11 +142,11 @@ def test_what_is_no_scene_is_refused(scene: Any) -> None:
 
 
 def test_what_is_no_solver_and_no_rung_is_refused() -> None:
-    """`run` says where a callable belongs; a rung is named, or a Rung."""
-    with pytest.raises(ValueError, match="expected a Solver or the name of one, got None"):
+    """A solver is a Solver, named, or a callable; a rung is named, or a Rung."""
+    with pytest.raises(
+        ValueError, match="expected a Solver, the name of one or a callable, got None"
+    ):
         taylor_verify.run(SCENE, None)
-    with pytest.raises(ValueError, match=r"\(a callable is judged by taylor_verify.check\)"):
-        taylor_verify.run(SCENE, still)
     for rung in (64, None, "f65"):
         with pytest.raises(ValueError, match="expected a rung f32, f64"):
             taylor_verify.run(SCENE, COARSE, rung)

@@ -18,7 +18,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
 
 SCENES = ["euler/generic", "euler/later-start", "euler/full-tensor", "kirchhoff/whole-motion"]

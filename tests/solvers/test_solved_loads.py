@@ -19,10 +19,10 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.engines.engine import Outside
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify.solvers.registry import solver_named, solver_names
-from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 SPACE = """

@@ -8,6 +8,7 @@
     run(scene, solver, rung)        solve, compare with the exact motion, judge
     run_many(scenes, solver, rungs) the same for many scenes on all cores
     certify(scene, answer)          proven bounds of the error of a dense answer, for all times
+    sweep(family)                   many bodies and starts, with the worst of them
     check(scene, solve_or_file)     judge a solver, or a trajectory, of one's own
     explain(scene, rung)            the equations, the orbit and the terms of each bound
     tradeoff(scene)                 time against error for every setting
@@ -17,6 +18,8 @@ These are plain functions. The modules that they are imported from here import w
 function is called, so that `import taylor_verify` is quick. Some of those modules share the name of their
 function: write `from taylor_verify.exact.route import solution`, never `taylor_verify.exact.route`.
 """
+
+from typing import TYPE_CHECKING, Any
 
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
@@ -28,9 +31,32 @@ from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
 from taylor_verify.run_many import run_many
 from taylor_verify.scenes import load
+from taylor_verify.sweep import sweep
 from taylor_verify.tradeoff import recommend, tradeoff
 
+if TYPE_CHECKING:
+    from taylor_verify.types import (
+        Certificate,
+        Judgement,
+        Motion,
+        Problem,
+        Recommendation,
+        Refused,
+        Scene,
+        Trajectory,
+        Verdict,
+    )
+
 __all__ = [
+    "Certificate",
+    "Judgement",
+    "Motion",
+    "Problem",
+    "Recommendation",
+    "Refused",
+    "Scene",
+    "Trajectory",
+    "Verdict",
     "__version__",
     "certify",
     "check",
@@ -43,5 +69,15 @@ __all__ = [
     "run",
     "run_many",
     "solve",
+    "sweep",
     "tradeoff",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Return a type by its name: they need numbers, and are imported when they are asked for."""
+    from taylor_verify import types
+
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(types, name)

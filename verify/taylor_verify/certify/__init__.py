@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import os
+from typing import Any
 
-if TYPE_CHECKING:
-    import os
-
-    from taylor_verify.certify.certificate import Certificate
-    from taylor_verify.scenes.scene import Scene
+from taylor_verify import types
 
 
 def certify(
-    scene: Scene | str | os.PathLike[str],
+    scene: types.Scene | str | os.PathLike[str],
     answer: Any,
     tolerance: float | None = None,
     degree: int | None = None,
     nodes: Any = None,
     interpolation: str | None = None,
-) -> Certificate:
+) -> types.Certificate:
     """Return proven bounds of the error of a dense answer, for all times of the scene's span.
 
     The bound is that of the polynomials with the stored coefficients in real arithmetic; what their

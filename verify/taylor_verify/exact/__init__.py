@@ -6,26 +6,21 @@ of it.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from taylor_verify import types
 from taylor_verify.numbers.working_precision import in_turn
-
-if TYPE_CHECKING:
-    import os
-
-    from taylor_verify.exact.events import Events
-    from taylor_verify.scenes.motion import Motion
-    from taylor_verify.scenes.scene import Scene
 
 
 @in_turn
 def exact(
-    scene: Scene | str | os.PathLike[str],
+    scene: types.Scene | str | os.PathLike[str],
     times: Iterable[Any],
     digits: int = 30,
     route: str | None = None,
-) -> Motion:
+) -> types.Motion:
     """Return the exact motion of a scene at given times.
 
     Parameters
@@ -47,7 +42,7 @@ def exact(
         A row for each time, in body axes but for ``centre``: omega (n, 3), or linear_impulse and
         angular_impulse (n, 3), and, where tracked, attitude (n, 3, 3) from body to space and centre (n, 3).
         ``radius`` (n,) bounds the relative error of each vector: proven, or for ``mpmath`` as far as two
-        precisions agree.
+        precisions agree. Each number prints with all the ``digits``.
 
     Raises
     ------
@@ -66,13 +61,20 @@ def exact(
     The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics 48 (3), (4). The
     formulas of a closed form are named in exact.euler and exact.kirchhoff.
     """
+    from taylor_verify.exact.printed import printable
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
+    from taylor_verify.exact.solution import Unsettled
     from taylor_verify.scenes.reading.reader import as_scene
 
-    scene, digits = as_scene(scene), check_digits(digits)
-    elapsed = [time - scene.clock.start for time in exact_times(times)]
-    return solution(scene, route).motion(elapsed, digits)
+    scene, digits, asked = as_scene(scene), check_digits(digits), exact_times(times)
+    elapsed = [time - scene.clock.start for time in asked]
+    try:
+        return printable(solution(scene, route).motion(elapsed, digits), asked, digits)
+    except Unsettled as doubt:
+        if doubt.motion is not None:
+            doubt.motion = printable(doubt.motion, [asked[k] for k in doubt.places], digits)
+        raise
 
 
 def enclose(
@@ -81,7 +83,7 @@ def enclose(
     times: Iterable[Any],
     digits: int = 30,
     begin: Any = 0,
-) -> Motion:
+) -> types.Motion:
     """Return the motion of your own equations at given times, with proven error bounds.
 
     Parameters
@@ -130,8 +132,8 @@ def enclose(
 
 
 def events(
-    scene: Scene | str | os.PathLike[str], text: str, until: Any, digits: int = 30
-) -> Events:
+    scene: types.Scene | str | os.PathLike[str], text: str, until: Any, digits: int = 30
+) -> types.Events:
     """Return all times of an event between the start of a scene and a time, with proof that none is missed.
 
     Parameters

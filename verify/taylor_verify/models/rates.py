@@ -134,7 +134,8 @@ def _table(form: Form, parameters: Floats) -> Floats:
     # Axes: the states, the points, the directions.
     around = points.T[:, :, None] + 1j * _ASIDE * np.eye(n)[:, None, :]
     rates = [
-        rate + np.zeros(around.shape[1:]) for rate in form.rates([*around, *others], parameters)
+        rate + np.zeros(around.shape[1:])
+        for rate in form.rates([*around, *others], parameters.tolist())
     ]
     J = (
         np.array([rate.imag / _ASIDE for rate in rates[:n]])

@@ -59,7 +59,7 @@ class Answer:
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
     ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
-    ``places`` are the rows of the file, from 0, that these are.
+    ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
     """
 
     right: Equations

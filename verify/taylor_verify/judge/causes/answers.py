@@ -21,6 +21,7 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
+from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.printed import half_units
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
@@ -143,6 +144,7 @@ def explained(answer: Answer) -> Explained:
         causes = causes_of(answer)
     except _SILENT:
         return Explained()
+    causes += plugged_causes(answer)
     is_motion = bool(causes) and not any(map(_is_convention, causes))
     notes: tuple[str, ...] = ()
     if not causes:
