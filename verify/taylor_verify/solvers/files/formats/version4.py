@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array
 from taylor_verify.solvers.files.formats.column import COLUMNS
 
@@ -60,6 +60,8 @@ def arrays(content: bytes, path: Path) -> Iterator[Array]:
     """Yield the matrices, or the variables of a result of Modelica."""
     try:
         matrices = {matrix.name: matrix for matrix in _matrices(content)}
+    except Refused:
+        raise
     except (ValueError, struct.error) as error:
         raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     COLUMNS.check(len(matrices), path)
