@@ -59,7 +59,7 @@ def results(alone: list[Judgement]) -> Judgements:
     "executor",
     [
         lambda: ThreadPoolExecutor(3),
-        lambda: ProcessPoolExecutor(2, get_context("spawn")),
+        pytest.param(lambda: ProcessPoolExecutor(2, get_context("spawn")), marks=pytest.mark.slow),
         lambda: Backwards(len(SCENES)),
         pytest.param(lambda: None, marks=pytest.mark.slow),
     ],

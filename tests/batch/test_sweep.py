@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -189,6 +190,29 @@ def test_an_interrupted_sweep_goes_on(
     judged.clear()
     swept(template, out, resume=True)
     assert judged == []
+
+
+@pytest.mark.usefixtures("quick")
+def test_a_part_that_is_not_what_was_written_is_judged_again(
+    template: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A copy of another part, flipped bits and a FIFO are told, and change no byte of the answer."""
+    out = tmp_path / "out"
+    swept(template, out)
+    sound = rows(out)
+    names = sorted((out / "verdicts").iterdir())
+    content = names[1].read_bytes()
+    shutil.copy(names[0], names[2])
+    names[3].unlink()
+    os.mkfifo(names[3])
+    for bit in range(7, 8 * len(content), 12007):
+        flipped = bytearray(content)
+        flipped[bit // 8] ^= 1 << bit % 8
+        names[1].write_bytes(flipped)
+        swept(template, out, resume=True)
+        assert rows(out) == sound
+    assert "damaged, and run again: part-000002.parquet" in caplog.text
+    assert "damaged, and run again: part-000003.parquet" in caplog.text
 
 
 @pytest.mark.slow

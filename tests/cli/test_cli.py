@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ import pytest
 from builders.processes import PATIENCE, interruptible, wait_until
 from builders.programs import is_alive
 from builders.scenes import LISTED_INSTANTS, scene_file
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.batch.job import Job
@@ -362,13 +364,17 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
 # What is wrong.
 
 
-@pytest.mark.parametrize("file", REFUSED, ids=lambda file: file.stem)
-@pytest.mark.parametrize("verb", [["run"], ["exact", "--at", "1"], ["explain"]], ids=lambda v: v[0])
+@pytest.mark.parametrize(
+    ("verb", "file"),
+    by_turns(product(("run", "exact --at 1", "explain"), REFUSED), 3, lambda verb, file: verb),
+    ids=lambda case: getattr(case, "stem", None),
+)
 def test_a_scene_that_is_refused_ends_with_2_and_a_message(
-    capsys: Captured, verb: list[str], file: Path
+    capsys: Captured, verb: str, file: Path
 ) -> None:
     """Every fault is named on stderr; stdout stays empty."""
-    assert main([verb[0], str(file), *verb[1:], "--json"]) == 2
+    verb, *options = verb.split()
+    assert main([verb, str(file), *options, "--json"]) == 2
     out, error = capsys.readouterr()
     assert out == ""
     assert error.startswith("taylor-verify: expected ")
@@ -461,11 +467,12 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full on this system")
-def test_a_full_disk_under_stdout_is_one_message() -> None:
+@pytest.mark.parametrize("words", [["list", "--json"], ["--help"], ["--version"]])
+def test_a_full_disk_under_stdout_is_one_message(words: list[str]) -> None:
     """Exit 2 and the system's reason."""
     with open("/dev/full", "w") as full:
         done = subprocess.run(
-            command("list", "--json"), env=environment(), stdout=full, stderr=subprocess.PIPE
+            command(*words), env=environment(), stdout=full, stderr=subprocess.PIPE
         )
     assert done.returncode == 2
     assert done.stderr.count(b"\n") == 1

@@ -20,6 +20,13 @@ def test_a_shipped_scene_keeps_its_name(name: str) -> None:
     assert of_scene(name) == name.replace("/", "-")
 
 
+@given(NAMES)
+@example("./s.toml")
+def test_no_file_is_hidden(name: str) -> None:
+    """No file's name begins with a dot: `ls`, `cp O/*` and uploads leave such files out."""
+    assert not of_scene(name).startswith(".")
+
+
 @given(NAMES, NAMES)
 @example("a/b", "a-b")
 @example("a/b/c", "a-b/c")

@@ -8,6 +8,7 @@ import json
 import pty
 import re
 import sys
+from contextlib import suppress
 from pathlib import Path
 from subprocess import run
 
@@ -80,6 +81,62 @@ def test_words_of_the_call_are_escaped_when_repeated(capsys: Captured) -> None:
     with pytest.raises(SystemExit):
         main(["run", "euler/generic", "--bogus", STEERING])
     assert not CONTROL.search(printed(capsys))
+
+
+# What a runner of GitHub obeys, at the beginning of a line or anywhere.
+COMMANDS = "a\n::error::b\n  ::add-mask::c ##[add-mask]d"
+COMMAND = re.compile(r"^\s*::|##\[", re.MULTILINE)
+
+
+@pytest.fixture
+def commanding_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A scene whose file and title are commands to a runner, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    text = LISTED_INSTANTS.replace('title = "', f"title = {json.dumps(COMMANDS)} # ")
+    Path(f"{COMMANDS}.toml").write_text(text)
+    return f"{COMMANDS}.toml"
+
+
+@pytest.mark.parametrize(
+    ("verb", "options"),
+    [
+        ("run", ["--rung", "f64", "--out", f"{COMMANDS}.out", "--junit", f"{COMMANDS}.xml"]),
+        ("run", [COMMANDS]),
+        ("run", ["--solver", COMMANDS]),
+        ("explain", []),
+        ("exact", ["--at", "1"]),
+        ("exact", ["--at", COMMANDS]),
+        ("exact", ["--at", "1", "--json"]),
+        ("question", []),
+        ("draw", ["--out", f"{COMMANDS}.svg", "--only", "momentum"]),
+    ],
+)
+def test_no_name_commands_a_runner(
+    verb: str, options: list[str], commanding_scene: str, capsys: Captured
+) -> None:
+    """A line feed in a name, an option or a title is shown as its escape, and begins no line of ours."""
+    with suppress(SystemExit):
+        main([verb, commanding_scene, *options])
+    shown = printed(capsys)
+    assert re.search(r"a\\+n", shown)
+    assert not COMMAND.search(shown)
+
+
+def test_only_our_own_lines_command_a_runner(
+    commanding_scene: str, tmp_path: Path, capsys: Captured
+) -> None:
+    """The annotations of --github are ours alone, and the names in them and in JUnit are escaped."""
+    file = tmp_path / f"{COMMANDS}.csv"
+    file.write_text(f't,w1,w2,w3,"{COMMANDS}"\n0,1,2,3,4\n')
+    junit = tmp_path / "junit.xml"
+    main(
+        ["check", str(file), "--scene", commanding_scene, "--github", "--junit", str(junit)],
+    )
+    shown = printed(capsys)
+    lines = [line for line in shown.splitlines() if COMMAND.search(line)]
+    assert lines
+    assert all(re.match(r"::(error|warning) (file|title)=", line) for line in lines)
+    assert not COMMAND.search(junit.read_text())
 
 
 def test_styles_are_the_consoles_own() -> None:

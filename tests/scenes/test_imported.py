@@ -18,11 +18,12 @@ from taylor_verify.cli import main
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.markup import DEEPEST
 from taylor_verify.run import run
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.imported import import_scene
-from taylor_verify.scenes.imported.document import DEEPEST, MOST_BYTES, MOST_ELEMENTS
+from taylor_verify.scenes.imported.document import MOST_BYTES, MOST_ELEMENTS
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene

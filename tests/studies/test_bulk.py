@@ -85,7 +85,7 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     stamp.write_bytes(line)
     file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
-    stored["verdicts"][0]["max"] = 0.5
+    stored["verdicts"][0] |= {"max": 0.5, "bound": 1.0}
     file.write_text(store.laid_out(stored), encoding="utf-8")
     assert len(lacking(report, "records of runs")) == 4
     mine, obsolete = (report / "data" / store.RECORDS / f"{n}.json" for n in ("mine", "gone"))

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
+from math import nan
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -81,6 +82,8 @@ def finite(verdict: Verdict) -> Verdict:
 
 
 FLOATS = st.none() | st.floats()
+SIZES = st.none() | st.floats(min_value=0) | st.just(nan)
+FINITE = st.floats(min_value=0, allow_infinity=False)
 TEXT = st.text(st.characters(codec="utf-8"), max_size=12)
 
 
@@ -93,12 +96,17 @@ def one_run(draw: st.DrawFn) -> list[Verdict]:
     if provenance:
         provenance["versions"] = {**VERSIONS, "python": draw(st.sampled_from(["3.11", "3.12"]))}
     scene, solver, rung, setting = draw(TEXT), draw(TEXT), draw(TEXT), draw(TEXT)
-    seconds = draw(FLOATS)
-    quantities = draw(st.lists(st.sampled_from(["omega", "impulse", "T", "y3"]), min_size=1))
+    seconds = draw(SIZES)
+    quantities = draw(
+        st.lists(st.sampled_from(["omega", "impulse", "T", "y3"]), min_size=1, unique=True)
+    )
     verdicts = []
     for quantity in quantities:
-        numbers: dict[str, Any] = {name: draw(FLOATS) for name in (*NAN, "at", "bound")}
+        numbers: dict[str, Any] = {name: draw(SIZES) for name in (*NAN, "at", "bound")}
+        numbers |= {name: draw(FLOATS) for name in ("at", "time_shift") if name in numbers}
         status, outcome = draw(st.sampled_from(Status)), draw(TEXT)
+        if status is Status.PASS:
+            numbers["max"], numbers["bound"] = sorted([draw(FINITE), draw(FINITE)])
         verdict = Verdict(scene, solver, rung, setting, quantity, status, outcome, **numbers)
         rest: dict[str, Any] = {
             "reason": stated(Cause.STATED, draw(TEXT)),
@@ -219,8 +227,12 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     [
         ("{", "expected a JSON document"),
         ("[]", "expected an object, got a list"),
-        ("{}", "expected verdicts"),
-        ('{"versions": {}, "verdicts": [{"scene": "a"}]}', "expected verdicts"),
+        ("{}", "expected a key versions, got none"),
+        (
+            '{"versions": {}, "verdicts": [{"scene": "a"}]}',
+            r"expected a key solver, got none @ verdicts\[0\]",
+        ),
+        ('{"versions": ' + 5000 * "9" + "}", "got 'a number of 5000 digits' @ versions"),
     ],
 )
 def test_data_that_are_no_verdicts_are_refused(report: Path, text: str, fault: str) -> None:

@@ -2,9 +2,12 @@
 
     load(scene)                     a scene file or shipped scene, in exact numbers
     exact(scene, times, digits)     the exact motion
+    events(scene, text, until)      all times of an event, none missed
+    enclose(rates, start, times)    the motion of equations of one's own, with proven error bounds
     solve(scene, solver, rung)      the trajectory of a solver, not yet judged
     run(scene, solver, rung)        solve, compare with the exact motion, judge
     run_many(scenes, solver, rungs) the same for many scenes on all cores
+    certify(scene, answer)          proven bounds of the error of a dense answer, for all times
     sweep(family)                   many bodies and starts, with the worst of them
     check(scene, solve_or_file)     judge a solver, or a trajectory, of one's own
     explain(scene, rung)            the equations, the orbit and the terms of each bound
@@ -20,8 +23,9 @@ from typing import TYPE_CHECKING, Any
 
 # A module is imported before its function takes the name: Python sets a submodule as an attribute of
 # its package only once, when it is first imported.
+from taylor_verify.certify import certify
 from taylor_verify.check import check
-from taylor_verify.exact import exact
+from taylor_verify.exact import enclose, events, exact
 from taylor_verify.explain import explain
 from taylor_verify.records.version import __version__
 from taylor_verify.run import run, solve
@@ -32,6 +36,7 @@ from taylor_verify.tradeoff import recommend, tradeoff
 
 if TYPE_CHECKING:
     from taylor_verify.types import (
+        Certificate,
         Judgement,
         Motion,
         Problem,
@@ -43,6 +48,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "Certificate",
     "Judgement",
     "Motion",
     "Problem",
@@ -52,7 +58,10 @@ __all__ = [
     "Trajectory",
     "Verdict",
     "__version__",
+    "certify",
     "check",
+    "enclose",
+    "events",
     "exact",
     "explain",
     "load",

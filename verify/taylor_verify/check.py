@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from taylor_verify import types
-
-if TYPE_CHECKING:
-    pass
+from taylor_verify.numbers.working_precision import in_turn
 
 
 @overload
@@ -22,6 +20,15 @@ def check(
     tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
 ) -> types.Judgement: ...
+@overload
+def check(
+    scene: types.Scene | str | PathLike[str],
+    solve_or_file: Any,
+    rung: types.Rung | str = "f64",
+    *,
+    tolerance: types.Tolerances | types.Tolerance = None,
+    event: str,
+) -> types.EventsJudgement: ...
 @overload
 def check(
     scene: list[Any] | tuple[Any, ...],
@@ -43,7 +50,9 @@ def check(
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
+    knob: str = "",
 ) -> types.FilesJudgement: ...
+@in_turn
 def check(
     scene: types.Scene | str | PathLike[str] | list[Any] | tuple[Any, ...],
     solve_or_file: Callable[[types.Problem], Any] | types.Solver | str | PathLike[str] | Any,
@@ -54,7 +63,9 @@ def check(
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
-) -> types.Judgement | types.Judgements:
+    knob: str = "",
+    event: str | None = None,
+) -> types.Judgement | types.Judgements | types.EventsJudgement:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
@@ -89,13 +100,21 @@ def check(
     steps
         The step that the solver took in each answer of a list, in the scene's unit of time. Without it the
         files say their steps, or their names do (``run_h0.05.csv``).
+    knob
+        What differs between the answers of a list in place of the step, such as ``"rtol"``: its number is
+        read in the names of the files (``run_rtol1e-6.csv``).
+    event
+        Judge the times of this event in place of the states: ``"w2 = 0"``, as in `events`. The answer is
+        then a list of times, an OdeResult with the ``t_events`` of one event, or a file with a column or
+        list ``events``.
 
     Returns
     -------
     judge.judgement.Judgement
         The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has
         the conventions of the file that are not the scene's; that of a list a
-        judge.series.files.FilesJudgement, which has the order of convergence of each quantity.
+        judge.series.files.FilesJudgement, which has the order of convergence of each quantity. With
+        ``event`` it is a judge.events.EventsJudgement: answered, missed and invented times.
 
     Raises
     ------
@@ -105,20 +124,24 @@ def check(
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
         `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
+    answer: Any = solve_or_file
+    if event is not None:
+        return _of_events(scene, answer, event, rung, tolerance)
+    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.solvers.registry import PYTHON
     from taylor_verify.solvers.solver import Solver
 
-    is_named = isinstance(solve_or_file, str) and solve_or_file.startswith(PYTHON)
-    if callable(solve_or_file) or is_named or isinstance(solve_or_file, Solver):
+    is_named = isinstance(answer, str) and answer.startswith(PYTHON)
+    if callable(answer) or is_named or isinstance(answer, Solver):
         if columns:
             raise ValueError("expected `columns` with a trajectory, got them with a callable")
         if isinstance(scene, list | tuple):
             from taylor_verify.run_many import run_many
 
-            return run_many(scene, solve_or_file, [rung], tolerance=tolerance)
+            return run_many(scene, answer, [rung_named(rung).name], tolerance=tolerance)
         from taylor_verify.run import run
 
-        return run(scene, solve_or_file, rung, tolerance)
+        return run(scene, answer, rung, tolerance)
     if isinstance(scene, list | tuple):
         raise ValueError(
             "expected a callable with several scenes, got a trajectory @ solve_or_file"
@@ -126,21 +149,40 @@ def check(
     from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.series.files import judge_files
     from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.files.file import read
     from taylor_verify.solvers.files.objects import pairs, trajectory
 
     scene = as_scene(scene)
-    if isinstance(solve_or_file, list | tuple):
+    if isinstance(answer, list | tuple):
         options = (rung, accept_conventions, partial, tolerance, columns)
-        return judge_files(solve_or_file, steps, lambda file: check(scene, file, *options))
-    if steps is not None:
-        raise ValueError("expected a list of files with steps, got one answer @ steps")
+        return judge_files(answer, steps, lambda file: check(scene, file, *options), knob)
+    if steps is not None or knob:
+        given = "steps" if steps is not None else "knob"
+        raise ValueError(f"expected a list of files with {given}, got one answer @ {given}")
     wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
-    is_path = isinstance(solve_or_file, str | PathLike)
-    file = (
-        read(solve_or_file, wanted, scene) if is_path else trajectory(solve_or_file, scene, wanted)
-    )
+    is_path = isinstance(answer, str | PathLike)
+    file = read(answer, wanted, scene) if is_path else trajectory(answer, scene, wanted)
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
+
+
+def _of_events(
+    scene: Any,
+    answer: Any,
+    event: str,
+    rung: types.Rung | str,
+    tolerance: types.Tolerances | types.Tolerance,
+) -> types.EventsJudgement:
+    from taylor_verify.exact.request import exact_times
+    from taylor_verify.judge.events import given_times, judge_events
+    from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.files.events import read_events
+
+    scene = as_scene(scene)
+    is_path = isinstance(answer, str | PathLike)
+    times = read_events(answer) if is_path else exact_times(given_times(answer))
+    asked = tolerances(tolerance, [scene]).every
+    return judge_events(scene, event, times, rung_named(rung), asked)

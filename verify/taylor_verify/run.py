@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from taylor_verify import types
+from taylor_verify.numbers.working_precision import in_turn
 
 if TYPE_CHECKING:
     from taylor_verify.judge.judgement import Judgement
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.trajectory import Trajectory
 
 
+@in_turn
 def run(
     scene: types.Scene | str | PathLike[str],
     solver: types.Solver | Callable[..., Any] | str = "taylor",
@@ -116,6 +118,7 @@ def _judged_as_file(
     return replace(judged, verdicts=tuple(verdicts), record=record)
 
 
+@in_turn
 def solve(
     scene: types.Scene | str | PathLike[str],
     solver: types.Solver | Callable[..., Any] | str = "taylor",

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from taylor_verify.batch.judgements import Judgements as Judgements
     from taylor_verify.batch.judging import Progress as Progress
     from taylor_verify.batch.selection import Selection as Selection
+    from taylor_verify.certify.certificate import Certificate as Certificate
+    from taylor_verify.exact.events import Events as Events
+    from taylor_verify.judge.events import EventsJudgement as EventsJudgement
     from taylor_verify.judge.judgement import Judgement as Judgement
     from taylor_verify.judge.series.files import FilesJudgement as FilesJudgement
     from taylor_verify.judge.tolerances import Tolerance as Tolerance
@@ -32,6 +35,9 @@ if TYPE_CHECKING:
     from taylor_verify.tradeoff.trade_off import TradeOff as TradeOff
 else:
     _PLACES = {
+        "Certificate": "taylor_verify.certify.certificate",
+        "Events": "taylor_verify.exact.events",
+        "EventsJudgement": "taylor_verify.judge.events",
         "Executor": "concurrent.futures",
         "FilesJudgement": "taylor_verify.judge.series.files",
         "Judgement": "taylor_verify.judge.judgement",

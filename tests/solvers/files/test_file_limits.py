@@ -21,7 +21,8 @@ from pyarrow import parquet
 import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ROWS
+from taylor_verify.solvers.files.formats import content
+from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, KEYS, LINES, ROWS
 
 NAMES = ("t", "w1", "w2", "w3")
 LONG = 3 * ROWS.most
@@ -141,7 +142,7 @@ def test_a_file_that_is_too_large_is_not_opened(tmp_path: Path) -> None:
         ),
         ({"t__npy": claiming((2,))}, "expected 16 bytes of data as its header says, got 24 @"),
         ({"t__npy": claiming((-3,))}, r"got shape \(-3,\) of float64 @ .* column t"),
-        ({"t__npy": claiming((10**9,), b"", "|V0")}, "expected a one-dimensional array of real"),
+        ({"t__npy": claiming((10**9,), b"", "|V0")}, "expected a column `t` of times, got none"),
         (
             {"t__npy": claiming((3,), bytes(3 * 4 * 4001), "<U4001")},
             "characters in a number, got 4001",
@@ -193,6 +194,34 @@ def test_a_line_without_end_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "mine.csv"
     file.write_text("t,w1,w2,w3\n" + "1" * 2**21 + ",0,0,0\n")
     with pytest.raises(Refused, match=r"characters in a line, got more @ .* line 2"):
+        read(file)
+
+
+@pytest.mark.parametrize("line", ["\n", "# nothing\n", "0,0,0,0\n"])
+def test_lines_are_counted_whatever_is_in_them(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Blank lines and comments count too: nobody waits for a file of nothing else."""
+    monkeypatch.setattr(content, "LINES", LINES._replace(most=100))
+    file = tmp_path / "mine.csv"
+    file.write_text("t,w1,w2,w3\n" + 100 * line)
+    with pytest.raises(Refused, match="expected at most 100 lines, got more @"):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("{" + ",".join(f'"a{k}": 0' for k in range(KEYS.most)) + "}", "keys and brackets"),
+        ("[" + "{}," * KEYS.most + "0]", "keys and brackets"),
+        ("{" + ",".join(f'"a{k}": []' for k in range(1001)) + "}", "1000 columns, got 1001"),
+    ],
+)
+def test_keys_and_brackets_of_json_are_counted(text: str, fault: str, tmp_path: Path) -> None:
+    """An object takes much more memory than its text, so none is made of more than a bounded number."""
+    file = tmp_path / "mine.json"
+    file.write_text(text)
+    with pytest.raises(Refused, match=f"expected at most .*{fault}"):
         read(file)
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+import sqlite3
 import struct
 import zlib
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 
 import h5py
@@ -22,7 +23,7 @@ from scipy.io import savemat
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.formats import mcap, rosbag
+from taylor_verify.solvers.files.formats import database, mcap, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ROWS
 from taylor_verify.solvers.files.formats.reading import FORMATS
 
@@ -268,3 +269,58 @@ def test_messages_in_other_encodings_are_refused(tmp_path: Path) -> None:
         "expected ROS 2 messages (cdr, ros2msg) or JSON, got protobuf with schemas in protobuf"
     )
     assert expected in refusal(tmp_path / "run.mcap")
+
+
+# Databases of ROS 2.
+
+ENDLESS = "WITH RECURSIVE n(k) AS (SELECT 1 UNION ALL SELECT k + 1 FROM n) SELECT"
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    """A database of ROS 2 that is sound."""
+    recordings.write_rosbag2(tmp_path / "bag", COLUMNS_WRITTEN)
+    return tmp_path / "bag" / "bag.db3"
+
+
+def changed(file: Path, *statements: str) -> Path:
+    with closing(sqlite3.connect(file, isolation_level=None)) as connection:
+        for statement in statements:
+            connection.execute(statement)
+    return file
+
+
+def test_what_is_not_asked_of_a_database_is_never_looked_at(bag: Path) -> None:
+    """A view without end in place of the definitions costs nothing, because no definition is read."""
+    view = f"CREATE VIEW message_definitions AS {ENDLESS} k FROM n"
+    assert read(changed(bag, "DROP TABLE message_definitions", view)).times == (0, 1, 2)
+
+
+@pytest.mark.parametrize(
+    "view",
+    [
+        f"CREATE VIEW messages AS {ENDLESS} k AS id, 1 AS topic_id, k AS timestamp, '' AS data FROM n",
+        "CREATE VIRTUAL TABLE messages USING fts4(topic_id, timestamp, data)",
+    ],
+)
+def test_messages_that_are_no_table_are_refused(view: str, bag: Path) -> None:
+    """A view or a virtual table in place of the messages is refused before it is asked anything."""
+    line = refusal(changed(bag, "DROP TABLE messages", view))
+    assert "expected the tables topics and messages, got no messages" in line
+
+
+def test_a_question_to_a_database_ends(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """SQLite stops at a limit of steps, and at Ctrl-C, which its own loop does not see."""
+    monkeypatch.setattr(database, "_STEPS_AT_ONCE", 1)
+    monkeypatch.setattr(database, "_STEPS", database._STEPS._replace(most=3))
+    assert "expected at most 3 million steps of SQLite, got more" in refusal(bag)
+    monkeypatch.setattr(database.Database, "_goes_on", lambda database: 1 / 0)
+    with pytest.raises(KeyboardInterrupt):
+        read(bag)
+
+
+def test_long_metadata_are_refused(bag: Path) -> None:
+    """The metadata of a folder are no larger than a thousand topics make them."""
+    with (bag.parent / "metadata.yaml").open("a") as file:
+        file.write("# nothing\n" * 500_000)
+    assert "expected at most 4194304 bytes" in refusal(bag.parent)

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.differences import ERRORS
-from taylor_verify.records.json_text import parsed
-from taylor_verify.records.limit import Limit
+from taylor_verify.records.json_text import DOCUMENT, parsed
+from taylor_verify.records.regular_file import read_bytes
+from taylor_verify.records.soundness import check_rows
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import with_digest
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.reading.regular_file import read_bytes
 
-_SIZES: Final = (*ERRORS, "bound", "attainable", "roundoff")
-_MOST_BYTES: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
+_NUMBERS: Final = (*ERRORS, "bound", "attainable", "roundoff")
 
 
 def load(file: Path | str) -> tuple[Verdict, ...]:
@@ -26,17 +24,12 @@ def load(file: Path | str) -> tuple[Verdict, ...]:
     Raises records.faults.Refused for a file that cannot be read. Raises ValueError, which names what
     was expected and where, for a file with other content: a half-understood baseline would pass everything.
     """
-    content = read_bytes(Path(file), "a file of verdicts", _MOST_BYTES)
+    content = read_bytes(Path(file), "a file of verdicts", DOCUMENT)
     try:
         placed = dict(_placed(parsed(content, _Rows)))
         for place, verdict in placed.items():
-            _check(verdict, place)
-        rows = Counter(
-            " ".join(filter(None, (v.scene, v.solver, v.setting, v.rung, v.quantity)))
-            for v in placed.values()
-        )
-        if twice := [row for row, count in rows.items() if count > 1]:
-            raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
+            _check_comparable(verdict, place)
+        check_rows(placed)
     except ValueError as fault:
         raise ValueError(f"{fault} @ {file}") from fault
     return tuple(placed.values())
@@ -61,17 +54,12 @@ def _placed(document: _Rows, place: str = "") -> Iterator[tuple[str, Verdict]]:
         yield from _placed(file, f"{place}files[{k}].")
 
 
-def _check(verdict: Verdict, place: str) -> None:
-    """Refuse a row whose numbers cannot belong to a verdict, or with which nothing can be compared."""
+def _check_comparable(verdict: Verdict, place: str) -> None:
+    """Refuse a row with which nothing can be compared."""
+    for name in _NUMBERS if verdict.verdict is Status.PASS else ():
+        if getattr(verdict, name) is None:
+            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
     if not isinstance(verdict.provenance.get("scene"), str):
         raise ValueError(
             f"expected the digest of the scene's text, got none @ {place}.provenance.scene"
         )
-    for name in _SIZES:
-        value = getattr(verdict, name)
-        if value is None and verdict.verdict is Status.PASS:
-            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
-        if value is not None and not value >= 0:
-            raise ValueError(
-                f"expected a number that is not negative, got {value!r} @ {place}.{name}"
-            )

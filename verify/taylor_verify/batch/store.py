@@ -21,14 +21,16 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.batch.lock import Occupied, alone_in
 from taylor_verify.batch.pickling import dumps
-from taylor_verify.records.json_text import converted
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.json_text import DOCUMENT, converted
+from taylor_verify.records.regular_file import bounded_bytes
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
@@ -52,10 +54,10 @@ class Unfinished:
         """
         file = self._file(job)
         try:
-            return from_bytes(file.read_bytes())
+            return from_bytes(bounded_bytes(file, "stored judgements", DOCUMENT))
         except OSError:
             return None
-        except ValueError:
+        except (ValueError, Refused):
             _log.warning("taylor-verify: warning: damaged, and run again: %s @ %s", job.name, file)
             with suppress(OSError):
                 file.unlink()
@@ -155,7 +157,7 @@ def program_digests(solver: Solver | str) -> list[str]:
 
 def _digests_of(solver: Solver) -> list[str]:
     """The digests of a solver as it is sent to a process, and of the file with its function."""
-    answer = getattr(solver, "answer", solver)
+    answer: Any = getattr(solver, "answer", solver)
     try:
         file = inspect.getsourcefile(inspect.unwrap(getattr(answer, "func", answer)))
     except TypeError:

@@ -10,8 +10,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall
-from taylor_verify.cli.streams import MANNER, have_streams, print_out, say, stdout_reserved, tell
+from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
+from taylor_verify.cli.streams import (
+    MANNER,
+    as_json_text,
+    have_streams,
+    print_out,
+    say,
+    stdout_reserved,
+    tell,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -32,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if sys.flags.dev_mode:
             raise
-        tell(_message(error))
+        tell(*_message(error))
         return WRONG_CALL
     finally:
         print_out()
@@ -41,11 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _print(answer: Answer, as_json: bool) -> int:
     shown = ""
     if as_json:
-        import json
-
-        text = json.dumps(answer.document, indent=1, allow_nan=False)
-        # JSON escapes every other control character by itself.
-        print_out(text.replace("\x7f", "\\u007f"))
+        print_out(as_json_text(answer.document))
     else:
         text = answer.text()
         print_out(text.rstrip().rpartition("\n")[2] if MANNER.quiet else text)
@@ -68,12 +72,16 @@ def _interruption(interrupt: KeyboardInterrupt) -> str:
     )
 
 
-def _message(error: Exception) -> str:
-    """Return a message without a traceback; `python -X dev -m taylor_verify` shows the traceback."""
+def _message(error: Exception) -> Sequence[str]:
+    """Return the lines of a message without a traceback, which `python -X dev -m taylor_verify` shows."""
     from taylor_verify.records.faults import Refused
 
     if isinstance(error, WrongCall | Refused):
-        return str(error)
+        return lines_of(error)
+    return [_sentence(error)]
+
+
+def _sentence(error: Exception) -> str:
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"

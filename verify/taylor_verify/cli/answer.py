@@ -12,7 +12,11 @@ _GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
 
 
 class WrongCall(Exception):  # noqa: N818 (it names what was done)
-    """The call or its input was wrong; the text is the message."""
+    """The call or its input was wrong; ``faults`` are the lines of the message."""
+
+    def __init__(self, *faults: str) -> None:
+        self.faults = faults
+        super().__init__("\n".join(faults))
 
 
 @contextmanager
@@ -23,7 +27,13 @@ def wrong_calls(
     try:
         yield
     except kinds as error:
-        raise WrongCall(f"{error}{place}") from error
+        *lines, last = lines_of(error)
+        raise WrongCall(*lines, f"{last}{place}") from error
+
+
+def lines_of(error: Exception) -> Sequence[str]:
+    """Return the faults that an exception tells, each in a line."""
+    return getattr(error, "faults", None) or str(error).split("\n")
 
 
 class Answer(NamedTuple):

@@ -34,6 +34,7 @@ COLOURS: Final = ("auto", "always", "never")
 _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
+_TIMES: Final = ("--at", "--until")
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 
 
@@ -106,11 +107,15 @@ scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or fol
         "exact euler/generic --at 0,10,1e9 --digits 40",
         f"""
 scene {_SCENE}
---at!* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--at* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--event TEXT  in place of --at: all times at which `EXPRESSION = VALUE` or `extremum EXPRESSION` happens, in
+  the names of the scene's loads, T, H2, F2 and x.y: "w2 = 0", "extremum r33"
+--until T  the end of the span in which the events are, which begins at the start of the scene
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
   (default elsewhere)
+--attitude matrix|quaternion|zyx [matrix]  R row by row (default), q0 q1 q2 q3, or yaw pitch roll in rad
 """,
     ),
     "check": (
@@ -123,10 +128,12 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
   and a note says so. All other columns are ignored, and a note names them. `-` is standard input. Several
   files are the answers of one solver at several steps: their order of convergence is shown too
---columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); a
-  comma belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); or
+  its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
+--event TEXT  judge the times of an event, the column or list `events` of the file, in place of its states:
+  how many digits are right, which are missed, which are invented; TEXT as in `exact`: "w2 = 0"
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the
   quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
 --partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
@@ -134,8 +141,21 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 {_TOLERANCE}
 --steps H,H,...  the steps of several files, in their order; default: what the files or their names say
   (run_h0.05.csv)
+--knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
+    ),
+    "certify": (
+        "bound the error of a dense answer for all times",
+        "certify dense.json --scene euler/generic --tolerance 1e-6",
+        """
+file FILE  pieces of polynomials as JSON, {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..] for each
+  component] for each piece]}} with powers of t - break; or a trajectory file, with --interpolation
+--scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
+--tolerance E  the error that is allowed: relative, and in radians for the attitude
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples: lines, the cubic
+  spline of SciPy's CubicSpline, or cubics with the slopes of the scene's equations
+""",
     ),
     "explain": (
         "show the equations of a scene, its orbit in numbers, and how each bound is computed",
@@ -260,8 +280,8 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
     """Write ``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
     attached: list[str] = []
     for word in arguments:
-        if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
-            attached[-1] = f"--at={word}"
+        if attached and attached[-1] in _TIMES and _NEGATIVE_TIME.match(word):
+            attached[-1] += f"={word}"
         else:
             attached.append(word)
     return attached

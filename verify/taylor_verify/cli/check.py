@@ -66,6 +66,10 @@ _NUMBERS: Final = (
 def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
     (options.rung,) = known_rungs([options.rung])
+    if options.event is not None:
+        from taylor_verify.cli.check_events import answer as answer_of_events
+
+        return answer_of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
@@ -75,7 +79,7 @@ def answer(options: argparse.Namespace) -> Answer:
         text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
         return concluded(asked, one, exit_status(one.verdicts), one.document(), text)
     each = judge_each(files, partial(_judged, options, scene))
-    several = files_judgement(each, steps)
+    several = files_judgement(each, steps, options.knob or "")
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
     answered = concluded(asked, several, status, several.document(), text)
@@ -106,7 +110,7 @@ def _asked(
         try:
             return reading(*given)
         except (WrongCall, Refused) as error:
-            faults.append(str(error))
+            faults.extend(error.faults)
 
     steps = attempt(_steps, options)
     scene = attempt(read_scene, options.scene)
@@ -116,11 +120,13 @@ def _asked(
         attempt(lambda name: read_named(name, request(columns), scene), name) for name in names
     ]
     if faults:
-        raise WrongCall("\n".join(faults))
+        raise WrongCall(*faults)
     return scene, files, steps
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:
+    if options.knob and len(options.files) == 1:
+        raise WrongCall("expected several files with --knob, got one @ --knob")
     if options.steps is None:
         return None
     if len(options.files) == 1:
@@ -151,7 +157,7 @@ def _picture(
     if path.suffix.lower() not in ENDINGS:
         expected = f"a file that ends in {', '.join(ENDINGS)}"
         raise WrongCall(f"expected {expected}, got {options.picture!r} @ --picture")
-    if sum(step is not None for step in steps_of(files, steps)) < 2:
+    if sum(step is not None for step in steps_of(files, steps, options.knob or "")) < 2:
         raise WrongCall(
             "expected several files whose steps are known (--steps 0.1,0.05,...), got fewer than two "
             "@ --picture"
@@ -261,7 +267,8 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
     _print_files(page, judged)
     for one in judged.files:
         _print_peculiar(page, one, common)
-    page.line(f"\n{counts(judged.verdicts)}; `check` of one file alone says the reasons")
+    page.line()
+    page.line(f"{counts(judged.verdicts)}; `check` of one file alone says the reasons")
     return page.text()
 
 
@@ -269,7 +276,7 @@ def _print_files(page: Page, judged: FilesJudgement) -> None:
     """Print the largest error of each state quantity in each file, the largest step first."""
     compared = {v.quantity for v in judged.verdicts if v.is_compared}
     states = states_among(sorted(compared))
-    headings = ["file", ">step", ">rows", *(f">{name}" for name in states), "verdicts"]
+    headings = ["file", f">{judged.knob}", ">rows", *(f">{name}" for name in states), "verdicts"]
     pairs = zip(judged.files, judged.steps, strict=True)
     rows = []
     for one, step in sorted(pairs, key=lambda pair: -pair[1].value if pair[1] else 0.0):

@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.streams import MANNER
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import escaped, one_line
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 PIPED_WIDTH = 140
@@ -46,7 +46,7 @@ class EscapingConsole(Console):
 
 def bold(text: str, colour: str = "") -> Text:
     """Return a text in bold type."""
-    return Text(text, f"bold {colour}".rstrip())
+    return Text(one_line(text), f"bold {colour}".rstrip())
 
 
 class Page:
@@ -64,7 +64,8 @@ class Page:
 
     def line(self, *parts: str | Text) -> None:
         """Print one line; a pipe takes any length."""
-        self.console.print(Text.assemble(*parts), soft_wrap=not sys.stdout.isatty())
+        lines = [one_line(part) if isinstance(part, str) else part for part in parts]
+        self.console.print(Text.assemble(*lines), soft_wrap=not sys.stdout.isatty())
 
     def indented(self, label: str, *texts: str) -> None:
         """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
@@ -88,7 +89,7 @@ def print_table(
     A column whose heading begins with ``>`` stands to the right. The first column may hold cells of any
     length, such as paths, and is folded. No other cell is.
     """
-    cells = [[cell if isinstance(cell, Text) else Text(escaped(cell)) for cell in r] for r in rows]
+    cells = [[cell if isinstance(cell, Text) else Text(one_line(cell)) for cell in r] for r in rows]
     columns = zip(*cells, strict=True) if cells else ([] for _ in headings)
     widths = [
         max(cell_len(heading.removeprefix(">")), *(cell.cell_len for cell in column), 0)

@@ -73,7 +73,7 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
         try:
             return reading()
         except (WrongCall, Refused) as error:
-            faults.append(str(error))
+            faults.extend(error.faults)
 
     scene = attempt(lambda: read_scene(options.scene))
     columns = options.columns or ()
@@ -82,7 +82,7 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
         attempt(partial(lambda name: read(name, request(columns), scene), name)) for name in names
     ]
     if faults:
-        raise WrongCall("\n".join(faults))
+        raise WrongCall(*faults)
     return scene, files
 
 

@@ -75,12 +75,9 @@ def _print_problem(page: Page, content: Mapping[str, Any]) -> None:
         _print_loads(page, content["loads"])
     page.line(bold("truth"), f"  route {content['route']}, {content['truth_digits']} digits")
     page.indented("chosen   ", *cost["because"])
-    page.line(
-        bold("cost"),
-        f"   {_counted(cost)}\n"
-        f"       general equations of this body: {_counted(cost['same'])}\n"
-        f"       with all that the model has: {_counted(cost['general'])}",
-    )
+    page.line(bold("cost"), f"   {_counted(cost)}")
+    page.line(f"       general equations of this body: {_counted(cost['same'])}")
+    page.line(f"       with all that the model has: {_counted(cost['general'])}")
     if cost["steps"] is not None:
         order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
         page.line(

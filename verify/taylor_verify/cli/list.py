@@ -66,6 +66,8 @@ def _text(
         width = max((len(entry) for entry in entries if len(entry) <= _WIDEST), default=_WIDEST)
         for entry in entries:
             # A long name, as those of solvers with options, has its sentence below.
-            gap = "  " if len(entry) <= width else "\n" + " " * (width + 4)
-            page.line(f"  {entry:{width}}{gap}{titles.get(entry, '')}".rstrip())
+            if len(entry) > width:
+                page.line(f"  {entry}")
+            shown = entry if len(entry) <= width else ""
+            page.line(f"  {shown:{width}}  {titles.get(entry, '')}".rstrip())
     return page.text()

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from typing import Any, Final, NoReturn
 
-from taylor_verify.scenes.names import escaped
+from taylor_verify.cli.streams import print_out
+from taylor_verify.scenes.names import one_line
 
 # Name, whether it must be given, sign, value, default and help of an argument.
 _ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
@@ -33,17 +35,21 @@ _SENTENCES: Final = tuple(
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose message cannot steer the terminal: it repeats words that may be names of files."""
+    """A parser whose message is one harmless line: it repeats words that may be names of files."""
 
     def error(self, message: str) -> NoReturn:
         for pattern, sentence in _SENTENCES:
             if match := pattern.fullmatch(message):
                 message = match.expand(sentence)
                 break
-        super().error(message)
+        super().error(one_line(message))
 
-    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
-        super().exit(status, message and escaped(message))
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help and version as any answer: argparse says nothing of a disk that is full."""
+        if file is sys.stderr:
+            super()._print_message(message, file)
+        else:
+            print_out(message.removesuffix("\n"))
 
 
 def unknown_words(words: Sequence[str], verb: argparse.ArgumentParser) -> str:

@@ -11,7 +11,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.cli.streams import MANNER, say
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import one_line
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
@@ -69,11 +69,11 @@ def _bar(what: str) -> Iterator[None]:
     )
     with bars.Progress(*columns, console=EscapingConsole(stderr=True), transient=True) as bar:
         # Without a total the bar moves to and fro.
-        task = bar.add_task(f"{escaped(what)}: computing", total=None)
+        task = bar.add_task(f"{one_line(what)}: computing", total=None)
 
         def show(news: str, share: float | None) -> None:
             total = None if share is None else 1.0
-            description = escaped(f"{what}: {news}")
+            description = one_line(f"{what}: {news}")
             bar.update(task, description=description, total=total, completed=share or 0.0)
 
         with _hearing(show):

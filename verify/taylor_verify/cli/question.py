@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from functools import partial
 
 from taylor_verify.cli.answer import PASS, Answer, WrongCall
 from taylor_verify.cli.inputs import known_rungs, read_scene
+from taylor_verify.cli.streams import as_json_text
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
 from taylor_verify.numbers.precision import rung, shortest_decimal
 from taylor_verify.solvers.process.protocol import column_names, question
@@ -25,7 +25,7 @@ def answer(options: argparse.Namespace) -> Answer:
         raise WrongCall(f"expected a scene that {name} can hold, got {reason} @ --rung") from reason
     document = question(problem)
     if not options.csv:
-        return Answer(PASS, document, partial(json.dumps, document, indent=1))
+        return Answer(PASS, document, partial(as_json_text, document))
     return Answer(PASS, document, partial(_csv, problem))
 
 

@@ -6,9 +6,9 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import Final, TextIO
+from typing import Any, Final, TextIO
 
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import escaped, one_line, without_commands
 
 
 class Manner:
@@ -21,15 +21,15 @@ class Manner:
 MANNER: Final = Manner()
 
 
-def say(message: str) -> None:
-    """Print a message, unless the caller asked for none."""
+def say(*lines: str) -> None:
+    """Print a message, each of its lines in one line, unless the caller asked for none."""
     if not MANNER.quiet:
-        tell(message)
+        tell(*lines)
 
 
-def tell(message: str) -> None:
+def tell(*lines: str) -> None:
     """Print a message in any case."""
-    tell_runner(f"taylor-verify: {message}")
+    tell_runner(without_commands("taylor-verify: " + "\n".join(map(one_line, lines))))
 
 
 def tell_runner(line: str) -> None:
@@ -40,11 +40,19 @@ def tell_runner(line: str) -> None:
         _abandon(sys.stderr)
 
 
+def as_json_text(document: Any) -> str:
+    """Return a document as JSON, which escapes most of what commands a terminal or a runner by itself."""
+    import json
+
+    text = json.dumps(document, indent=1, allow_nan=False)
+    return text.replace("\x7f", "\\u007f").replace("##[", "#\\u0023[")
+
+
 def print_out(text: str = "") -> None:
     """Print the answer, if there is one; a reader that went away (`| head`) is no error."""
     try:
         if text:
-            print(text)
+            print(without_commands(text))
         sys.stdout.flush()
     except BrokenPipeError:
         _abandon(sys.stdout)

@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import libmp, mp, mpf
 
+from taylor_verify.exact.attitudes import in_form
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
@@ -23,6 +24,7 @@ from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
 
+MATRIX: Final = "matrix"
 # Norms and radii are computed with so many bits, and shown with two digits.
 _BOUND_BITS: Final = 128
 # The motion has this many digits more than are printed, so that printing limits the accuracy.
@@ -34,7 +36,11 @@ _LARGEST_RATIONAL = 100_000
 
 
 def document(
-    scene: Scene, exact: Solution, times: Sequence[tuple[str, Fraction]], digits: int
+    scene: Scene,
+    exact: Solution,
+    times: Sequence[tuple[str, Fraction]],
+    digits: int,
+    attitude: str = MATRIX,
 ) -> dict[str, Any]:
     """Return the document of `exact --json`: a row for each time, given as its text and its exact value.
 
@@ -43,6 +49,7 @@ def document(
     vector by its norm, the rounding of the printed digits included, except those that are zero throughout,
     and that of an own state by the largest norm that it has had. The row at the start is the initial state
     itself. If some times are not reached, ``because`` says why, and ``rows`` has the other times.
+    ``attitude`` is its form: a matrix, or one of exact.attitudes.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None
@@ -60,13 +67,17 @@ def document(
     rows = []
     for k, place in enumerate(places):
         assert motion is not None
+        values = {
+            name: _values(motion, name, k, start if not elapsed[place] else {})
+            for name in motion.quantities
+        }
+        if attitude != MATRIX and "attitude" in values:
+            values["attitude"] = in_form(attitude, *values["attitude"], digits + _SPARE_DIGITS)
         printed = {
             name: _printed(
-                *_values(motion, name, k, start if not elapsed[place] else {}),
-                digits,
-                motion.peaks[name][k] if name in motion.peaks else None,
+                *numbers_of, digits, motion.peaks[name][k] if name in motion.peaks else None
             )
-            for name in motion.quantities
+            for name, numbers_of in values.items()
         }
         texts = {
             name: vector.text[0] if name in numbers else vector.text
@@ -160,6 +171,17 @@ def _rounded_up(bound: mpf) -> str:
         return decimal_text(
             exact_value(bound * (1 + mp.ldexp(1, -_BOUND_BITS // 2))), 2, ROUND_CEILING
         )
+
+
+def enclosed_number(value: Any, error: mpf, digits: int, least: int) -> tuple[str, str]:
+    """Return a number as text, and a bound of its error with the rounding of the text.
+
+    It has the digits that its error leaves, at most ``digits``, and not less than ``least``.
+    """
+    with mp.workprec(_BOUND_BITS):
+        count = max(least, _proven_digits(value, error, digits))
+        rounding = abs(mp.convert(value)) * mpf(10) ** (1 - count) / 2
+        return _entry(value, count), _rounded_up(rounding + error)
 
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:

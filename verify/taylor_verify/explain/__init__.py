@@ -6,8 +6,10 @@ from os import PathLike
 from typing import Any
 
 from taylor_verify import types
+from taylor_verify.numbers.working_precision import in_turn
 
 
+@in_turn
 def explain(
     scene: types.Scene | str | PathLike[str], rung: types.Rung | str = "f64"
 ) -> dict[str, Any]:

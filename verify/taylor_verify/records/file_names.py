@@ -15,9 +15,9 @@ _MARK: Final = "_"
 # No hyphen and no mark in the family: the first hyphen of the file's name is then the stroke. One
 # family has a folder, extremes/worst, whose name begins no other scene's that is written so.
 _SHIPPED: Final = re.compile(
-    r"(?P<family>[A-Za-z0-9.]+)/(?:(?P<folder>worst)/|(?!worst-))(?P<name>[A-Za-z0-9._-]+)"
+    r"(?P<family>[A-Za-z0-9][A-Za-z0-9.]*)/(?:(?P<folder>worst)/|(?!worst-))(?P<name>[A-Za-z0-9._-]+)"
 )
-_PLAIN: Final = re.compile(r"[A-Za-z0-9.]+")
+_PLAIN: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9.]*")
 _SAFE: Final = "-._~ :?=,+"
 
 

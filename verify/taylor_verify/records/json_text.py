@@ -17,7 +17,13 @@ from typing import Annotated, Any, Final, TypeVar
 
 import msgspec
 
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.limit import Limit
+from taylor_verify.records.regular_file import bounded_bytes
+
 Document = TypeVar("Document")
+
+DOCUMENT: Final = Limit(2**28, "bytes", "a hundred thousand verdicts")
 
 # A number that is not negative. The schema says so; a value in memory may be NaN, which no bound admits.
 Size = Annotated[float, msgspec.Meta(extra_json_schema={"minimum": 0})]
@@ -37,6 +43,8 @@ _WORDS: Final = {
     **{"object": "an object", "array": "a list", "str": "a text", "bool": "true or false"},
     **{"float": "a number", "int": "a whole number"},
 }
+_OUT_OF_RANGE: Final = re.compile("(Number|Integer value) out of range")
+_MOST_DIGITS: Final = 4000
 _STEP: Final = re.compile(r"\[(\d+)\]|(\.\.\.|[^.\[\]]+)")
 
 
@@ -77,7 +85,7 @@ def parsed(content: bytes, kind: type[Document]) -> Document:
         try:
             return msgspec.json.decode(content, type=kind)
         except msgspec.ValidationError as error:
-            raise ValueError(_fault(error, json.loads(content))) from error
+            raise ValueError(_fault(error, json.loads(content, parse_int=_whole))) from error
     except RecursionError:
         raise ValueError("expected a JSON document, got brackets nested too deeply") from None
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
@@ -95,14 +103,21 @@ def converted(value: Any, kind: type[Document]) -> Document:
 def read(file: Path, kind: type[Document]) -> Document:
     """Read a file as a document of a type. Raises OSError, and ValueError that names the file."""
     try:
-        return parsed(file.read_bytes(), kind)
+        return parsed(bounded_bytes(file, "a stored document", DOCUMENT), kind)
+    except Refused:
+        raise
     except ValueError as error:
         raise ValueError(f"{error} @ {file}") from error
 
 
+def _whole(text: str) -> int | str:
+    """Return a whole number, which Python makes of no more than 4300 digits."""
+    return int(text) if len(text) <= _MOST_DIGITS else f"a number of {len(text)} digits"
+
+
 def _fault(error: msgspec.ValidationError, document: Any) -> str:
     """Return the fault in the form of this project: expected ..., got ... @ place."""
-    text = str(error).replace("Number out of range", "Expected a finite number")
+    text = _OUT_OF_RANGE.sub("Expected a finite number", str(error))
     text = re.sub("Invalid enum value '.*?'", "Expected a word that is known here", text)
     match = _PLACE.search(text)
     expectation = (text[: match.start()] if match else text).partition(", got ")[0]

@@ -7,6 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Final
+
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.limit import Limit
+from taylor_verify.records.regular_file import regular_file
+
+_ANY_SIZE: Final = Limit(2**40, "bytes", "only the first line is read")
+_LONGEST_LINE: Final = 4096
 
 
 def replace_files(
@@ -58,6 +66,9 @@ def _made(folder: Path) -> Iterator[None]:
 
 
 def first_line(file: Path) -> str:
-    """Return the line in which a generated file names its maker."""
-    with file.open(encoding="utf-8", errors="replace") as lines:
-        return lines.readline().rstrip("\n")
+    """Return the line in which a generated file names its maker; empty for what cannot be read."""
+    try:
+        with regular_file(file, "a generated file", _ANY_SIZE) as opened:
+            return opened.readline(_LONGEST_LINE).decode(errors="replace").rstrip("\n")
+    except Refused:
+        return ""

@@ -3,6 +3,7 @@
     verdicts.json   every verdict, one a line, and the digest of each scene's text; the same on any
                     machine that computes the same;
                     shifts of time of failed gates alone: a passed one has them of its roundings
+    verdicts.sha256 its sum, which `publish` asks before it makes pages
     timings.json    seconds of every run; Python, processor and command of every machine
     records/        one file a run: the equations built and every sample's error; of which verdicts
                     they are, verdicts.sha256 says
@@ -16,23 +17,27 @@ import hashlib
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
 from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.json_text import DOCUMENT, complete, read
 from taylor_verify.records.record import Record
+from taylor_verify.records.regular_file import bounded_bytes
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.runs import Run, runs
+from taylor_verify.records.soundness import check_rows
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, read_row
 
 FOLDER: Final = "data"
 VERDICTS: Final = "verdicts.json"
 TIMINGS: Final = "timings.json"
+SUM: Final = "verdicts.sha256"
 RECORDS: Final = "records"
 STAMP: Final = f"{RECORDS}/verdicts.sha256"
 
@@ -41,6 +46,8 @@ _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 _MACHINE = ("processor", "command")
 _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 _RUN = ("scene", "solver", "setting", "rung")
+
+_Timed = Mapping[tuple[Any, ...], Mapping[str, Any]]
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
 # A number of Python takes some hundred bytes with its text.
@@ -65,7 +72,8 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     texts: dict[str, str | Iterator[str]] = {
         **_record_texts(records),
         TIMINGS: laid_out({**_MADE_BY, **_timings(ordered_runs)}),
-        STAMP: _stamp(text.encode()),
+        STAMP: _sum(text.encode(), f"../{VERDICTS}"),
+        SUM: _sum(text.encode(), VERDICTS),
         VERDICTS: text,
     }
     return replace_files(data, texts, stale=_own_records(data))
@@ -79,17 +87,28 @@ def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
     """
     data = folder / FOLDER
     stale = [] if has_own_records(folder) else _own_records(data)
-    stamp = {STAMP: _stamp((data / VERDICTS).read_bytes())}
+    stamp = {STAMP: _sum(_stored_bytes(data / VERDICTS), f"../{VERDICTS}")}
     return replace_files(data, {**_record_texts(records), **stamp}, stale=stale)
 
 
 def has_own_records(folder: Path) -> bool:
     """Return True unless the records in ``folder``/data say that they are those of other verdicts."""
-    data = folder / FOLDER
-    stamp = data / STAMP
-    if not stamp.exists():
+    return _agrees(folder / FOLDER, STAMP, f"../{VERDICTS}")
+
+
+def are_edited(folder: Path) -> bool:
+    """Return True if the verdicts in ``folder``/data are not those that their SHA-256 was made of.
+
+    Data of earlier versions have none. Raises OSError.
+    """
+    return not _agrees(folder / FOLDER, SUM, VERDICTS)
+
+
+def _agrees(data: Path, stated: str, named: str) -> bool:
+    file = data / stated
+    if not file.exists():
         return True
-    return stamp.read_text("utf-8") == _stamp((data / VERDICTS).read_bytes())
+    return _stored_bytes(file) == _sum(_stored_bytes(data / VERDICTS), named).encode()
 
 
 def record_name(scene: str, solver: str, rung: str) -> str:
@@ -105,14 +124,37 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     ValueError for files that hold something else. Timings may be missing.
     """
     file = folder / FOLDER / VERDICTS
-    stored = read_document(file)
-    timed = _timed(folder / FOLDER / TIMINGS)
-    with expecting("verdicts", file):
-        same, digests = stored["versions"], stored.get("scenes", {})
-        return tuple(
-            with_digest(verdict(row, same, timed.get(_key(row), {})), digests)
-            for row in stored["verdicts"]
-        )
+    stored, timed = read(file, _Verdicts), _timed(folder / FOLDER / TIMINGS)
+    try:
+        placed = dict(_placed(stored, timed))
+        check_rows(placed)
+    except ValueError as error:
+        raise ValueError(f"{error} @ {file}") from error
+    return tuple(placed.values())
+
+
+@dataclass(frozen=True)
+class _Verdicts:
+    """The document of verdicts; its rows are read one by one, each with its timing."""
+
+    versions: dict[str, str]
+    verdicts: tuple[dict[str, Any], ...]
+    scenes: dict[str, str] = field(default_factory=dict)
+
+
+def _placed(stored: _Verdicts, timed: _Timed) -> Iterator[tuple[str, Verdict]]:
+    for place, row in enumerate(stored.verdicts):
+        try:
+            read = verdict(row, stored.versions, timed.get(_key(row), {}))
+        except ValueError as error:
+            raise ValueError(_within(str(error), f"verdicts[{place}]")) from error
+        yield f"verdicts[{place}]", with_digest(read, stored.scenes)
+
+
+def _within(fault: str, place: str) -> str:
+    """Return a fault of a row with the place of the row in its document."""
+    said, _, inner = fault.partition(" @ ")
+    return f"{said} @ {place}" + (f".{inner}" if inner and inner != "the document" else "")
 
 
 def with_digest(verdict: Verdict, digests: Mapping[str, str]) -> Verdict:
@@ -210,9 +252,9 @@ def _pieces_of(record: Record) -> Iterator[str]:
     return _pieces({**_MADE_BY, **vars(record), "gates": gates})
 
 
-def _stamp(verdicts: bytes) -> str:
-    """Return the line that `sha256sum --check` reads beside the records."""
-    return f"{hashlib.sha256(verdicts).hexdigest()}  ../{VERDICTS}\n"
+def _sum(verdicts: bytes, named: str) -> str:
+    """Return the line that `sha256sum --check` reads, with the name of the file from its own place."""
+    return f"{hashlib.sha256(verdicts).hexdigest()}  {named}\n"
 
 
 def _own_records(data: Path) -> list[Path]:
@@ -288,26 +330,52 @@ def _encoded(value: Any, encoder: json.JSONEncoder) -> str:
 # Reading.
 
 
+def _stored_bytes(file: Path) -> bytes:
+    try:
+        return bounded_bytes(file, "a stored document", DOCUMENT)
+    except Refused as refused:
+        raise ValueError(str(refused)) from None
+
+
 def read_document(file: Path) -> dict[str, Any]:
     """Return the JSON object in a file; ValueError, with the file, for anything else."""
     return read(file, dict[str, Any])
 
 
-def _timed(file: Path) -> dict[tuple[str, ...], dict[str, Any]]:
+@dataclass(frozen=True)
+class _Timing:
+    scene: str
+    solver: str
+    setting: str
+    rung: str
+    seconds: float | None
+    machine: int
+
+
+@dataclass(frozen=True)
+class _Timings:
+    """The document of timings: each run's seconds, and the place of its machine in a list of them."""
+
+    machines: tuple[dict[str, Any], ...]
+    timings: tuple[_Timing, ...]
+
+
+def _timed(file: Path) -> _Timed:
     """Return each run's seconds and machine; nothing where there is no such file."""
     if not file.exists():
         return {}
-    stored = read_document(file)
-    with expecting("timings", file):
-        machines = stored["machines"]
-        return {
-            _key(timing): {"seconds": timing["seconds"], "machine": machines[timing["machine"]]}
-            for timing in stored["timings"]
-        }
+    stored, timed = read(file, _Timings), dict[tuple[Any, ...], dict[str, Any]]()
+    for place, timing in enumerate(stored.timings):
+        if not 0 <= timing.machine < len(stored.machines):
+            expected = f"expected one of {len(stored.machines)} machines, got {timing.machine}"
+            raise ValueError(f"{expected} @ timings[{place}].machine @ {file}")
+        machine = stored.machines[timing.machine]
+        timed[_key(vars(timing))] = {"seconds": timing.seconds, "machine": machine}
+    return timed
 
 
-def _key(row: Mapping[str, Any]) -> tuple[str, ...]:
-    return tuple(row[name] for name in _RUN)
+def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
+    return tuple(row.get(name) for name in _RUN)
 
 
 def verdict(

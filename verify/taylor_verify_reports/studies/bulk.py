@@ -38,7 +38,7 @@ def _tables_lacking(report: Published) -> list[tuple[str, str]]:
 
 
 def _holds(file: Path, text: str) -> bool:
-    return file.exists() and file.read_text(encoding="utf-8") == text
+    return file.is_file() and file.read_text(encoding="utf-8") == text
 
 
 _TABLES: Final = Bulk(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,6 +25,8 @@ _PAGES_OF_NO_STUDY = (
     ),
 )
 
+_CAUTION = f"**These numbers were edited**: `{store.VERDICTS}` is not what a run has written."
+
 
 def publish(folder: Path | str) -> list[Path]:
     """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
@@ -36,6 +39,7 @@ def publish(folder: Path | str) -> list[Path]:
     verdicts = store.load(place)
     texts = {name: text for study in STUDIES for name, text in study.pages(place).items()}
     texts |= index(place, verdicts, entries(place, texts))
+    texts = _with_caution(place, texts)
     written = replace_files(place, texts, stale=_own_tables(place / "tables"))
     return [*written, *_requote(place, verdicts)]
 
@@ -47,8 +51,20 @@ def publish_index(folder: Path | str) -> list[Path]:
     """
     place = Path(folder)
     verdicts = store.load(place)
-    texts = index(place, verdicts, entries(place))
+    texts = _with_caution(place, index(place, verdicts, entries(place)))
     return [*replace_files(place, texts), *_requote(place, verdicts)]
+
+
+def _with_caution(place: Path, texts: Mapping[str, str]) -> dict[str, str]:
+    """Return the pages, each with a sentence under its title if the verdicts were edited."""
+    if not store.are_edited(place):
+        return dict(texts)
+    return {
+        name: re.sub("^# .*$", rf"\g<0>\n\n{_CAUTION}", text, count=1, flags=re.MULTILINE)
+        if name.endswith(".md")
+        else text
+        for name, text in texts.items()
+    }
 
 
 def entries(place: Path, made: Collection[str] = ()) -> list[Page]:

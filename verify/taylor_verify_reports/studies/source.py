@@ -65,6 +65,13 @@ class Report:
         """Return the runs of one scene."""
         return [run for run in self.runs if run.scene == scene]
 
+    def main_runs_of(self, scene: str) -> list[Run]:
+        """Return the runs of one scene by our own solver, or else by the first that it was given to."""
+        all_runs = self.runs_of(scene)
+        first = min(all_runs, key=lambda run: run.solver != _SOLVER)
+        solver = (first.solver, first.setting)
+        return [run for run in all_runs if (run.solver, run.setting) == solver]
+
     def portrait(self, scene: str) -> Document | None:
         """Return the portrait of a scene; None if it is not stored."""
         return PORTRAITS.find(self.folder, scene)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of
 from taylor_verify.cli.folders import alone_in, writable
 from taylor_verify.cli.progress import advancing, working
 from taylor_verify.cli.streams import say
@@ -23,6 +23,8 @@ _TIME: Final = "one to three minutes for all of them on two cores"
 _ARCHIVE: Final = "taylor-verify-data"
 # The options that do not measure a study.
 _OTHERS: Final = ("list", "pages", "paper", "missing", "archive", "site")
+# Options whose pages and files cannot say that verdicts were edited.
+_UNCAUTIONED: Final = ("paper", "missing", "archive", "site")
 
 
 help = "write what the project publishes: measure studies, or make pages of what is stored"
@@ -47,6 +49,11 @@ def add(verb: argparse.ArgumentParser) -> None:
         help="the folder of what is published; default: `reports` of the checkout you are in",
     )
     made = verb.add_mutually_exclusive_group()
+    verb.add_argument(
+        "--edited",
+        action="store_true",
+        help="make pages of verdicts that were changed since a run wrote them; every page says so",
+    )
     made.add_argument("--list", action="store_true", help="list the studies, and do nothing else")
     made.add_argument(
         "--pages", action="store_true", help="make all pages of what is stored (the default)"
@@ -86,7 +93,7 @@ def run(options: argparse.Namespace) -> Answer:
     try:
         studies = find(options.studies)
     except UnknownStudy as error:
-        raise WrongCall(str(error)) from error
+        raise WrongCall(*lines_of(error)) from error
     other = next((name for name in _OTHERS if getattr(options, name)), "")
     if studies and other:
         raise WrongCall(f"expected studies or --{other}, got both @ publish")
@@ -94,6 +101,7 @@ def run(options: argparse.Namespace) -> Answer:
     if other == "list":
         return _listed(STUDIES)
     folder = Path(reports_folder(options.folder, any(study.name != "gallery" for study in studies)))
+    _check_sum(folder, options)
     if other == "site":
         return _site(folder, writable(options.site, "--site"))
     if other == "archive":
@@ -111,10 +119,26 @@ def run(options: argparse.Namespace) -> Answer:
         return _rendered(folder) if other == "paper" else _pages(folder)
 
 
+def _check_sum(folder: Path, options: argparse.Namespace) -> None:
+    """Raise WrongCall for verdicts that were edited, unless they are measured anew or that is said."""
+    from taylor_verify.records import store
+
+    if options.edited and any(getattr(options, name) for name in _UNCAUTIONED):
+        raise WrongCall("expected --edited for pages alone, got it beside another option @ publish")
+    if options.edited or "accuracy" in options.studies:
+        return
+    with _wrong_calls(folder, ""):
+        if store.are_edited(folder):
+            raise WrongCall(
+                f"expected the verdicts that a run has written, got others than {store.SUM} is made of "
+                f"@ {folder / store.FOLDER / store.VERDICTS} (`publish --edited` makes pages that say so)"
+            )
+
+
 def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:
     """Raise WrongCall for words that look like options and are none, with the nearest that is one."""
     own = (option.name for study in studies for option in study.options)
-    known = [f"--{name}" for name in (*_OTHERS, "from", "json", "help", *own)]
+    known = [f"--{name}" for name in (*_OTHERS, "from", "edited", "json", "help", *own)]
     # A study behind two hyphens is left to `find`, which says how it is written.
     named = {f"--{study.name}" for study in studies}
     given = [word.partition("=")[0] for word in words if word.startswith("-")]
@@ -122,7 +146,7 @@ def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:
         f"expected an option, got {w}; {hint(w, known)} @ publish" for w in given if w not in named
     ]
     if faults:
-        raise WrongCall("\n".join(faults))
+        raise WrongCall(*faults)
 
 
 def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) -> dict[str, Any]:

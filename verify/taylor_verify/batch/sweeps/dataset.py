@@ -1,12 +1,16 @@
 """The rows of a sweep on disk: a Parquet dataset of one file a chunk, and what they are the answer to.
 
-A part is written whole or not at all. Whatever ends a sweep, the parts that are there are finished, and
-those that are not are judged again: nothing is lost, and nothing is done twice.
+A part is written whole or not at all, and carries the numbers of its bodies and the sum of its rows.
+Whatever ends a sweep, the parts that are there are finished, and those that are not, or that were damaged
+since, are judged again: nothing is lost, and nothing is done twice.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
+import logging
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
@@ -16,7 +20,12 @@ from typing import Any, Final
 from taylor_verify.batch.sweeps.chunk import COLUMNS, Columns
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete, read
+from taylor_verify.records.limit import Limit
+from taylor_verify.records.regular_file import regular_file
 from taylor_verify.records.replacement import replace_files
+
+_log = logging.getLogger(__name__)
+_PART: Final = Limit(2**28, "bytes", "a thousand bodies take a megabyte")
 
 MANIFEST: Final = "sweep.json"
 TEMPLATE: Final = "template.toml"
@@ -101,8 +110,8 @@ class Dataset:
         replace_files(self.folder, {**texts, MANIFEST: document})
 
     def finished(self) -> set[int]:
-        """Return the numbers of the parts that are there, each whole."""
-        return {number for number in range(self.parts) if self._is_whole(number)}
+        """Return the numbers of the parts that are there, each as it was written."""
+        return {number for number in range(self.parts) if self._is_sound(number)}
 
     def write(self, number: int, columns: Columns) -> None:
         """Write a part in one step. Raises OSError."""
@@ -110,7 +119,7 @@ class Dataset:
 
         content = BytesIO()
         parquet.write_table(
-            table(columns),
+            self._signed(number, table(columns)),
             content,
             compression="zstd",
             use_dictionary=[name for name in _REPEATED if name in columns],
@@ -119,19 +128,36 @@ class Dataset:
 
     def tables(self, columns: Sequence[str]) -> Iterator[Any]:
         """Yield the parts in their order, each a table of pyarrow with these columns."""
+        for number in range(self.parts):
+            yield self._read(number, columns)
+
+    def _read(self, number: int, columns: Sequence[str] | None = None) -> Any:
         from pyarrow import parquet
 
-        for number in range(self.parts):
+        with regular_file(self._file(number), "a part of a sweep", _PART) as file:
             # Threads would save nothing on parts of this size.
-            yield parquet.read_table(self._file(number), columns=list(columns), use_threads=False)
+            return parquet.ParquetFile(file).read(columns, use_threads=False)
 
-    def _is_whole(self, number: int) -> bool:
-        from pyarrow import ArrowException, parquet
+    def _is_sound(self, number: int) -> bool:
+        """Return True for a part that holds its bodies as they were judged; a damaged one is told."""
+        from pyarrow import ArrowException
 
-        try:
-            return bool(parquet.read_metadata(self._file(number)).num_rows)
-        except (ArrowException, OSError):
+        if not os.path.lexists(self._file(number)):
             return False
+        try:
+            rows = self._read(number)
+            if self._signed(number, rows).schema.metadata == rows.schema.metadata:
+                return True
+        except (ArrowException, OSError, ValueError, Refused):
+            pass
+        _log.warning("taylor-verify: warning: damaged, and run again: %s", self._name(number))
+        return False
+
+    def _signed(self, number: int, rows: Any) -> Any:
+        """Return the rows of a part with the numbers of its bodies and their sum beside them."""
+        first = number * self.manifest.chunk
+        bodies = f"{first} to {min(first + self.manifest.chunk, self.manifest.total) - 1}"
+        return rows.replace_schema_metadata({"bodies": bodies, "sha256": _sum(rows)})
 
     def _file(self, number: int) -> Path:
         return self.rows / self._name(number)
@@ -139,6 +165,14 @@ class Dataset:
     @staticmethod
     def _name(number: int) -> str:
         return f"part-{number:06d}.parquet"
+
+
+def _sum(rows: Any) -> str:
+    """Return the SHA-256 of the rows, column by column, each number to the last bit."""
+    digest = hashlib.sha256()
+    for name in rows.column_names:
+        digest.update(repr((name, rows.column(name).to_pylist())).encode())
+    return digest.hexdigest()
 
 
 def table(columns: Columns) -> Any:

@@ -16,7 +16,7 @@ from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.library import family, is_family
 from taylor_verify.scenes.families.reading import MOST_POINTS, load_family
 from taylor_verify.scenes.library import find, named
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, text_of
 from taylor_verify.scenes.scene import Scene
 
 COUNT: Final = 100
@@ -160,7 +160,7 @@ class Listed:
 
     def text(self, number: int) -> str:
         """Return the scene file of one number."""
-        return find(self.files[number]).read_text(encoding="utf-8-sig")
+        return text_of(find(self.files[number]))
 
 
 Questions = Drawn | Listed

@@ -25,6 +25,8 @@ VECTOR: Final = 3.0
 ATTITUDE: Final = 4.0
 # A quantity is wrong if its error is this many times the rounding of the file.
 _WRONG: Final = 30.0
+# The search itself is no better.
+_ARITHMETIC: Final = 1e-12
 _SAME_START: Final = 10.0
 
 
@@ -71,8 +73,14 @@ class Answer:
     places: Places
     decimals: int | None = None
     own_attitudes: Floats | None = None
-    scene: Scene | None = None
     begins: float = 0.0
+    scene: Scene | None = None
+
+    @property
+    def has_states(self) -> bool:
+        """True if the scene has states of its own, which no row of the search has."""
+        loads = None if self.scene is None else self.scene.body.loads
+        return loads is not None and bool(loads.states or any(loads.rotor))
 
     @property
     def n(self) -> int:
@@ -158,7 +166,7 @@ class Answer:
             name
             for name, error in self.error.items()
             if self.quantity(name) in self.quantities
-            and np.max(error) > _WRONG * self.roundings[name]
+            and np.max(error) > max(_WRONG * self.roundings[name], _ARITHMETIC)
         )
 
     @property

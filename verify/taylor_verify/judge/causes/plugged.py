@@ -7,45 +7,39 @@ what was changed. ``answer`` is a dict of arrays: the times and the quantities o
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.route import solution
-from taylor_verify.judge.causes.answer import Answer, Motion
+from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.records.plugins import Plugin, plugins
 from taylor_verify.scenes.scene import Scene
 
 # At most this part of the error of each failed quantity is left by a cause.
 _PROVEN: Final = 1e-3
 _MOST: Final = 20
-_DIGITS: Final = 20
 _log = logging.getLogger(__name__)
 
 
-def plugged_causes(answer: Answer, motion_of: Callable[[Scene, Any], Motion]) -> list[Cause]:
-    """Return the causes among the candidates of other packages; ``motion_of`` forms rows of a truth."""
+def plugged_causes(answer: Answer) -> list[Cause]:
+    """Return the causes among the candidates of other packages."""
     scene = answer.scene
     if scene is None:
         return []
-    causes = [
-        cause for plugin in plugins("causes") for cause in _of(plugin, scene, answer, motion_of)
-    ]
+    causes = [cause for plugin in plugins("causes") for cause in _of(plugin, scene, answer)]
     return sorted(causes, key=lambda cause: max(cause.leaves.values()))
 
 
-def _of(
-    plugin: Plugin, scene: Scene, answer: Answer, motion_of: Callable[[Scene, Any], Motion]
-) -> Iterator[Cause]:
+def _of(plugin: Plugin, scene: Scene, answer: Answer) -> Iterator[Cause]:
     """Yield the proven causes of one package; an error of its code is a line of the log."""
     try:
         candidates = plugin.content.candidates(scene, shown(answer))
         for _, changed in zip(range(_MOST), candidates, strict=False):
-            leaves = _leaves(changed, answer, motion_of)
+            leaves = _leaves(changed, answer)
             if leaves and max(leaves.values()) <= _PROVEN:
                 yield Cause(changed.title, f"{plugin.name} {plugin.origin}", leaves)
     except Exception as error:  # other people's code
@@ -62,14 +56,11 @@ def shown(answer: Answer) -> dict[str, Any]:
     return {"t": answer.times, **rows, **{n: r for n, r in others.items() if r is not None}}
 
 
-def _leaves(
-    changed: Scene, answer: Answer, motion_of: Callable[[Scene, Any], Motion]
-) -> dict[str, float]:
+def _leaves(changed: Scene, answer: Answer) -> dict[str, float]:
     """Return the part of the error of each failed quantity that the exact motion of a scene leaves."""
-    track = changed.track | {"attitude"} | ({"centre"} if answer.file.c is not None else set())
-    exact = solution(replace(changed, track=frozenset(track)))
-    motion = exact.evaluate([Fraction(t) for t in answer.times.tolist()], _DIGITS)
-    errors = answer.errors(motion_of(changed, motion))
+    exact = ExactMotion(changed, answer.file.c is not None)
+    elapsed = [Fraction(t) for t in answer.times.tolist()]
+    errors = answer.errors(exact.at(elapsed, answer.right.has_momenta))
     return {
         name: float(np.max(error)) / answer.worst[name]
         for name, error in errors.items()

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.faults import Faults, Refused, shown
+from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes.families.cube import Spread
 from taylor_verify.scenes.families.family import Family, Variable
 from taylor_verify.scenes.families.formula import Formula, words
@@ -20,7 +21,6 @@ from taylor_verify.scenes.families.rules import KINDS, UNIT, rule
 from taylor_verify.scenes.families.toml_text import toml
 from taylor_verify.scenes.families.trial import place_of, trial_faults
 from taylor_verify.scenes.reading.reader import MOST_BYTES, parsed
-from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table
 
 SWEEP: Final = "sweep"

@@ -1,24 +1,18 @@
-"""An XML document as a tree of nodes, of bounded size and depth.
-
-A document type is refused where it begins: it could name other files, and entities that grow a
-thousandfold. Nothing but the one file is ever opened.
-"""
+"""An XML document as a tree of nodes, of bounded size and depth."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
-from xml.parsers import expat
 
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.limit import Limit
-from taylor_verify.scenes.reading.regular_file import read_bytes
+from taylor_verify.records.markup import Markup
+from taylor_verify.records.regular_file import regular_file
 
 MOST_BYTES: Final = Limit(2**24, "bytes", "a description of a robot has its meshes in other files")
 MOST_ELEMENTS: Final = Limit(200_000, "elements", "a robot of a thousand links has a fifth of them")
-DEEPEST: Final = Limit(200, "elements inside each other", "the longest chain of bodies is shorter")
 
 
 @dataclass
@@ -56,48 +50,27 @@ def read_document(path: Path) -> Node:
 
     Raises Refused for a text that is no XML, has a document type, or is too large or too deep.
     """
-    content = read_bytes(path, "a readable URDF, SDF or MJCF file", MOST_BYTES)
-    return _Builder(path).root(content)
+    tree = _Tree(path, MOST_ELEMENTS)
+    with regular_file(path, "a readable URDF, SDF or MJCF file", MOST_BYTES) as file:
+        tree.read(file)
+    # A document without an element is no XML.
+    return tree.open[0].children[0]
 
 
-class _Builder:
-    """Builder of nodes from the events of the parser."""
+class _Tree(Markup):
+    """Builder of nodes; ``open`` are the open nodes, below a node that holds the root."""
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        # The open nodes, below a node that holds the root.
-        self._open = [Node("", {}, 0)]
-        self._elements = 0
-        self._parser = expat.ParserCreate()
-        self._parser.buffer_text = True
-        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
-        self._parser.StartElementHandler = self._begin
-        self._parser.EndElementHandler = lambda name: self._open.pop()
-        self._parser.CharacterDataHandler = lambda text: self._open[-1].pieces.append(text)
+    def __init__(self, path: Path, elements: Limit) -> None:
+        super().__init__(path, elements)
+        self.open = [Node("", {}, 0)]
 
-    def root(self, content: bytes) -> Node:
-        try:
-            self._parser.Parse(content, True)  # noqa: FBT003 (Parse has no names)
-        except Refused:
-            raise
-        except (expat.ExpatError, LookupError, ValueError) as error:
-            line = f"expected an XML document, got a fault in it: {error} @ {self._path}"
-            raise Refused([line]) from None
-        # expat refuses a document without an element.
-        return self._open[0].children[0]
+    def begin(self, name: str, attributes: Mapping[str, str]) -> None:
+        node = Node(name, dict(attributes), self.line)
+        self.open[-1].children.append(node)
+        self.open.append(node)
 
-    def _refuse_doctype(self, name: str, *rest: object) -> None:
-        line = self._parser.CurrentLineNumber
-        expected = (
-            "XML without a document type, which could name other files and entities without end"
-        )
-        raise Refused([f"expected {expected}, got <!DOCTYPE {name:.60}> @ {self._path}:{line}"])
+    def text(self, text: str) -> None:
+        self.open[-1].pieces.append(text)
 
-    def _begin(self, name: str, attributes: dict[str, str]) -> None:
-        self._elements += 1
-        line = self._parser.CurrentLineNumber
-        DEEPEST.check(len(self._open), f"{self._path}:{line}")
-        MOST_ELEMENTS.check(self._elements, f"{self._path}:{line}")
-        node = Node(name, attributes, line)
-        self._open[-1].children.append(node)
-        self._open.append(node)
+    def end(self, name: str) -> None:
+        self.open.pop()

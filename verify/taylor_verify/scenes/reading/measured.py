@@ -10,7 +10,7 @@ from typing import Final
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.limit import Limit
-from taylor_verify.scenes.reading.regular_file import read_bytes
+from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes.reading.table import Table, complete, exact_number
 
 _MOST_BYTES: Final = Limit(2**22, "bytes", "ten thousand rows of many columns")

@@ -20,19 +20,19 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import Faults, Refused, cut, near, shown
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
+from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.names import escaped
+from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.loads import immersed_loads, loaded, rigid_loads
 from taylor_verify.scenes.reading.manufactured import manufactured
-from taylor_verify.scenes.reading.regular_file import read_bytes
 from taylor_verify.scenes.reading.states import own_states
 from taylor_verify.scenes.reading.table import Table
 from taylor_verify.scenes.scene import Scene
@@ -83,13 +83,17 @@ def load(scene: str | os.PathLike[str]) -> Scene:
     at once, each as ``expected ..., got ... @ body.inertia[1]``.
     """
     file = library.find(scene)
+    return read(text_of(file), str(scene), file.parent)
+
+
+def text_of(file: Path) -> str:
+    """Return the text of a scene file. Raises Refused for one that cannot be read."""
     content = read_bytes(file, "a readable scene file", MOST_BYTES)
     try:
-        text = content.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         reason = "bytes that are not UTF-8"
         raise Refused([f"expected a readable scene file, got {reason!r} @ {file}"]) from None
-    return read(text, str(scene), file.parent)
 
 
 def as_scene(scene: Scene | str | os.PathLike[str]) -> Scene:
@@ -117,7 +121,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     if faults.lines or body is None or initial is None or time is None:
         raise Refused(faults.lines)
     return Scene(
-        name=escaped(name),
+        name=one_line(name),
         title=title,
         model=model.name,
         track=track - own,

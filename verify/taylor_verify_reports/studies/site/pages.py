@@ -185,7 +185,7 @@ def _scenes(report: Report) -> str:
 
 def _scene_row(report: Report, scene: str) -> list[str]:
     """Return the row of a scene in the list of scenes."""
-    runs = {run.rung: run for run in report.runs_of(scene) if run.solver == "taylor"}
+    runs = {run.rung: run for run in report.main_runs_of(scene)}
     about = report.portrait(scene) or next(iter(report.records(scene).values()), {})
     most = worst(verdict for run in runs.values() for verdict in run.state)
     return [

@@ -4,28 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from mmap import ACCESS_READ, mmap
 from pathlib import Path
-from typing import BinaryIO, Final
-from xml.etree import ElementTree
+from typing import Final
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
-from taylor_verify.solvers.files.formats.column import ROWS
+from taylor_verify.records.markup import Markup
+from taylor_verify.solvers.files.formats.column import ELEMENTS, ROWS
+from taylor_verify.solvers.files.formats.content import Content
 
 QUATERNION: Final = ("Q1", "Q2", "Q3", "QC")
 DERIVATIVE: Final = ("Q1_DOT", "Q2_DOT", "Q3_DOT", "QC_DOT")
 ANGULAR_VELOCITY: Final = ("ANGVEL_X", "ANGVEL_Y", "ANGVEL_Z")
+ANGLES: Final = ("ANGLE_1", "ANGLE_2", "ANGLE_3")
 # What a state holds, in the order of QUATERNION_TYPE = LAST. X_RATE ... are rates of Euler angles.
 _STATES: Final[Mapping[str, tuple[str, ...]]] = {
     "QUATERNION": QUATERNION,
     "QUATERNION/DERIVATIVE": QUATERNION + DERIVATIVE,
     "QUATERNION/RATE": (*QUATERNION, "X_RATE", "Y_RATE", "Z_RATE"),
     "QUATERNION/ANGVEL": QUATERNION + ANGULAR_VELOCITY,
+    "EULER_ANGLE": ANGLES,
+    "EULER_ANGLE/DERIVATIVE": ANGLES + tuple(f"{name}_DOT" for name in ANGLES),
+    "EULER_ANGLE/ANGVEL": ANGLES + ANGULAR_VELOCITY,
 }
 _REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "ATTITUDE_TYPE")
 _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
 _VERSION: Final = "CCSDS_AEM_VERS"
+_METADATA, _STATE = "metadata", "attitudeState"
 # Roots of XML that is no attitude ephemeris.
 _OTHER_MESSAGES: Final = (
     "apm",
@@ -55,7 +60,7 @@ class Segment:
         if missing := [name for name in _REQUIRED if name not in self.metadata]:
             raise refusal(", ".join(_REQUIRED), f"no {', '.join(missing)}", place)
         if self.kind not in _STATES:
-            expected = f"an ATTITUDE_TYPE of quaternions ({', '.join(_STATES)})"
+            expected = f"an ATTITUDE_TYPE of {', '.join(_STATES)}"
             raise refusal(expected, cut(self.kind), place, "write QUATERNION or QUATERNION/ANGVEL")
 
     def add(self, names: Sequence[str], cells: Sequence[str], place: object) -> None:
@@ -70,11 +75,24 @@ class Segment:
     def kind(self) -> str:
         return self.metadata["ATTITUDE_TYPE"].upper()
 
+    @property
+    def is_of_angles(self) -> bool:
+        return self.kind.startswith("EULER_ANGLE")
+
+    def _refuse_angles_by_axis(self, version: str, place: object) -> None:
+        """Refuse angles of version 1: it names them by their axes, and programs write them in turn."""
+        if version.startswith("1") and self.metadata.get("EULER_ROT_SEQ") != "123":
+            expected = "Euler angles of version 2, or EULER_ROT_SEQ = 123"
+            raise refusal(expected, f"version {cut(version)}", place, "write quaternions")
+
     def frame(self, letter: str) -> str:
         return self.metadata[f"REF_FRAME_{letter}"].upper()
 
     def state_names(self, version: str, place: object) -> tuple[str, ...]:
         """Return the order of the values in a line; the scalar is last, but where version 1 says so."""
+        if self.is_of_angles:
+            self._refuse_angles_by_axis(version, place)
+            return ("EPOCH", *_STATES[self.kind])
         default = "" if version.startswith("1") else "LAST"
         where = self.metadata.get("QUATERNION_TYPE", default).upper()
         if where not in ("FIRST", "LAST"):
@@ -90,11 +108,11 @@ class Segment:
 # Text: a `KEYWORD = value` in a line, and blocks of data lines.
 
 
-def in_text(file: BinaryIO, path: Path) -> list[Segment]:
+def in_text(file: Content, path: Path) -> list[Segment]:
     """Return the segments in order; refuse a line that is neither metadata nor a state."""
     version, block, metadata = "", "", dict[str, str]()
     read, names = list[Segment](), tuple[str, ...]()
-    for place, line in _lines(file, path):
+    for place, line in lines_of_message(file, path):
         word, equals, value = (part.strip() for part in line.partition("="))
         if word == "META_START":
             block, metadata = "META", {}
@@ -121,47 +139,59 @@ def in_text(file: BinaryIO, path: Path) -> list[Segment]:
     return read
 
 
-def _lines(file: BinaryIO, path: Path) -> Iterator[tuple[str, str]]:
+def lines_of_message(file: Content, path: Path) -> Iterator[tuple[str, str]]:
     """Yield the lines with their places; blank lines and comments are left out."""
-    number = 0
-    while line := file.readline(_LINE.most + 1):
-        number += 1
-        place = f"{path}, line {number}"
-        _LINE.check(len(line), place)
-        try:
-            text = line.decode("utf-8-sig").strip()
-        except UnicodeDecodeError:
-            raise refusal("text in UTF-8", "other bytes", place) from None
+    for number, line in enumerate(file.lines(_LINE), start=1):
+        text = line.strip()
         if text and text.split(maxsplit=1)[0] != "COMMENT":
-            yield place, text
+            yield f"{path}, line {number}", text
 
 
-# XML: no entity is declared in such a file, and none is expanded.
+# XML.
 
 
-def in_xml(file: BinaryIO, path: Path) -> list[Segment]:
+def in_xml(file: Content, path: Path) -> list[Segment]:
     """Return the segments in order, each state read and forgotten before the next one."""
-    with mmap(file.fileno(), 0, access=ACCESS_READ) as content:
-        if content.find(b"<!DOCTYPE") >= 0 or content.find(b"<!ENTITY") >= 0:
-            raise refusal("XML without a DOCTYPE", "one", path)
-    read: list[Segment] = []
-    try:
-        for event, element in ElementTree.iterparse(file, ("start", "end")):
-            tag, place = _tag(element), f"{path}, segment {len(read)}"
-            if event == "start":
-                if tag in _OTHER_MESSAGES:
-                    raise refusal("an attitude ephemeris (<aem>)", f"<{tag}>", path)
-            elif tag == "metadata":
-                read.append(Segment(_texts(element)))
-                read[-1].check(f"{path}, segment {len(read)}")
-            elif tag == "attitudeState":
-                if not read:
-                    raise refusal("metadata before the states", "none", path)
-                _add(read[-1], _texts(element), place)
-                element.clear()
-    except ElementTree.ParseError as error:
-        raise refusal("XML", f"a fault in it: {error}", path) from None
-    return read
+    message = _Message(path, ELEMENTS)
+    message.read(file.binary)
+    return message.segments
+
+
+class _Message(Markup):
+    """The segments of a message: an element of metadata or of a state is read where it ends."""
+
+    def __init__(self, path: Path, elements: Limit) -> None:
+        super().__init__(path, elements)
+        self.segments: list[Segment] = []
+        # The texts of the elements since the last one that was read, and that of the open element.
+        self._texts: dict[str, str] = {}
+        self._text = ""
+
+    def begin(self, name: str, attributes: Mapping[str, str]) -> None:
+        del attributes
+        tag = _local(name)
+        if tag in _OTHER_MESSAGES:
+            raise refusal("an attitude ephemeris (<aem>)", f"<{tag}>", self.path)
+        if tag in (_METADATA, _STATE):
+            self._texts = {}
+        self._text = ""
+
+    def text(self, text: str) -> None:
+        self._text += text
+        _LINE.check(len(self._text), self.place)
+
+    def end(self, name: str) -> None:
+        tag = _local(name)
+        if tag == _METADATA:
+            self.segments.append(Segment(self._texts))
+            self.segments[-1].check(f"{self.path}, segment {len(self.segments)}")
+        elif tag == _STATE and not self.segments:
+            raise refusal("metadata before the states", "none", self.path)
+        elif tag == _STATE:
+            _add(self.segments[-1], self._texts, f"{self.path}, segment {len(self.segments)}")
+        elif text := self._text.strip():
+            self._texts[tag] = text
+        self._text = ""
 
 
 def _add(segment: Segment, texts: Mapping[str, str], place: str) -> None:
@@ -173,11 +203,6 @@ def _add(segment: Segment, texts: Mapping[str, str], place: str) -> None:
     segment.add(names, [texts[name] for name in names], place)
 
 
-def _texts(element: ElementTree.Element) -> dict[str, str]:
-    return {
-        _tag(part): part.text.strip() for part in element.iter() if part.text and part.text.strip()
-    }
-
-
-def _tag(element: ElementTree.Element) -> str:
-    return element.tag.rpartition("}")[2]
+def _local(name: str) -> str:
+    """Return the name of an element without its prefix."""
+    return name.rpartition(":")[2]

@@ -27,6 +27,11 @@ COLUMNS: Final = Limit(
     1000, "columns", "a trajectory has 22, and a logger some hundreds beside them"
 )
 CHARACTERS: Final = Limit(4000, "characters in a number", "beyond them none is read")
+LINE: Final = Limit(2**20, "characters in a line", "a thousand columns of a thousand each")
+LINES: Final = Limit(4_000_000, "lines", "a million rows, and comments between them")
+KEYS: Final = Limit(100_000, "keys and brackets", "a column has one of each")
+CHUNK_BYTES: Final = Limit(2**26, "bytes in a packed part", "writers pack a few megabytes at once")
+ELEMENTS: Final = Limit(4_000_000, "elements", "a state of an ephemeris has ten: ten seconds")
 
 # Entries of a column that are worked on at once.
 CHUNK: Final = 4096

@@ -7,28 +7,31 @@ HDF5 has not built in.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import prod
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
-from taylor_verify.solvers.files.formats.column import COLUMNS, Table
+from taylor_verify.solvers.files.formats.column import CHUNK_BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import unbroken
 
 # Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
-_FILTERS: Final = {1, 2, 3, 4, 5, 6, 32000}
+_PACKING: Final = {1, 4, 5, 6, 32000}
+_FILTERS: Final = {2, 3, *_PACKING}
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the datasets of a group; their declared sizes are checked before any is read."""
     return opened(file, path, lambda content: table(_arrays(content, path), part, path))
 
 
-def opened(file: BinaryIO, path: Path, tabulate: Callable[[Any], Table]) -> Table:
+def opened(file: Content, path: Path, tabulate: Callable[[Any], Table]) -> Table:
     """Return the table that is made of the open file; whatever is broken in it is refused."""
     import h5py
 
-    with unbroken("an HDF5 file", path), h5py.File(file, "r") as content:
+    with unbroken("an HDF5 file", path), h5py.File(file.binary, "r") as content:
         return tabulate(content)
 
 
@@ -76,8 +79,11 @@ def _check_stored(dataset: Any, path: Path) -> None:
     """Refuse a dataset whose numbers are not in this file, or are packed by a foreign filter."""
     place = f"{path}, dataset {cut(dataset.name)}"
     properties = dataset.id.get_create_plist()
-    filters = {properties.get_filter(i)[0] for i in range(properties.get_nfilters())}
+    filters = [properties.get_filter(i)[0] for i in range(properties.get_nfilters())]
     if dataset.is_virtual or dataset.external:
         raise refusal("numbers in this file", "a reference to another", place)
-    if filters - _FILTERS:
-        raise refusal("HDF5's own filters", sorted(filters - _FILTERS), place)
+    if foreign := sorted({*filters} - _FILTERS):
+        raise refusal("HDF5's own filters", foreign, place)
+    if len(packing := [number for number in filters if number in _PACKING]) > 1:
+        raise refusal("numbers that are packed once", f"the filters {packing}", place)
+    CHUNK_BYTES.check(prod(dataset.chunks or ()) * dataset.dtype.itemsize, place)

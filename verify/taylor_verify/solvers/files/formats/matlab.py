@@ -1,4 +1,4 @@
-"""Arrays and structs in a MATLAB file: versions 5 to 7 here, version 7.3 with h5py, because it is HDF5.
+"""Arrays and structs in a MATLAB file: versions 5 to 7 here, 4 beside it, 7.3 with h5py, as it is HDF5.
 
 Nothing but numbers is read: no object is made, no cell is opened, and structs in each other are not deep.
 SciPy reads these files too, and its process dies of one whose cells are nested twenty thousand deep.
@@ -12,14 +12,15 @@ from collections.abc import Iterator
 from functools import partial
 from math import prod
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from taylor_verify.records.faults import cut, refusal
-from taylor_verify.solvers.files.formats import hdf5
+from taylor_verify.solvers.files.formats import hdf5, version4
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
 
 _HEADER: Final = 128
 # The last bytes of the header tell the order of all bytes; those before are the version.
@@ -50,19 +51,20 @@ class _Element(NamedTuple):
 _NO_ELEMENT: Final = _Element(0, memoryview(b""))
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the arrays of a struct, or of the whole file; their sizes are checked first."""
-    header = file.read(_HEADER)
+    header = file.beginning(_HEADER)
     order = _ORDERS.get(header[126:], "")
     version = struct.unpack(f"{order}H", header[124:126])[0] if order else 0
     if version == _HDF5 or header.startswith(b"\x89HDF"):
-        file.seek(0)
         return hdf5.opened(file, path, lambda f: _checked(list(_hdf5_arrays(f, path)), part, path))
+    if version4.is_one(header):
+        return _checked(list(version4.arrays(file.whole(BYTES), path)), part, path)
     if version != _VERSION:
         got = f"one that begins with {header[:10].decode('latin-1')!r}"
-        raise refusal("a MATLAB file of version 5 to 7.3", got, path)
+        raise refusal("a MATLAB file of version 4 to 7.3", got, path)
     try:
-        arrays = list(_Reader(order, path).arrays(file.read()))
+        arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
     except _BROKEN as error:
         raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     return _checked(arrays, part, path)
@@ -179,8 +181,9 @@ class _Reader:
             raise ValueError(f"structs nested more than {_DEEPEST} deep")
         (length,) = struct.unpack_from(f"{self.order}i", _next(parts).data)
         names = _text(_next(parts))
+        COLUMNS.check(prod(shape) * (len(names) // max(length, 1)), self.path)
         fields = [names[i : i + length].partition("\0")[0] for i in range(0, len(names), length)]
-        for row in range(min(prod(shape), COLUMNS.most + 1)):
+        for row in range(prod(shape)):
             group = f"{name}." if prod(shape) == 1 else f"{name}[{row}]."
             for field in fields:
                 yield from self._matrix(next(parts, _NO_ELEMENT), group, field, depth + 1)

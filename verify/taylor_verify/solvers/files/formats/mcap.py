@@ -6,25 +6,28 @@ Chunks are unpacked here and not by the library, which unpacks as much as they c
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
 from io import BytesIO, StringIO
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats import messages
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
-from taylor_verify.solvers.files.formats.messages import Topic
+from taylor_verify.solvers.files.formats.column import BYTES, CHUNK_BYTES, COLUMNS, Table
+from taylor_verify.solvers.files.formats.content import Content
+from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES, Topic
 from taylor_verify.solvers.files.formats.package import unbroken
 
+_OF_NO_SIZE: Final = re.compile(rb"\[[\s<=]*0+\s*\]")
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns of a topic; the file is read twice, first for the topics there are."""
     with unbroken("an MCAP file", path):
         recording = _Recording.of(file, path)
@@ -35,13 +38,13 @@ def read(file: BinaryIO, path: Path, part: str) -> Table:
 class _Recording(NamedTuple):
     """The schemas and channels of an MCAP file by their numbers, and the number of messages by channel."""
 
-    file: BinaryIO
+    file: Content
     schemas: dict[int, Any]
     channels: dict[int, Any]
     counts: Counter[int]
 
     @classmethod
-    def of(cls, file: BinaryIO, path: Path) -> _Recording:
+    def of(cls, file: Content, path: Path) -> _Recording:
         from mcap.records import Channel, Message, Schema
 
         recording = cls(file, {}, {}, Counter())
@@ -76,6 +79,7 @@ class _Recording(NamedTuple):
         }
         for record in _records(self.file, path):
             if isinstance(record, Message) and record.channel_id in decoders:
+                MESSAGE_BYTES.check(len(record.data), path)
                 yield decoders[record.channel_id](record.data)
 
 
@@ -84,6 +88,8 @@ def _decoder(channel: Any, schema: Any, path: Path) -> Callable[[bytes], Any]:
         return _from_json
     from mcap_ros2.decoder import DecoderFactory
 
+    if _OF_NO_SIZE.search(schema.data if schema else b""):
+        raise ValueError("an array of no elements, of which a message could hold any number")
     # It prints a definition that it cannot read before it raises.
     with redirect_stderr(StringIO()):
         decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
@@ -108,24 +114,24 @@ def _from_json(data: bytes) -> Any:
 class _Bounded:
     """A file of which no call reads more than a trajectory file has, whatever a record claims."""
 
-    def __init__(self, file: BinaryIO) -> None:
-        self._file = file
+    def __init__(self, file: Content) -> None:
+        self._file = file.binary
 
     def read(self, size: int) -> bytes:
         return self._file.read(min(size, BYTES.most))
 
 
-def _records(file: BinaryIO, path: Path) -> Iterator[Any]:
+def _records(file: Content, path: Path) -> Iterator[Any]:
     """Yield the records of the file from its beginning, those in chunks among them."""
     from mcap.records import Chunk
     from mcap.stream_reader import StreamReader
 
-    file.seek(0)
     unpacked = 0
     stream: Any = _Bounded(file)
     for record in StreamReader(stream, emit_chunks=True, record_size_limit=BYTES.most).records:
         if isinstance(record, Chunk):
-            data = _unpacked(record, BYTES.most - unpacked + 1)
+            data = _unpacked(record, CHUNK_BYTES.most + 1)
+            CHUNK_BYTES.check(len(data), path)
             unpacked += len(data)
             BYTES.check(unpacked, path)
             yield from _in_chunk(data)

@@ -20,12 +20,14 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table
 
 # A second count that no simulation reaches, and every clock has since 2001.
 _CLOCK: Final = 10**9
 _MOST_LISTED: Final = 20
+MESSAGE_BYTES: Final = Limit(2**20, "bytes in a message", "one that tells a motion has a thousand")
 
 # The path in a message of each group of columns.
 Paths = Mapping[str, str]

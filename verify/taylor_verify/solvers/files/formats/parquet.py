@@ -1,60 +1,129 @@
-"""Columns in a Parquet file, read with pyarrow; those in structs have dotted names."""
+"""Columns in a Parquet file, read with pyarrow; those in structs have dotted names.
+
+A list of numbers in each row is as many columns, numbered from 0, if all lists are equally long. What can
+hold no numbers is not read: a page of text may be a thousand times its size in the file.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections import Counter
+from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, Final
 
-from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
+    VALUES,
     Column,
     Table,
     check_size,
     refuse_part,
 )
+from taylor_verify.solvers.files.formats.content import Content
+
+# A million decimals of sixty characters.
+_TEXT_BYTES: Final = 2**26
 
 
-def read(file: BinaryIO, path: Path, part: str) -> Table:
+def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
     refuse_part(part, path)
     from pyarrow import ArrowException, parquet
 
     try:
-        texts = _checked(parquet.ParquetFile(file), path)
-        table = parquet.ParquetFile(file, read_dictionary=texts).read(use_threads=False)
-    except (MemoryError, Refused):
+        footer = parquet.ParquetFile(file.binary)
+        names, texts, left = _checked(footer, path)
+        long = _long_texts(footer, texts)
+        reader = parquet.ParquetFile(file.binary, read_dictionary=texts)
+        wanted = [name for name in names if name not in long]
+        table = _flat(reader.read(wanted, use_threads=False))
+        _check_texts(table, texts, path)
+        table = _seconds(_without_lists(table, path))
+    except MemoryError:
         raise
     except (ArrowException, OSError, ValueError) as error:
+        if isinstance(error, Refused):
+            raise
         reason = str(error).splitlines()[0]
         raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
-    table = _flat(table)
-    _check_texts(table, texts, path)
-    columns = (table.column(i).to_pylist() for i in range(table.num_columns))
-    return Table(list(map(Column, table.column_names, columns)))
+    columns = [Column(name, _values(table.column(i))) for i, name in enumerate(table.column_names)]
+    notes = [
+        f"not read, because it is longer than numbers are: column {cut(name)}" for name in long
+    ]
+    notes += [f"not read, because they hold no numbers: {cut(', '.join(left))}"] if left else []
+    return Table(columns, tuple(notes))
 
 
-def _checked(footer: Any, path: Path) -> list[str]:
-    """Return the names of the columns of text, if the file is not too large and holds numbers."""
+def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
+    """Return the names of the columns of numbers, of those of text among them, and of all others.
+
+    The file is refused if it is too large.
+    """
     import pyarrow as pa
 
     metadata = footer.metadata
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    is_a, faults, texts = pa.types, Faults(), []
-    numbers = (is_a.is_integer, is_a.is_floating, is_a.is_decimal, is_a.is_boolean)
+    packing = {group.column(i).compression for group in groups for i in range(group.num_columns)}
+    if "BROTLI" in packing:
+        # It has no bound on what a page becomes, and the sizes in the footer are only said.
+        raise refusal("columns packed by snappy, gzip, lz4 or zstd", "brotli", path)
+    chunks = (group.column(i) for group in groups for i in range(group.num_columns))
+    VALUES.check(sum(chunk.num_values for chunk in chunks), path)
+    is_a = pa.types
+    numbers = (
+        is_a.is_integer,
+        is_a.is_floating,
+        is_a.is_decimal,
+        is_a.is_boolean,
+        is_a.is_timestamp,
+    )
+    names, texts, left = list[str](), list[str](), list[str]()
     for field in _flat(footer.schema_arrow.empty_table()).schema:
-        if is_a.is_string(field.type) or is_a.is_large_string(field.type):
+        kind = field.type.value_type if _is_list(field.type) else field.type
+        if is_a.is_string(kind) or is_a.is_large_string(kind):
             texts.append(field.name)
-        elif not any(is_such(field.type) for is_such in numbers):
-            place = f"{path}, column {field.name}"
-            faults.add("a column of numbers", f"the type {field.type}", place)
-    if faults.lines:
-        raise Refused(faults.lines)
-    return texts
+        elif not any(is_such(kind) for is_such in numbers):
+            left.append(field.name)
+            continue
+        names.append(field.name)
+    return names, texts, left
+
+
+def _is_list(kind: Any) -> bool:
+    import pyarrow as pa
+
+    return any(
+        is_such(kind)
+        for is_such in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
+    )
+
+
+def _long_texts(footer: Any, texts: Collection[str]) -> set[str]:
+    """Return the names of columns of text that have more bytes than numbers have."""
+    metadata, sizes = footer.metadata, Counter[str]()
+    for group in (metadata.row_group(i) for i in range(metadata.num_row_groups)):
+        for column in (group.column(i) for i in range(group.num_columns)):
+            sizes[column.path_in_schema] += column.total_uncompressed_size
+    return {name for name in texts if sizes[name] > _TEXT_BYTES}
+
+
+def _values(column: Any) -> Any:
+    """Return the entries: binary numbers as NumPy has them, and each text of a dictionary once."""
+    import pyarrow as pa
+
+    if pa.types.is_dictionary(column.type):
+        return [entry for chunk in column.chunks for entry in _texts(chunk)]
+    is_binary = pa.types.is_integer(column.type) or pa.types.is_float64(column.type)
+    return column.to_numpy() if is_binary and not column.null_count else column.to_pylist()
+
+
+def _texts(chunk: Any) -> Iterator[Any]:
+    texts = chunk.dictionary.to_pylist()
+    return (None if place is None else texts[place] for place in chunk.indices.to_pylist())
 
 
 def _flat(table: Any) -> Any:
@@ -63,6 +132,38 @@ def _flat(table: Any) -> Any:
 
     while any(pa.types.is_struct(field.type) for field in table.schema):
         table = table.flatten()
+    return table
+
+
+def _without_lists(table: Any, path: Path) -> Any:
+    """Return a table with a column for each place in a list, numbered from 0."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    columns: dict[str, Any] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        if not _is_list(column.type):
+            columns[name] = column
+            continue
+        lengths = pc.min_max(pc.list_value_length(column)).as_py()
+        if lengths["min"] != lengths["max"] or column.null_count:
+            got = f"lists of {lengths['min']} to {lengths['max']}"
+            raise refusal("lists of one length", got, f"{path}, column {name}")
+        for k in range(lengths["max"] or 0):
+            columns[f"{name}[{k}]"] = pc.list_element(column, k)
+        check_size(len(columns), len(column), path)
+    return pa.table(columns)
+
+
+def _seconds(table: Any) -> Any:
+    """Return a table whose times of a calendar are text."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    for i, field in enumerate(table.schema):
+        if pa.types.is_timestamp(field.type):
+            texts = pc.strftime(table.column(i), format="%Y-%m-%dT%H:%M:%SZ")
+            table = table.set_column(i, field.name, texts)
     return table
 
 

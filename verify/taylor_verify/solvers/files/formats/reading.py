@@ -1,7 +1,8 @@
 """The formats of a trajectory file: a line of `FORMATS` for each suffix.
 
-To add one: a file beside this one with ``read(file, path, part) -> Table``, and a line here. ``part`` is
-the text after # in FILE#PART, which says which of several trajectories in a file is read.
+To add one: a file beside this one with ``read(file, path, part) -> Table``, and a line here. ``file`` is a
+`Content`, whose every way to read has a limit. ``part`` is the text after # in FILE#PART, which says which
+of several trajectories in a file is read.
 """
 
 from __future__ import annotations
@@ -11,13 +12,14 @@ from collections.abc import Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.plugins import Plugin, free
-from taylor_verify.scenes.reading.regular_file import regular_file
-from taylor_verify.solvers.files.formats import aem, rosbag
+from taylor_verify.records.regular_file import regular_file
+from taylor_verify.solvers.files.formats import aem, oem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
+from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
 
 
@@ -41,12 +43,21 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".csv": Format("a header line and rows", "delimited"),
     ".tsv": Format("a header line and rows, with tabs", "delimited"),
     ".txt": Format("a header line and rows, with blanks; or an AEM", "delimited"),
-    ".json": Format("an object of arrays", "documents"),
+    ".json": Format(
+        "an object of arrays, a list of objects, or an object in each line", "documents"
+    ),
+    ".jsonl": Format("an object in each line", "documents"),
+    ".ndjson": Format("an object in each line", "documents"),
     ".npz": Format("named arrays of NumPy", "binary"),
+    ".npy": Format("a matrix of NumPy, whose columns have numbers from 1", "binary"),
     ".parquet": Format("columns of numbers", "parquet", "pyarrow"),
     ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", "aem"),
-    ".kvn": Format("attitude ephemeris of the CCSDS, as text", "aem"),
+    ".kvn": Format("attitude or orbit ephemeris of the CCSDS, as text", "aem"),
+    ".oem": Format("orbit ephemeris of the CCSDS, as text", "oem"),
     ".xml": Format("attitude ephemeris of the CCSDS, as XML", "aem"),
+    ".sto": Format("a table of OpenSim", "opensim"),
+    ".mot": Format("a table of OpenSim", "opensim"),
+    ".a": Format("attitudes of STK", "stk"),
     ".h5": Format("datasets of numbers", "hdf5", "h5py"),
     ".hdf5": Format("datasets of numbers", "hdf5", "h5py"),
     ".nc": Format("NetCDF 4, which is HDF5", "hdf5", "h5py"),
@@ -55,6 +66,9 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".bag": Format("a topic of a rosbag of ROS 1", "rosbag", "rosbags"),
     ".db3": Format("a topic of a rosbag of ROS 2; its folder is read too", "rosbag", "rosbags"),
 }
+
+# A file of any other name that is text.
+_TEXT: Final = FORMATS[".txt"]
 
 
 def read_table(file: str | os.PathLike[str]) -> Table:
@@ -70,7 +84,8 @@ def read_table(file: str | os.PathLike[str]) -> Table:
         if rosbag.is_folder(path):
             table = rosbag.read_folder(path, part)
         else:
-            with regular_file(path, "a trajectory file", BYTES) as content:
+            with regular_file(path, "a trajectory file", BYTES) as opened:
+                content = Content(opened, path)
                 table = _reader(content, path).read(content, path, part)
     ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
@@ -105,11 +120,13 @@ def parted(file: str) -> tuple[Path, str]:
     return Path(file), ""
 
 
-def _reader(content: BinaryIO, path: Path) -> Any:
+def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
+    if oem.is_one(content):
+        return oem
     if aem.is_text(content):
         return aem
-    known = FORMATS.get(path.suffix.lower())
+    known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
         expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"
         raise refusal(expected, path.suffix or "no suffix", path)

@@ -1,0 +1,139 @@
+"""Small files that claim or hold a thousand times their size: each is refused before it is unpacked."""
+
+from __future__ import annotations
+
+import bz2
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pytest
+from builders.recordings import IMU
+from mcap.writer import CompressionType
+from mcap.writer import Writer as McapWriter
+from pyarrow import parquet
+
+from taylor_verify.records.faults import Refused
+from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.files.formats import parquet as reader
+from taylor_verify.solvers.files.formats.column import CHUNK_BYTES
+from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES
+
+ROWS = 8
+
+
+def struct_of_many_fields(file: Path) -> None:
+    """A packed array of 1 x 1001 structs with a million names of one letter, and no content."""
+
+    def element(kind: int, data: bytes) -> bytes:
+        return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+    flags, shape = struct.pack("<II", 2, 0), struct.pack("<ii", 1, 1001)
+    parts = ((6, flags), (5, shape), (1, b"s"), (5, struct.pack("<i", 1)), (1, b"a" * 10**6))
+    packed = zlib.compress(element(14, b"".join(element(*part) for part in parts)))
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    file.write_bytes(header + struct.pack("<II", 15, len(packed)) + packed)
+
+
+def large_chunk(file: Path) -> None:
+    with h5py.File(file, "w") as content:
+        content["t"] = np.zeros(ROWS)
+        chunks = (CHUNK_BYTES.most // 8 + 1,)
+        content.create_dataset("w1", (ROWS,), "f8", chunks=chunks, maxshape=(None,))
+
+
+def packed_twice(file: Path) -> None:
+    with h5py.File(file, "w") as content:
+        content["t"] = np.zeros(ROWS)
+        packing = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        packing.set_chunk((ROWS,))
+        packing.set_deflate(9)
+        packing.set_filter(h5py.h5z.FILTER_LZF, h5py.h5z.FLAG_OPTIONAL, ())
+        space = h5py.h5s.create_simple((ROWS,))
+        h5py.h5d.create(content.id, b"w1", h5py.h5t.NATIVE_DOUBLE, space, packing)
+
+
+def member_in_bzip2(file: Path) -> None:
+    """An archive whose one member claims a thousand bytes and holds ten million."""
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_BZIP2) as archive:
+        archive.writestr("t.npy", bytes(10**7))
+    content = file.read_bytes()
+    assert bz2.compress(bytes(10**7)) in content
+    file.write_bytes(content.replace(struct.pack("<I", 10**7), struct.pack("<I", 1000)))
+
+
+def page_in_brotli(file: Path) -> None:
+    zeros = pa.array(np.zeros(ROWS))
+    parquet.write_table(pa.table({"t": zeros, "w1": zeros}), file, compression="brotli")
+
+
+def chunk_of_mcap(file: Path) -> None:
+    with file.open("wb") as stream:
+        writer = McapWriter(stream, 2**40, CompressionType.ZSTD)
+        writer.start()
+        channel = writer.register_channel("/zeros", "json", 0)
+        writer.add_message(channel, 1, bytes(CHUNK_BYTES.most), 1)
+        writer.finish()
+
+
+def one_message(definition: str, data: bytes) -> Callable[[Path], None]:
+    """A writer of a file with one message of the type Imu, by a definition of its own."""
+
+    def write(file: Path) -> None:
+        with file.open("wb") as stream:
+            writer = McapWriter(stream)
+            writer.start()
+            schema = writer.register_schema("sensor_msgs/msg/Imu", "ros2msg", definition.encode())
+            channel = writer.register_channel("/imu", "cdr", schema)
+            writer.add_message(channel, 1, data, 1)
+            writer.finish()
+
+    return write
+
+
+# Each file with the fault that is said of it.
+BOMBS: dict[str, tuple[str, Callable[[Path], None]]] = {
+    "fields.mat": ("at most 1000 columns, got 1001000000", struct_of_many_fields),
+    "chunk.h5": ("bytes in a packed part, got 67108872", large_chunk),
+    "twice.h5": (r"numbers that are packed once, got the filters \[1, 32000\]", packed_twice),
+    "member.npz": ("a member that is stored or deflated, got method 12", member_in_bzip2),
+    "page.parquet": ("columns packed by snappy, gzip, lz4 or zstd, got brotli", page_in_brotli),
+    "chunk.mcap": ("bytes in a packed part, got 67108865", chunk_of_mcap),
+    "message.mcap": (
+        "at most 1048576 bytes in a message, got 1048577",
+        one_message(IMU, bytes(MESSAGE_BYTES.most + 1)),
+    ),
+    "nothing.mcap": (
+        "got a fault in it: an array of no elements",
+        one_message("n/N[] x\n=====\nMSG: n/N\nuint8[0] y\n", b"\x00\x01\x00\x00\xff\xff\xff\xff"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_a_bomb_is_refused_by_what_it_claims(name: str, tmp_path: Path) -> None:
+    """What a part of a file becomes when it is unpacked has a limit, whatever the part says."""
+    fault, write = BOMBS[name]
+    write(tmp_path / name)
+    with pytest.raises(Refused, match=fault):
+        read(tmp_path / name)
+
+
+def test_text_that_nobody_asked_for_is_not_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A column of text that is longer than any numbers are is left out, and a note says so."""
+    file = tmp_path / "mine.parquet"
+    numbers = pa.array(np.arange(float(ROWS)))
+    columns = dict.fromkeys(("t", "w1", "w2", "w3"), numbers)
+    notes = pa.array(["x" * 10**6] + [""] * (ROWS - 1))
+    parquet.write_table(pa.table({**columns, "notes": notes}), file, compression="zstd")
+    monkeypatch.setattr(reader, "_TEXT_BYTES", 10**5)
+    table = read(file)
+    assert table.times == tuple(range(ROWS))
+    assert "not read, because it is longer than numbers are: column notes" in table.notes

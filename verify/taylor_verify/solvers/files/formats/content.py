@@ -1,0 +1,89 @@
+"""The content of a trajectory file: every way to read it has a limit, and there is no other."""
+
+from __future__ import annotations
+
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
+from collections.abc import Iterator
+from functools import cached_property
+from io import TextIOWrapper
+from pathlib import Path
+from typing import BinaryIO, Final, final
+
+from taylor_verify.records.limit import Limit
+from taylor_verify.solvers.files.formats.column import LINE, LINES, no_utf8
+
+_BEGINNING: Final = 4096
+_CONTROL: Final = frozenset({*range(32), 127}) - frozenset(b"\t\n\r\f")
+
+
+@final
+class Content:
+    """An open regular file of bounded size.
+
+    A library that opens the file by itself gets ``binary``; its reader checks what the file declares of
+    rows, columns and bytes before it lets the library make anything of them.
+    """
+
+    def __init__(self, file: BinaryIO, path: Path) -> None:
+        self._file, self.path = file, path
+
+    @property
+    def binary(self) -> BinaryIO:
+        """The bytes from the beginning, for a library."""
+        self._file.seek(0)
+        return self._file
+
+    def beginning(self, count: int) -> bytes:
+        """Return the first bytes."""
+        return self.binary.read(count)
+
+    @property
+    def looks_like_text(self) -> bool:
+        """True if the beginning is not empty and has no control characters but those of lines."""
+        start = self.beginning(_BEGINNING)
+        return bool(start.strip()) and not _CONTROL.intersection(start)
+
+    def whole(self, most: Limit) -> bytes:
+        """Return all bytes. Raises Refused if there are more than the limit."""
+        content = self.binary.read(most.most + 1)
+        if len(content) > most.most:
+            raise most.refusal("more", self.path)
+        return content
+
+    def text(self, most: Limit) -> str:
+        """Return all of a text in UTF-8 or 16. Raises Refused for other bytes, and at the limit."""
+        try:
+            return self.whole(most).decode(self._encoding)
+        except UnicodeDecodeError:
+            raise no_utf8(self.beginning(2), self.path) from None
+
+    def lines(self, longest: Limit = LINE) -> Iterator[str]:
+        """Yield the lines of a text in UTF-8 or 16, blank ones too, each with its end.
+
+        Raises Refused for other bytes, and at the limits of a line and of their number.
+        """
+        self._text.seek(0)
+        try:
+            for number, line in enumerate(self._limited(longest), start=1):
+                if len(line) > longest.most:
+                    raise longest.refusal("more", f"{self.path}, line {number}")
+                if number > LINES.most:
+                    raise LINES.refusal("more", self.path)
+                yield line
+        except UnicodeDecodeError:
+            raise no_utf8(self.beginning(2), self.path) from None
+
+    def _limited(self, longest: Limit) -> Iterator[str]:
+        while line := self._text.readline(longest.most + 1):
+            yield line
+
+    @cached_property
+    def _text(self) -> TextIOWrapper:
+        encoding = self._encoding
+        return TextIOWrapper(self.binary, encoding=encoding)
+
+    @cached_property
+    def _encoding(self) -> str:
+        """UTF-16, which PowerShell writes, has a byte order mark."""
+        has_mark = self.beginning(2) in (BOM_UTF16_BE, BOM_UTF16_LE)
+        return "utf-16" if has_mark else "utf-8-sig"
