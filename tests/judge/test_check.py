@@ -376,7 +376,7 @@ def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
         ("t,w1,w2,w3\n0,1,2\n", "expected 4 values as in the header, got 3 @ .* line 2"),
         ("t,w1,w2,w3\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column w2"),
         ("t,w1,w2,w3\n0,1,,3\n", "got '' @ .* row 1, column w2"),
-        ("t,w1,w2,w3\n0,1,2,3\n0,1,2,3\n", "expected no time twice, got 0 again @ .* row 2"),
+        ("t,w1,w2,w3\n0,1,2,3\n0,1,2,4\n", "expected no time twice, got 0 again @ .* row 2"),
         ("t,w1,w2,w3\n0,1,2,3\n2,1,2,3\n1,1,2,3\n", "keep increasing, got 1 after 2 @ .* row 3"),
         ("t,w1,w2,w3\n5,1,2,3\n1,1,2,3\n2,1,2,3\n", "keep decreasing, got 2 after 1 @ .* row 3"),
         ("t,w1,w2,w3\nnan,1,2,3\n", "expected a finite time, got nan @ .* row 1"),

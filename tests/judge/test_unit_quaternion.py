@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.trajectories import QUATERNION, columns_at, exact_columns, write_csv
+from builders.trajectories import MATRIX, QUATERNION, columns_at, exact_columns, write_csv
 
 import taylor_verify
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.quantities import ROTATION_MATRIX, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -60,6 +60,28 @@ def test_another_length_fails_with_its_size(
     assert failed.max == pytest.approx(size, rel=1e-3)
     assert words in failed.because
     assert "attainable = u N" in failed.because
+
+
+@pytest.mark.parametrize(
+    ("entry", "change"), [("all", 1e-9), ("r12", 1e-6), ("r33", 0.1), (None, 0.0)]
+)
+def test_a_matrix_that_is_no_rotation_has_a_row_of_its_own(
+    entry: str | None, change: float, tmp_path: Path
+) -> None:
+    """A matrix with longer axes or one wrong entry fails as such, whatever its attitude is."""
+    sound = exact_columns(SCENE, matrix=True)
+    wrong = {
+        name: [v * (1 + change) if entry in ("all", name) and name in MATRIX else v for v in values]
+        for name, values in sound.items()
+    }
+    judged = checked(tmp_path, wrong)
+    failed = next((v for v in judged.verdicts if v.quantity == ROTATION_MATRIX), None)
+    assert (failed is None) is (entry is None)
+    if failed is not None:
+        assert "r11 ... r33 are no rotation" in failed.because
+        assert failed.max is not None
+        assert 0 < failed.max <= change
+        assert entry != "all" or failed.max == pytest.approx(change, rel=1e-3)
 
 
 def test_roundings_in_every_step_are_no_failure(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from builders.trajectories import columns_at, conjugate
 import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.turns import times
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats import aem_segment
 from taylor_verify.solvers.files.formats.column import ELEMENTS
@@ -156,9 +157,74 @@ def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Pa
     assert table.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
 
 
+ANGLES = "2024-061T00:00:00 90 0 -30"
+
+
+@pytest.mark.parametrize(("frame", "sign"), [("SC_BODY_1", 1), ("ICRF", -1)])
+def test_euler_angles_turn_a_into_b(frame: str, sign: int, tmp_path: Path) -> None:
+    """90 degrees about z and then -30 about x are one rotation, and its inverse if the body is A."""
+    other = {"SC_BODY_1": "ICRF", "ICRF": "SC_BODY_1"}[frame]
+    frames = {"REF_FRAME_A": other, "REF_FRAME_B": frame, "EULER_ROT_SEQ": "ZYX"}
+    content = text(ANGLES, ATTITUDE_TYPE="EULER_ANGLE", **frames)
+    (q,) = read(written(tmp_path, content)).groups["quaternion"]
+    half, quarter = np.sqrt(0.5), np.radians(15)
+    about_z, about_x = (half, 0, 0, sign * half), (np.cos(quarter), -sign * np.sin(quarter), 0, 0)
+    first, second = (about_z, about_x)[::sign]
+    assert np.allclose(np.array(q, float), times(first, second), rtol=0, atol=1e-15)
+
+
+ORBIT = """CCSDS_OEM_VERS = 2.0
+ORIGINATOR = X
+META_START
+REF_FRAME = EME2000
+TIME_SYSTEM = TAI
+START_TIME = 2024-061T00:00:00
+META_STOP
+2024-061T00:00:00 1 2 3 4 5 6
+2024-061T00:00:00.5 1.5 2 3 4 5 6
+COVARIANCE_START
+EPOCH = 2024-061T00:00:00
+1.0
+COVARIANCE_STOP
+"""
+
+
+def test_orbit_ephemerides_have_the_centre(tmp_path: Path) -> None:
+    """The position of an OEM is c1 c2 c3 in km, from START_TIME; covariances are passed over."""
+    table = read(written(tmp_path, ORBIT, "run.oem"))
+    assert (table.times, table.groups["centre"][1]) == ((0, Fraction(1, 2)), (1500, 2000, 3000))
+
+
+@pytest.mark.parametrize(
+    ("change", "to", "fault"),
+    [
+        ("EME2000", "ITRF-97", "a REF_FRAME that does not turn, got ITRF-97"),
+        ("TAI", "SCLK", "a TIME_SYSTEM like UTC, TAI or TT, got SCLK"),
+        (" 5 6", " 5", "expected an epoch, X Y Z and X_DOT Y_DOT Z_DOT, got 6 values @ .* line 8"),
+        ("META_STOP", "META_END", "expected KEYWORD = value, got 'META_END'"),
+        ("START_TIME", "BEGIN", "got no START_TIME"),
+    ],
+)
+def test_faults_of_an_orbit_are_refused(change: str, to: str, fault: str, tmp_path: Path) -> None:
+    """A frame that turns, another clock and a state that is cut off are refused."""
+    with pytest.raises(Refused, match=fault):
+        read(written(tmp_path, ORBIT.replace(change, to), "run.oem"))
+
+
 FAULTS: Mapping[str, tuple[str, str]] = {
-    "spin": (text(ATTITUDE_TYPE="SPIN"), "ATTITUDE_TYPE of quaternions .*got SPIN .*write QUATERN"),
-    "orbit": ("CCSDS_OEM_VERS = 2.0\n", "an attitude ephemeris .CCSDS_AEM_VERS., got CCSDS_OEM"),
+    "spin": (
+        text(ATTITUDE_TYPE="SPIN"),
+        "expected an ATTITUDE_TYPE of QUATERNION, .*got SPIN .*write QUATERN",
+    ),
+    "conjunction": (
+        "CCSDS_CDM_VERS = 1.0\n",
+        "an attitude ephemeris .CCSDS_AEM_VERS., got CCSDS_C",
+    ),
+    "angles by axis": (
+        text(ANGLES, version="1.0", ATTITUDE_TYPE="EULER_ANGLE", EULER_ROT_SEQ="321"),
+        "expected Euler angles of version 2, or EULER_ROT_SEQ = 123, got version 1.0",
+    ),
+    "no sequence": (text(ANGLES, ATTITUDE_TYPE="EULER_ANGLE"), "EULER_ROT_SEQ like ZYX, got none"),
     "star tracker": (text(REF_FRAME_B="STARTRACKER_1"), "expected SC_BODY as one of REF_FRAME_A"),
     "orbital frame": (text(REF_FRAME_A="LVLH"), "an inertial frame beside SC_BODY, got LVLH"),
     "earth": (text(REF_FRAME_A="ITRF-97"), "an inertial frame beside SC_BODY, got ITRF-97"),

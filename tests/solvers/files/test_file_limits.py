@@ -142,7 +142,7 @@ def test_a_file_that_is_too_large_is_not_opened(tmp_path: Path) -> None:
         ),
         ({"t__npy": claiming((2,))}, "expected 16 bytes of data as its header says, got 24 @"),
         ({"t__npy": claiming((-3,))}, r"got shape \(-3,\) of float64 @ .* column t"),
-        ({"t__npy": claiming((10**9,), b"", "|V0")}, "expected a one-dimensional array of real"),
+        ({"t__npy": claiming((10**9,), b"", "|V0")}, "expected a column `t` of times, got none"),
         (
             {"t__npy": claiming((3,), bytes(3 * 4 * 4001), "<U4001")},
             "characters in a number, got 4001",

@@ -269,7 +269,7 @@ def test_units_of_a_data_set_are_used() -> None:
             "expected a number, got -- @ the dict, row 1, column t",
         ),
         (
-            {"t": np.array(["2024-01-01"], dtype="datetime64[s]"), "omega": [[1, 2, 3]]},
+            {"t": [0.0], **dict.fromkeys(("w1", "w2", "w3"), np.array(["2024-01-01"], "M8[s]"))},
             r"expected a number, the time since the start \(subtract the first date\), got 2024-01-01",
         ),
         ({"omega": [[1, 2, 3]]}, "expected a column `t` of times, got none @ the dict"),

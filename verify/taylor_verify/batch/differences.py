@@ -52,7 +52,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
-from taylor_verify.records.quantities import COMPLETE, UNIT_QUATERNION
+from taylor_verify.records.quantities import COMPLETE, SOUND_ATTITUDE
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 
@@ -150,14 +150,14 @@ def _run(verdict: Verdict) -> tuple[str, ...]:
 
 
 def _missing(verdict: Verdict) -> Difference:
-    # A quaternion has a row only where it fails: a sound run has none.
-    if verdict.quantity == UNIT_QUATERNION:
+    # The soundness of an attitude has a row only where it fails: a sound run has none.
+    if verdict.quantity in SOUND_ATTITUDE:
         return Difference.of(verdict, Direction.BETTER, "a row that fails", "none: it is mended")
     return Difference.of(verdict, Direction.WORSE, "this row", "none")
 
 
 def _new(verdict: Verdict) -> Difference:
-    is_lost = verdict.quantity == UNIT_QUATERNION
+    is_lost = verdict.quantity in SOUND_ATTITUDE
     direction = Direction.WORSE if is_lost else Direction.CHANGED
     return Difference.of(
         verdict, direction, "no such row", "one that fails" if is_lost else "a new one"

@@ -30,6 +30,7 @@ from taylor_verify.cli.sentences import (
     print_sentence,
     status_text,
 )
+from taylor_verify.cli.standard_input import read_named
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import (
     FilesJudgement,
@@ -46,7 +47,7 @@ from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
-from taylor_verify.solvers.files.file import TrajectoryFile, read
+from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.words.account import cause_line, note_line
 from taylor_verify.words.opening import opening
 
@@ -65,6 +66,10 @@ _NUMBERS: Final = (
 def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
     (options.rung,) = known_rungs([options.rung])
+    if options.event is not None:
+        from taylor_verify.cli.check_events import answer as answer_of_events
+
+        return answer_of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
@@ -74,7 +79,7 @@ def answer(options: argparse.Namespace) -> Answer:
         text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
         return concluded(asked, one, exit_status(one.verdicts), one.document(), text)
     each = judge_each(files, partial(_judged, options, scene))
-    several = files_judgement(each, steps)
+    several = files_judgement(each, steps, options.knob or "")
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
     answered = concluded(asked, several, status, several.document(), text)
@@ -111,13 +116,17 @@ def _asked(
     scene = attempt(read_scene, options.scene)
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
-    files = [attempt(lambda name: read(name, request(columns), scene), name) for name in names]
+    files = [
+        attempt(lambda name: read_named(name, request(columns), scene), name) for name in names
+    ]
     if faults:
         raise WrongCall(*faults)
     return scene, files, steps
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:
+    if options.knob and len(options.files) == 1:
+        raise WrongCall("expected several files with --knob, got one @ --knob")
     if options.steps is None:
         return None
     if len(options.files) == 1:
@@ -148,7 +157,7 @@ def _picture(
     if path.suffix.lower() not in ENDINGS:
         expected = f"a file that ends in {', '.join(ENDINGS)}"
         raise WrongCall(f"expected {expected}, got {options.picture!r} @ --picture")
-    if sum(step is not None for step in steps_of(files, steps)) < 2:
+    if sum(step is not None for step in steps_of(files, steps, options.knob or "")) < 2:
         raise WrongCall(
             "expected several files whose steps are known (--steps 0.1,0.05,...), got fewer than two "
             "@ --picture"
@@ -267,7 +276,7 @@ def _print_files(page: Page, judged: FilesJudgement) -> None:
     """Print the largest error of each state quantity in each file, the largest step first."""
     compared = {v.quantity for v in judged.verdicts if v.is_compared}
     states = states_among(sorted(compared))
-    headings = ["file", ">step", ">rows", *(f">{name}" for name in states), "verdicts"]
+    headings = ["file", f">{judged.knob}", ">rows", *(f">{name}" for name in states), "verdicts"]
     pairs = zip(judged.files, judged.steps, strict=True)
     rows = []
     for one, step in sorted(pairs, key=lambda pair: -pair[1].value if pair[1] else 0.0):

@@ -155,7 +155,7 @@ def gates_of(
         every = [*gates.states()]
         with costs.of(CONSERVED):
             every += gates.conserved()
-            every += gates.unit_quaternion()
+            every += gates.sound_attitude()
         every += gates.velocities()
         every += gates.laws(exact, digits, bits)
     return [gate.with_input(inputs, float(roundoff)) if inputs else gate for gate in every]
@@ -197,16 +197,21 @@ class _Gates:
             terms = self._terms(errors, attainable, Carried.GRADIENT, clock is not None)
             yield Gate(self.run, errors, attainable, replace(terms, conserved=invariant.because))
 
-    def unit_quaternion(self) -> Iterator[Gate]:
-        """Yield the gate of quaternions that are not of unit length; none if they are, to roundoff.
+    def sound_attitude(self) -> Iterator[Gate]:
+        """Yield the gate of quaternions not of unit length, or of matrices that are no rotations.
 
-        A length that is not finite is a failure of the attitude.
+        There is none if they are sound to roundoff. A length that is not finite is a failure of the
+        attitude.
         """
         excess = self.measured.excess
         if excess is not None and np.isfinite(excess).all():
-            gate = Gate(self.run, *self.floor.lengths(excess))
+            gate = Gate(self.run, *self.floor.lengths(excess, self._has_matrices))
             if gate.finding.status is Status.FAIL:
                 yield gate
+
+    @property
+    def _has_matrices(self) -> bool:
+        return "quaternion" not in self.run.trajectory.quantities
 
     def velocities(self) -> Iterator[Gate]:
         for one in self.measured.velocities:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.records.faults import brief
-from taylor_verify.records.quantities import UNIT_QUATERNION, states_among
+from taylor_verify.records.quantities import SOUND_ATTITUDE, states_among
 from taylor_verify.scenes.reading.positive import positive
 
 if TYPE_CHECKING:
@@ -36,9 +36,9 @@ class Tolerances:
     def of(self, quantity: str) -> float | None:
         """Return the tolerance of a quantity; None if the bound from the arithmetic applies.
 
-        The length of a quaternion has the tolerance of the attitude.
+        The length of a quaternion, and a matrix that is no rotation, have the tolerance of the attitude.
         """
-        name = "attitude" if quantity == UNIT_QUATERNION else quantity
+        name = "attitude" if quantity in SOUND_ATTITUDE else quantity
         return dict(self.each).get(name, self.every)
 
     @property

@@ -135,7 +135,8 @@ class Order:
     ``order`` is the slope of log(error) against log(step) from the step ``largest`` to ``smallest``, and
     ``low`` to ``high`` its 95 % interval; None if no order fits. Steps below ``stalls_at`` do not make the
     error smaller, for the reason ``stall``. The step of the file ``suspect`` does not fit the others; its
-    error would fit at ``suspect_step``.
+    error would fit at ``suspect_step``. ``knob`` names what differs from file to file: the step ``h``, or
+    another number, or one over it where larger numbers have smaller errors.
     """
 
     quantity: str
@@ -153,6 +154,7 @@ class Order:
     stall: Stall | None = None
     suspect: str | None = None
     suspect_step: Size | None = None
+    knob: str = "h"
 
 
 @dataclass(frozen=True)

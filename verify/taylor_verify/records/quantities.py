@@ -159,14 +159,17 @@ CONSERVED_QUANTITIES: Final[Mapping[str, Conserved]] = {
 # Keys of documents that stand beside quantities.
 _KEYS: Final = ("t", "time", "radius", "absolute", "held", "loads")
 
-# Rows that compare no quantity of their own: the start, the extent of an answer, the length of quaternions.
+# Rows that compare no quantity of their own: the start, the extent of an answer, and the soundness of an
+# attitude, whose quaternions have unit length and whose matrices are rotations.
 INITIAL: Final = "initial state"
 COMPLETE: Final = "complete"
 UNIT_QUATERNION: Final = "unit quaternion"
+ROTATION_MATRIX: Final = "rotation matrix"
+SOUND_ATTITUDE: Final = (UNIT_QUATERNION, ROTATION_MATRIX)
 
 # The names that a state of a scene's own may not have, which stands beside these in files and verdicts.
 RESERVED: Final = frozenset(
-    (*QUANTITIES, *GROUPS, *CONSERVED_QUANTITIES, INITIAL, COMPLETE, UNIT_QUATERNION, *_KEYS)
+    (*QUANTITIES, *GROUPS, *CONSERVED_QUANTITIES, INITIAL, COMPLETE, *SOUND_ATTITUDE, *_KEYS)
 )
 
 # A gate allows this many times the roundoff floor, which is the root mean square of a random sum. Ten
@@ -193,7 +196,7 @@ IMPULSES: Final = tuple(column for name in MOMENTA["kirchhoff"] for column in CO
 
 def is_conserved(quantity: str) -> bool:
     """Return True for the name of a conserved quantity."""
-    return quantity in CONSERVED_QUANTITIES or quantity == UNIT_QUATERNION
+    return quantity in CONSERVED_QUANTITIES or quantity in SOUND_ATTITUDE
 
 
 def is_state(quantity: str) -> bool:

@@ -49,8 +49,15 @@ class Carried(StrEnum):
     VELOCITY = "velocity of x and y"
     LINEAR_VELOCITY = "linear velocity of x and y"
     LENGTH = "length of the quaternion"
+    MATRIX = "length of the axes of the matrix"
     START = "start"
     ROW = "row"
+
+
+_LENGTHS: Final = {
+    Carried.LENGTH: ("q", "the length of q0 q1 q2 q3 is"),
+    Carried.MATRIX: ("R", "r11 ... r33 are no rotation: (1 + R^T R)/2, which would be 1, is"),
+}
 
 
 class Kind(StrEnum):
@@ -101,10 +108,10 @@ class RoundoffFloor:
         value, u = _figure(self.value), _figure(2.0**-self.bits)
         if self.carried in _MEANINGS:
             return "", _MEANINGS[self.carried]
-        if self.carried is Carried.LENGTH:
+        if self.carried in (Carried.LENGTH, Carried.MATRIX):
+            rounded, length = _LENGTHS[self.carried]
             return f"attainable = u N = {u} x {self.steps:.4g} = {value}", (
-                "in each step one rounding of q, all of them one way; the length of q0 q1 q2 q3 is "
-                f"{self.lengths}"
+                f"in each step one rounding of {rounded}, all of them one way; {length} {self.lengths}"
             )
         matrix = (
             "the orbit's transition matrix" if self.carried is Carried.ORBIT else "the gradient"

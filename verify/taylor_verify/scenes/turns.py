@@ -9,7 +9,7 @@ its principal moments.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import reduce
 from math import pi, remainder
@@ -44,7 +44,7 @@ def combined(turns: Iterable[Turn], parts: int = 10**DECIMALS) -> Quaternion:
     from mpmath import mp
 
     with mp.workprec(_BITS):
-        q = reduce(_product, map(_half_angle, turns))
+        q = reduce(times, map(_half_angle, turns))
         largest = max(q, key=abs)
         w, x, y, z = (Fraction(round(exact_value(part / largest) * parts), parts) for part in q)
     return (w, x, y, z)
@@ -97,10 +97,7 @@ def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, .
     return tuple(remarks)
 
 
-_Parts = tuple[Any, Any, Any, Any]
-
-
-def _half_angle(turn: Turn) -> _Parts:
+def _half_angle(turn: Turn) -> Sequence[Any]:
     """Return the quaternion of one turn at the ambient precision of mpmath."""
     from mpmath import mp
 
@@ -112,7 +109,8 @@ def _half_angle(turn: Turn) -> _Parts:
     return (mp.cos(half), x, y, z)
 
 
-def _product(a: _Parts, b: _Parts) -> _Parts:
+def times(a: Sequence[Any], b: Sequence[Any]) -> Sequence[Any]:
+    """Return the product of two quaternions, scalar first, in any arithmetic."""
     (s, x, y, z), (t, u, v, w) = a, b
     return (
         s * t - x * u - y * v - z * w,

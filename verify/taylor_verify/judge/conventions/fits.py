@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from math import log10
 from typing import Final
 
@@ -126,7 +127,9 @@ def simplest(fits: Sequence[Fit], noise: float) -> tuple[Fit, list[Fit]]:
     return simple[0], simple[1:]
 
 
-def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
+def findings_of(
+    plain: Fit, best: Fit, others: Sequence[Fit], spacing: Fraction | None = None
+) -> Conventions:
     """Return the departures of the best fit from the plain fit; ``others`` are as good and as simple."""
     gained = best.gain(plain)
     before, after = plain.groups[gained].error, best.groups[gained].error
@@ -137,11 +140,12 @@ def findings_of(plain: Fit, best: Fit, others: Sequence[Fit]) -> Conventions:
     ]
     # If the axes are ambiguous, no axis is renamed.
     frames = Frames() if others else best.world.frames
-    certain = {group: readings(group, frames)[0] for group in best.groups if frames.cost}
+    certain = {group: readings(group, frames, spacing)[0] for group in best.groups if frames.cost}
     for group, read in best.groups.items():
         if read.reading.cost and read.error <= EXPLAINS * read.plain:
             words, unlike = read.reading.words, tuple(other.sentence for other in read.others)
             findings.append(Finding(group, "; ".join(words), read.plain, read.error, unlike))
             if not unlike:
-                certain[group] = next(r for r in readings(group, frames) if r.words == words)
+                known = readings(group, frames, spacing)
+                certain[group] = next(reading for reading in known if reading.words == words)
     return Conventions(tuple(findings), plain.world if others else best.world, certain)

@@ -59,23 +59,36 @@ _UNITS: Final = (
 
 
 @lru_cache
-def readings(group: str, frames: Frames = Frames()) -> tuple[Reading, ...]:  # noqa: B008 (frozen)
-    """Return all readings of a group of columns under a renaming of axes, the scene's own reading first."""
+def readings(
+    group: str,
+    frames: Frames = Frames(),  # noqa: B008 (frozen)
+    spacing: Fraction | None = None,
+) -> tuple[Reading, ...]:
+    """Return all readings of a group of columns under a renaming of axes, the scene's own reading first.
+
+    ``spacing`` is that of equally spaced rows, in which a rate may be counted.
+    """
     families = {"quaternion": _quaternions, "attitude": _matrices}
-    family = families.get(group, partial(_vectors, group))
+    family = families.get(group, partial(_vectors, group, spacing))
     return tuple(sorted(family(frames), key=lambda reading: reading.cost))
 
 
-def _vectors(group: str, frames: Frames) -> Iterator[Reading]:
+def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[Reading]:
     about = GROUPS[group]
     together, is_placed = " ".join(about.columns), about.moves_with == "space"
     units = _UNITS if about.dimension == "rate" else _UNITS[:1]
     for unit, pis in units:
+        in_unit = [f"{together} are {unit}"] * bool(unit)
         for in_space in (False,) if is_placed else (False, True):
-            words = [f"{together} are {unit}"] * bool(unit)
-            words += [f"{together} are in space axes"] * in_space
+            words = [*in_unit, *[f"{together} are in space axes"] * in_space]
             axes = frames.space if in_space or is_placed else frames.body
             yield Reading(tuple(words), partial(_read_vectors, axes, pis, in_space))
+        if group == "omega" and not frames.cost:
+            rates = f"{together} are rates of Euler angles, roll' pitch' yaw', and no body rates"
+            yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis))
+    if about.dimension == "rate" and spacing:
+        turns = f"{together} are turns between two rows, in radians for each {float(spacing):.6g}"
+        yield Reading((turns,), partial(_read_turns, frames.body, spacing))
 
 
 def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array, R: Array) -> Array:
@@ -85,6 +98,21 @@ def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array,
         vectors = vectors * (mp.convert(pis) * mp.pi if is_exact else float(pis) * np.pi)
     # Space axes are converted by the exact attitude. R^T is a rotation, so the error has the same size.
     return np.matmul(R.transpose(0, 2, 1), vectors[:, :, None])[:, :, 0] if in_space else vectors
+
+
+def _read_turns(axes: Axes, spacing: Fraction, rows: Array, _: Array) -> Array:
+    turns = axes.vectors(rows)
+    return turns / (mp.convert(spacing) if rows.dtype == object else float(spacing))
+
+
+def _read_rates(axes: Axes, pis: Fraction | None, rows: Array, R: Array) -> Array:
+    """Return omega of roll' pitch' yaw', with the angles of R = R_z(yaw) R_y(pitch) R_x(roll)."""
+    rates = _read_vectors(axes, pis, in_space=False, rows=rows, R=R)
+    x, y, z = R[:, 2].T
+    level = norms(R[:, 2, 1:]) if R.dtype == object else np.linalg.norm(R[:, 2, 1:], axis=1)
+    roll, pitch, yaw = rates.T
+    omega = (roll + yaw * x, pitch * z / level + yaw * y, yaw * z - pitch * y / level)
+    return np.array(omega).T
 
 
 def _quaternions(frames: Frames) -> Iterator[Reading]:

@@ -46,6 +46,7 @@ from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.files.step import step_of_rows
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -73,14 +74,22 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     Raises Unsettled if there is no exact motion, and NotRepresentable if the rung cannot represent the
     scene.
     """
-    searches = [_Search(file, scene, rung, rows) for rows in _beginnings(file)]
+    searches = [_Search(file, scene, rung, rows) for rows in beginnings(file)]
     if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
     # Shorter beginnings come first, and max takes the first of equal ranks.
     return max((search.conventions() for search in searches), key=attrgetter("rank"))
 
 
-def _beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
+def attitudes_at(file: TrajectoryFile, scene: Scene, rung: Rung, rows: tuple[int, ...]) -> Floats:
+    """Return the exact attitudes at some rows of a file, in doubles; NaN where they are out of reach."""
+    near, truth = _Search(file, scene, rung, rows)._truth(World(scene))
+    attitudes = np.full((len(rows), 3, 3), np.nan)
+    attitudes[near] = truth["attitude"] if near else attitudes[near]
+    return attitudes
+
+
+def beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
     """Return the finite rows of longer and longer beginnings of a file, the shortest first."""
     finite = np.flatnonzero(file.finite).tolist()
     longest = min(max(ceil(len(finite) / 2), _FEW_ROWS), len(finite))
@@ -109,7 +118,7 @@ class _Search:
         others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
         tried = (fit for world in (World(self.scene), *others) for fit in self.fits(world))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, self.noise))]
-        return findings_of(self.plain, *simplest(fits, self.noise))
+        return findings_of(self.plain, *simplest(fits, self.noise), self.spacing)
 
     @property
     def noise(self) -> float:
@@ -119,6 +128,13 @@ class _Search:
     def is_explained(self) -> bool:
         """True if the scene's own conventions leave no error that others could explain."""
         return self.plain.worst <= self.noise / EXPLAINS
+
+    @cached_property
+    def spacing(self) -> Fraction | None:
+        """The spacing of the rows of the file, unless it is one; None where they are not equally spaced."""
+        times, even = self.file.times, step_of_rows(self.file.times)
+        mean = (times[-1] - times[0]) / max(len(times) - 1, 1)
+        return mean if even and mean not in (0, 1) else None
 
     @cached_property
     def plain(self) -> Fit:
@@ -193,7 +209,7 @@ class _Search:
     def _best(
         self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
     ) -> BestReading:
-        known = readings(group, frames)
+        known = readings(group, frames, self.spacing)
         if not near:
             return BestReading(known[0], error=1.0, plain=1.0, motion=0.0, others=())
         columns = self.values[group][list(near)]

@@ -75,7 +75,8 @@ class Measured:
     """The errors of all rows; ``at_nodes`` is the exact motion at the requested samples.
 
     Drifts that are ``worked`` are differences from the exact motion.
-    ``excess`` is |q| - 1, if the answer has quaternions. ``shifts`` explain the errors of ``states``;
+    ``excess`` is |q| - 1, or the largest entry of (R^T R - 1)/2, if the answer has an attitude.
+    ``shifts`` explain the errors of ``states``;
     ``is_shifted_whole`` is True if the shifts use all rows.
     """
 
@@ -106,6 +107,13 @@ class Block:
     def is_whole_of(self, scene: Scene) -> bool:
         """Return True if the block has all rows of the scene."""
         return len(self.places) == len(scene.clock.instants)
+
+
+def _stretch(matrices: np.ndarray[Any, Any]) -> Floats:
+    """Return the largest entry of (R^T R - 1)/2 of each matrix; of 1 + e times a rotation it is e."""
+    products = np.matmul(matrices.transpose(0, 2, 1), matrices).reshape(-1, 9)
+    off = in_doubles((products - np.eye(3, dtype=int).reshape(9)).reshape(-1)).reshape(-1, 9) / 2
+    return np.asarray(off[np.arange(len(off)), np.argmax(np.abs(off), axis=1)])
 
 
 @dataclass(frozen=True)
@@ -146,6 +154,8 @@ class Comparison:
                         drifts.add(block.scene.clock.elapsed, block.truth, block.answer, own)
                     if "quaternion" in block.own:
                         excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
+                    elif "attitude" in block.own:
+                        excess.append(_stretch(block.own["attitude"]))
             first = block.places[0]
             at_nodes.append(block.truth.at([k - first for k in block.places if k in wanted]))
             last = block

@@ -17,6 +17,7 @@ import numpy as np
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, are_known, causes_of_file
+from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
@@ -30,8 +31,10 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
+from taylor_verify.judge.files.parts import in_parts
 from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds
+from taylor_verify.judge.floor.angles import with_angles_rounded
 from taylor_verify.judge.floor.inputs import input_rounding
 from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gated import Gate, gates_of
@@ -111,17 +114,22 @@ def judge_file(
     accept_conventions: bool = False,
     partial: bool = False,
     tolerances: Tolerances = NO_TOLERANCES,
+    elsewhere: Sequence[str] = (),
 ) -> FileJudgement:
     """Judge a file as a result of arithmetic on the rung.
 
     solvers.files defines the columns. Times are absolute, in the scene's unit, and each row is compared
     at its own time. With ``accept_conventions`` the file's conventions are corrected before it is judged.
     If the file lacks a part of what the scene asks, there is a row `complete`: undecided, or vacuous if
-    ``partial`` answers are accepted. ``tolerances`` replace the bounds. Raises Refused if nothing can be
-    compared.
+    ``partial`` answers are accepted. ``tolerances`` replace the bounds. Groups ``elsewhere`` are judged in
+    another part of the file. Raises Refused if nothing can be compared.
     """
+    if file.apart:
+        options = (rung, accept_conventions, partial, tolerances)
+        return in_parts(file, lambda part, others: judge_file(part, scene, *options, others))
     groups = comparable(file, scene)
-    asked, notes = scene, (*file.notes, *coverage_notes(file, groups, scene))
+    asked, has = scene, [*groups, *elsewhere]
+    notes = (*file.notes, *coverage_notes(file, has, scene))
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({scene.known_groups[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
@@ -130,16 +138,19 @@ def judge_file(
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
+            compared, angles = with_angles(compared, scene, rung)
             explained = causes_of_file(compared, rung, known, judged)
             if scene.body.loads is None and (accept_conventions or not explained.is_motion):
                 known = conventions(compared, scene, rung)
+            if angles:
+                known = replace(known, findings=(angles, *known.findings))
             if accept_conventions:
                 answer = FileRows.of(compared, rung, known)
             if judged is None or (accept_conventions and known.findings):
                 judged = _judged_within_reach(answer, known, tolerances)
         extent = Extent.of(answer.scene, answer.times, rung)
         notes += tuple(span_notes(answer.scene, answer.times, extent))
-        lack = list(not_judged(extent, missing_groups(groups, asked)))
+        lack = list(not_judged(extent, missing_groups(has, asked)))
         if lack and judged.record is not None:
             row = complete_verdict(scene, file.name, rung, lack, partial)
             judged = replace(judged, verdicts=(*judged.verdicts, row))
@@ -155,6 +166,8 @@ def judge_file(
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
+    else:
+        explained = Explained()
     if judged.record is not None:
         notes += tuple(load_notes(scene, judged.verdicts))
     left = () if accept_conventions else known.findings
@@ -182,7 +195,12 @@ def _judged(answer: FileRows, tolerances: Tolerances) -> Judgement:
         problem = adopt(side.scene, side.rung, side.instants)
         solver = Recorded(side, setting=side.file.name, carries_velocities=side.has_velocities)
         run = Run(problem, solver, solver.solve(problem), tolerances)
-        inputs = input_rounding(problem.given, side.rung, problem.scene)
+        inputs = with_angles_rounded(
+            input_rounding(problem.given, side.rung, problem.scene),
+            side.file,
+            side.places,
+            float(side.rung.unit_roundoff),
+        )
         of_side = gates_of(run, Steps(0), Costs(), inputs)
         records.append(run_record(run, [gate.record for gate in of_side]))
         for gate in of_side:

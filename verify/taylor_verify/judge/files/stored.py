@@ -23,8 +23,8 @@ from taylor_verify.records.precisions import bits_of
 from taylor_verify.records.quantities import (
     CONSERVED,
     GROUPS,
+    SOUND_ATTITUDE,
     STATES,
-    UNIT_QUATERNION,
     changed_by,
 )
 from taylor_verify.records.status import Status
@@ -142,7 +142,7 @@ def _left_by_storing(verdict: Verdict) -> float:
     """Return the largest error that storing a row leaves, in units of u."""
     if verdict.unit == "rad":
         return _ATTITUDE
-    if not verdict.is_conserved or verdict.quantity == UNIT_QUATERNION:
+    if not verdict.is_conserved or verdict.quantity in SOUND_ATTITUDE:
         return _VECTOR
     floor = verdict.reason.floor
     return 0.0 if floor is None or floor.growth is None else _GRADIENT * floor.growth

@@ -35,7 +35,7 @@ from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.judge.velocities import velocity_forms
-from taylor_verify.records.quantities import UNIT_QUATERNION
+from taylor_verify.records.quantities import ROTATION_MATRIX, UNIT_QUATERNION
 from taylor_verify.records.reason import Carried, Reason, RoundoffFloor, shown
 from taylor_verify.scenes.instants import chosen, evenly
 from taylor_verify.scenes.motion import Motion
@@ -155,14 +155,15 @@ class Floor:
             carried, shown(value), bits, steps, growth, alike=alike, velocities=self.velocities
         )
 
-    def lengths(self, excess: Floats) -> tuple[Errors, Floats, Reason]:
-        """Return the errors of the length of quaternions, the attainable error, and its terms.
+    def lengths(self, excess: Floats, of_matrices: bool) -> tuple[Errors, Floats, Reason]:
+        """Return the errors of the length of quaternions or matrices, the attainable error, and its terms.
 
-        ``excess`` (n,) is |q| - 1. An attitude is read from a quaternion of any length, so no other gate
-        depends on the length. A solver that rounds q in every step and never normalises it leaves | |q| -
-        1 | <= u N after N steps, even if all roundings have the same sign.
+        ``excess`` (n,) is |q| - 1, or (R^T R - 1)/2. An attitude is read from a quaternion of any length,
+        so no other gate depends on the length. A solver that rounds q in every step and never normalises it
+        leaves | |q| - 1 | <= u N after N steps, even if all roundings have the same sign.
         """
-        errors = Errors(UNIT_QUATERNION, "1", np.abs(excess), np.zeros(len(excess)), {})
+        name = ROTATION_MATRIX if of_matrices else UNIT_QUATERNION
+        errors = Errors(name, "1", np.abs(excess), np.zeros(len(excess)), {})
         elapsed = self.times / (np.max(self.times) or 1.0)
         steps = 1 + float(np.sum(self.steps_at)) * elapsed
         attainable = self.unit_roundoff * steps
@@ -171,7 +172,8 @@ class Floor:
         ends = (float(np.min(excess)), float(np.max(excess)))
         extent = " to ".join(dict.fromkeys(_length(end, value) for end in ends))
         bits = round(-log2(self.unit_roundoff))
-        terms = RoundoffFloor(Carried.LENGTH, shown(value), bits, count, lengths=extent)
+        carried = Carried.MATRIX if of_matrices else Carried.LENGTH
+        terms = RoundoffFloor(carried, shown(value), bits, count, lengths=extent)
         return errors, attainable, Reason(floor=terms)
 
     def worst(self) -> float:

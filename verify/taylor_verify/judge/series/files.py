@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from os import PathLike, fspath
@@ -12,7 +12,7 @@ from typing import Any, Final, TypeVar
 
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.series.order import Sample, orders
+from taylor_verify.judge.series.order import STEP, Sample, orders
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused, brief
 from taylor_verify.records.json_text import complete
@@ -22,7 +22,14 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import summary
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.files.file import TrajectoryFile
-from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows
+from taylor_verify.solvers.files.step import (
+    STEP_COLUMNS,
+    FileStep,
+    Source,
+    knob_of,
+    step_in_name,
+    step_of_rows,
+)
 
 Asked = TypeVar("Asked")
 
@@ -51,6 +58,12 @@ class FilesJudgement(Judgement):
     files: tuple[FileJudgement, ...]
     steps: tuple[FileStep | None, ...]
     order: tuple[Order, ...]
+
+    @property
+    def knob(self) -> str:
+        """The name of the number that differs from file to file, ``step`` by default."""
+        named = {order.knob.removeprefix("1/") for order in self.order} - {STEP}
+        return next(iter(named), "step")
 
     def document(self) -> dict[str, Any]:
         """Return the document that `check --json` prints for several files."""
@@ -81,19 +94,21 @@ class FilesJudgement(Judgement):
 
 
 def files_judgement(
-    judged: Sequence[FileJudgement], steps: Sequence[float] | None = None
+    judged: Sequence[FileJudgement], steps: Sequence[float] | None = None, knob: str = ""
 ) -> FilesJudgement:
     """Return the judgement of several judged files, with their order of convergence.
 
     ``steps`` are the steps of the files, if the caller knows them. Otherwise a step is read from the file,
-    its name or the spacing of its rows.
+    its name or the spacing of its rows; with a ``knob`` the number of that name is, in place of a step.
     """
-    known = steps_of([judgement.file for judgement in judged], steps)
+    known = steps_of([judgement.file for judgement in judged], steps, knob)
     samples = [
-        Sample(judgement, step.value)
+        Sample(judgement, step.value, is_step=knob in ("", *STEP_COLUMNS))
         for judgement, step in zip(judged, known, strict=True)
         if step is not None
     ]
+    if is_reciprocal := bool(knob) and _improves_upwards(samples):
+        samples = [replace(sample, step=1 / sample.step) for sample in samples]
     # Errors grow with time, so a file may end at most one row before the longest file.
     longest = max((_span(sample.times) for sample in samples), default=Fraction(0))
     ends = [_span(sample.times) + _span(sample.times[-2:]) for sample in samples]
@@ -102,14 +117,29 @@ def files_judgement(
     # Steps that are nearly equal show no order.
     neighbours = pairwise(sorted(whole, key=lambda sample: sample.step))
     alike = [(small, large) for small, large in neighbours if large.step < _ALIKE * small.step]
-    order = orders(whole) if len(whole) > 1 and not alike else ()
-    notes = tuple(_notes(judged, known, short, alike, order))
+    of = f"1/{knob}" if is_reciprocal else knob or STEP
+    order = orders(whole, of) if len(whole) > 1 and not alike else ()
+    notes = tuple(_notes(judged, known, short, alike, order, knob or STEP))
     verdicts = tuple(verdict for judgement in judged for verdict in judgement.verdicts)
     return FilesJudgement(verdicts, None, tuple(judged), known, order, notes=notes)
 
 
+def _improves_upwards(samples: Sequence[Sample]) -> bool:
+    """Return True if the error is smaller where the number is larger, as with substeps or iterations."""
+    errors = []
+    for sample in sorted(samples, key=lambda sample: sample.step):
+        states = states_among([v.quantity for v in sample.judged.verdicts if v.is_compared])
+        row = sample.row(states[0]) if states else None
+        errors.append(row.max if row else None)
+    known = [error for error in errors if error is not None]
+    return len(known) > 1 and known[-1] < known[0]
+
+
 def judge_files(
-    files: Sequence[Any], steps: Iterable[Any] | None, judge: Callable[[Any], Judgement]
+    files: Sequence[Any],
+    steps: Iterable[Any] | None,
+    judge: Callable[[Any], Judgement],
+    knob: str = "",
 ) -> FilesJudgement:
     """Return the judgement of a list of files, each judged by ``judge(file)``.
 
@@ -120,7 +150,7 @@ def judge_files(
     if faults := repeated([file for file in files if isinstance(file, str | PathLike)]):
         raise ValueError("\n".join(faults))
     known = None if steps is None else checked_steps(steps, len(files))
-    return files_judgement(judge_each(files, judge), known)
+    return files_judgement(judge_each(files, judge), known, knob)
 
 
 def judge_each(files: Iterable[Asked], judge: Callable[[Asked], Judgement]) -> list[FileJudgement]:
@@ -161,15 +191,17 @@ def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
 
 
 def steps_of(
-    files: Sequence[TrajectoryFile], given: Sequence[float] | None = None
+    files: Sequence[TrajectoryFile], given: Sequence[float] | None = None, knob: str = ""
 ) -> tuple[FileStep | None, ...]:
-    """Return the step of each file: as given, or from the file, its name or its rows.
+    """Return the step of each file: as given, or from the file, its name or its rows; or another knob.
 
     The spacing of the rows is used only if no file or name states a step, the rows are equally spaced, and
     the spacing differs from file to file.
     """
     if given is not None:
         return tuple(FileStep(step, Source.CALL) for step in given)
+    if knob:
+        return tuple(knob_of(file.name, knob) for file in files)
     stated = tuple(file.step or step_in_name(file.name) for file in files)
     if any(stated):
         return stated
@@ -210,14 +242,16 @@ def _notes(
     short: Iterable[Sample],
     alike: Iterable[tuple[Sample, Sample]],
     order: Sequence[Order],
+    knob: str,
 ) -> Iterator[str]:
-    yield from _source_notes(judged, steps)
+    yield from _source_notes(judged, steps, knob)
     for sample in short:
         yield f"{sample.judged.file.name} ends before the others do, and has no part in the order"
     for small, large in alike:
+        named = "step, h" if knob == STEP else knob
         names = f"{small.judged.file.name} and {large.judged.file.name}"
         yield (
-            f"no order of convergence: {names} have the same step, h = {small.step:g}; "
+            f"no order of convergence: {names} have the same {named} = {small.step:g}; "
             "--steps says others"
         )
     known = {record.quantity: record.order for record in order if record.order is not None}
@@ -246,20 +280,25 @@ def _notes(
 
 
 def _source_notes(
-    judged: Sequence[FileJudgement], steps: Sequence[FileStep | None]
+    judged: Sequence[FileJudgement], steps: Sequence[FileStep | None], knob: str
 ) -> Iterator[str]:
+    is_step = knob == STEP
     if len(judged) == 1:
         yield "no order of convergence: one file alone shows none"
         return
     known = [step for step in steps if step is not None]
     if len(known) < 2:
-        yield f"no order of convergence: the steps of the files are not known; {_HOW}"
+        how = _HOW if is_step else f"say it in the files' names (run_{knob}1e-6.csv)"
+        named = "the steps" if is_step else knob
+        yield f"no order of convergence: {named} of the files {'are' if is_step else 'is'} not known; {how}"
         return
     sources = dict.fromkeys(step.source for step in known)
     if Source.ROWS in sources:
         yield f"assumed: {Source.ROWS} is the step, because nothing states it; --steps says others"
     elif Source.CALL not in sources:
-        yield f"the steps are from {' and '.join(sources)}; --steps says others"
+        named = "the steps are" if is_step else f"{knob} is"
+        yield f"{named} from {' and '.join(sources)}; --steps says others"
     for judgement, step in zip(judged, steps, strict=True):
         if step is None:
-            yield f"the step of {judgement.file.name} is not known: it has no part in the order"
+            named = f"the {'step' if is_step else knob} of {judgement.file.name}"
+            yield f"{named} is not known: it has no part in the order"

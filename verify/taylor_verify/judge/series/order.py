@@ -23,14 +23,16 @@ from taylor_verify.records.observed_order import (
     convergence,
     local_orders,
 )
-from taylor_verify.records.quantities import COMPLETE, INITIAL, UNIT_QUATERNION
+from taylor_verify.records.quantities import COMPLETE, INITIAL, SOUND_ATTITUDE
 from taylor_verify.records.status import Status
 
 if TYPE_CHECKING:
     from taylor_verify.judge.files.judgement import FileJudgement
     from taylor_verify.records.verdict import Verdict
 
-_NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, UNIT_QUATERNION)
+_NOT_OF_THE_STEP: Final = (INITIAL, COMPLETE, *SOUND_ATTITUDE)
+# The step of an integrator, in the sentences.
+STEP: Final = "h"
 # Without the suspect, three files are needed to show an order.
 _FEWEST_WITH_A_SUSPECT: Final = 4
 # An error within this factor of 10^-d is explained by d printed digits.
@@ -43,6 +45,7 @@ class Sample:
 
     judged: FileJudgement
     step: float
+    is_step: bool = True
 
     def row(self, quantity: str) -> Verdict | None:
         """Return the verdict on a quantity; None if its error was not measured."""
@@ -58,12 +61,14 @@ class Sample:
 
     @property
     def roundings(self) -> float:
-        """Ratio of the floor for the integrator's steps to the floor for one step per row."""
+        """Ratio of the floor for the integrator's steps to that for one step per row; 1 if not known."""
+        if not self.is_step:
+            return 1.0
         steps = float(abs(self.times[-1] - self.times[0])) / self.step
         return sqrt(max(1.0, steps / len(self.times)))
 
 
-def orders(samples: Sequence[Sample]) -> tuple[Order, ...]:
+def orders(samples: Sequence[Sample], knob: str = STEP) -> tuple[Order, ...]:
     """Return the order of every quantity that depends on the step, in the order of the verdicts.
 
     Raises ValueError for two files with the same step.
@@ -71,10 +76,10 @@ def orders(samples: Sequence[Sample]) -> tuple[Order, ...]:
     samples = sorted(samples, key=lambda sample: -sample.step)
     verdicts = (v for sample in samples for v in sample.judged.verdicts if v.is_compared)
     names = dict.fromkeys(v.quantity for v in verdicts if v.quantity not in _NOT_OF_THE_STEP)
-    return tuple(_order(name, samples) for name in names)
+    return tuple(_order(name, samples, knob) for name in names)
 
 
-def _order(quantity: str, samples: Sequence[Sample]) -> Order:
+def _order(quantity: str, samples: Sequence[Sample], knob: str) -> Order:
     rows = [sample.row(quantity) for sample in samples]
     unit = next((row.unit for row in rows if row is not None), "")
     points = tuple(_points(samples, rows))
@@ -91,7 +96,7 @@ def _order(quantity: str, samples: Sequence[Sample]) -> Order:
         and point.error > CLEAR * max(point.attainable or 0.0, fit.level or 0.0)
         and (fit.stalls_at is None or point.step > fit.stalls_at)
     ]
-    order = Order(quantity, unit, points, "")
+    order = Order(quantity, unit, points, "", knob=knob)
     measured = [point for point in points if point.error is not None]
     if measured:
         best = min(measured, key=lambda point: point.error or 0.0)
@@ -191,7 +196,7 @@ def _sentences(order: Order, clear: Sequence[OrderPoint]) -> Iterator[str]:
         return
     yield f"{order.quantity}: {_order_words(order, clear)}"
     if order.best_step is not None and order.best_error is not None:
-        best = f"best h = {order.best_step:g} with {_accuracy(order, order.best_error)}"
+        best = f"best {order.knob} = {order.best_step:g} with {_accuracy(order, order.best_error)}"
         yield f"{best}{_below_the_best(order, order.best_step, order.best_error)}"
 
 
@@ -203,7 +208,7 @@ def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
     if order.order is not None and order.high is not None and order.largest is not None:
         spread = order.high - order.order
         uncertain = f" ± {spread:.1f}" if spread >= 0.05 else ""
-        steps = f"from h = {order.largest:g} to {order.smallest:g}"
+        steps = f"from {order.knob} = {order.largest:g} to {order.smallest:g}"
         # Larger steps may not be asymptotic, or may hide a lower order.
         larger = _locals([point for point in clear if point.step >= order.largest])
         local_orders = ", ".join(f"{local:.1f}" for local in larger)
@@ -215,15 +220,14 @@ def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
         labelled = next(p.step for p in order.points if p.file == order.suspect)
         return (
             f"{no_fit}; the others agree without {order.suspect}, whose error is that of "
-            f"h = {order.suspect_step:g} and not of {labelled:g}"
+            f"{order.knob} = {order.suspect_step:g} and not of {labelled:g}"
         )
     if len(between) >= 2:
         return no_fit
     if between:
         large, small = clear[0].step, clear[-1].step
-        return (
-            f"order {between[0]} between h = {large:g} and {small:g}, which no third step confirms"
-        )
+        pair = f"between {order.knob} = {large:g} and {small:g}"
+        return f"order {between[0]} {pair}, which no third step confirms"
     level = "roundoff" if order.stall is None else "the level at which errors stop falling"
     return f"no order shows, because fewer than two steps have an error well above {level}"
 
@@ -242,7 +246,9 @@ def _below_the_best(order: Order, step: float, error: float) -> str:
         last = order.points[-1]
         falls = "near roundoff" if _is_at_the_floor(last) else "the error still falls"
         return f", the smallest: {falls}" if step == last.step else ""
-    place = "below it" if order.stalls_at == step else f"from h = {order.stalls_at:g} down"
+    place = (
+        "below it" if order.stalls_at == step else f"from {order.knob} = {order.stalls_at:g} down"
+    )
     if order.stall is Stall.ROUNDOFF:
         return f"; {place} roundoff takes over"
     if order.stall is Stall.DIGITS:

@@ -15,10 +15,19 @@ import numpy as np
 from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.request import Request
-from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, own_columns
+from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column, check_size
+from taylor_verify.solvers.files.own_states import own_columns
+from taylor_verify.solvers.files.rotations import bare, groups_of, is_rotation
 
+# A form of the attitude, in radians or with a unit behind its name: zyx_deg.
+FORM_COLUMNS: Final = {
+    f"{form.name}{unit}": form.columns
+    for form in FORMS.values()
+    for unit in ("", *(("_deg", "_rad") if form.angles else ()))
+}
 _ACCEPTED: Final = (
     "a callable solve(problem), a trajectory file, a DataFrame, an xarray Dataset, a dict of arrays or "
     "SciPy's OdeResult"
@@ -61,18 +70,19 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
         for name in names:
             gathered.take(name, answer[name])
     elif isinstance(answer, Mapping):
+        gathered.count_rows(answer)
         for name, values in answer.items():
             gathered.take(name, values)
     else:
         got = f"{type(answer).__name__}: {brief(answer)}"
-        if hasattr(answer, "as_quat"):
+        if is_rotation(answer):
             got = f'a {type(answer).__name__} alone (write {{"t": times, "attitude": rotations}})'
         raise ValueError(f"expected {_ACCEPTED}, got {got}")
     if gathered.faults.lines:
         raise Refused(gathered.faults.lines)
     taken = gathered.columns
     check_size(len(taken), max((len(c.values) for c in taken), default=0), place)
-    return from_columns(taken, place, columns, gathered.notes, own_columns(scene))
+    return from_columns(taken, place, columns, gathered.notes, scene)
 
 
 class _Gathered:
@@ -83,9 +93,15 @@ class _Gathered:
 
     def __init__(self, place: str, own: Mapping[str, tuple[str, ...]]) -> None:
         self.place, self.faults = place, Faults()
-        self._groups = {**COLUMNS, **own}
+        self._groups = {**COLUMNS, **FORM_COLUMNS, **own}
+        self._rows = 0
         self.columns: list[Column] = []
         self.notes: list[str] = []
+
+    def count_rows(self, values: Mapping[Any, Any]) -> None:
+        """Count the times, by which a stack of matrices 3 x 3 x n is known."""
+        clock = next((values[name] for name in ("t", "time", "tout") if name in values), ())
+        self._rows = len(clock) if hasattr(clock, "__len__") else 0
 
     def take_states(self, result: Any, scene: Scene, in_order: bool) -> None:
         """Take the states of SciPy's result, as the protocol orders them or as ``y[0] y[1] ...``."""
@@ -147,22 +163,25 @@ class _Gathered:
     def take(
         self, key: Any, values: Any, unit: str = "", labels: Sequence[Sequence[str]] = ()
     ) -> None:
-        """Take a named value: an array of any shape whose rows are the samples, or a Rotation.
+        """Take a named value: an array of any shape whose rows are the samples, or rotations.
 
         ``labels`` are the ends of the names of components along each axis, where they are no indices.
         """
         name = _written(key)
-        if hasattr(values, "as_quat") and hasattr(values, "as_matrix"):
-            # Asked for in the order that SciPy has by default, scalar last.
-            rows = np.atleast_2d(values.as_quat())[:, [3, 0, 1, 2]]
-            self._own("quaternion", rows, f"`{cut(name)}`, a {type(values).__name__},")
+        if groups := groups_of(values):
+            for group, rows in groups.items():
+                self._own(group, rows, f"`{cut(name)}`, a {type(values).__name__},")
             return
+        values, stated = bare(values)
+        unit = f" [{stated}]" if stated else unit
         array = _array(values)
         if array is None:
             if name in self._groups:
                 self._refuse("an array", "rows of different lengths", name)
             self.columns.append(Column(name, list(values)))
-        elif array.ndim == 1:
+            return
+        array = self._by_rows(array)
+        if array.ndim == 1:
             self._add(name + unit, array)
         elif group := self._group(name, array):
             shape = " x ".join(str(size) for size in array.shape)
@@ -174,6 +193,13 @@ class _Gathered:
                     for axis, i in enumerate(index)
                 ]
                 self._add(f"{name}{''.join(ends)}{unit}", entries)
+
+    def _by_rows(self, array: Any) -> Any:
+        """Return an array by rows; Simulink stacks its matrices, 3 x 3 x n and 3 x 1 x n."""
+        if array.ndim < 2 or len(array) == self._rows or self._rows not in array.shape:
+            return array
+        rows = np.moveaxis(array, array.shape.index(self._rows), 0)
+        return rows.reshape(len(rows), *(size for size in rows.shape[1:] if size > 1))
 
     def _group(self, name: str, array: Any) -> str:
         """Return the group that an array is by its name, ours to the letter, and its shape; or empty."""
@@ -191,8 +217,10 @@ class _Gathered:
         names = self._groups[group]
         order = ", scalar first" if group == "quaternion" else ""
         self.notes.append(f"{subject} taken as {' '.join(names)}{order}")
+        form, _, stated = group.rpartition("_")
+        angles = FORMS[form].angles if form in FORMS and stated in ("deg", "rad") else ()
         for name, values in zip(names, rows.T, strict=True):
-            self._add(name + unit, values)
+            self._add(name + (f" [{stated}]" if name in angles else unit), values)
 
     def _add(self, name: str, values: Any) -> None:
         if values.dtype.kind == "m":

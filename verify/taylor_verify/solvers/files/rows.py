@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any, Final, final, overload
+from typing import Any, Final, overload
 
 import gmpy2
 import numpy as np
@@ -33,7 +33,6 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 _NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
-@final
 class Rows(Sequence[tuple[Value, ...]]):
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
@@ -55,6 +54,10 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __len__(self) -> int:
         return self._count
 
+    @property
+    def width(self) -> int:
+        return len(self._columns)
+
     @overload
     def __getitem__(self, place: int) -> tuple[Value, ...]: ...
 
@@ -64,11 +67,15 @@ class Rows(Sequence[tuple[Value, ...]]):
     def __getitem__(self, place: int | slice) -> Any:
         if isinstance(place, slice):
             return tuple(self[k] for k in range(self._count)[place])
-        return next(zip(*map(_exact, self._some([place])), strict=True))
+        return next(self.values_at([place]))
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
         for part in _chunks(self._count):
-            yield from zip(*map(_exact, self._some(part)), strict=True)
+            yield from self.values_at(part)
+
+    def values_at(self, places: Sequence[int]) -> Iterator[tuple[Value, ...]]:
+        """Yield some of the rows."""
+        return zip(*map(_exact, self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
@@ -169,8 +176,11 @@ def _as_mpf(values: Raw, bits: int) -> Array:
 # What is read of a file.
 
 
-def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
-    """Return True for the entries that are finite numbers; add a fault for text and too large numbers."""
+def check_numbers(column: Column, file: str, faults: Faults, blank: Flags) -> Flags:
+    """Return True for the entries that are finite numbers; add a fault for text and too large numbers.
+
+    Rows that are ``blank`` are passed over.
+    """
     finite = np.ones(len(column.values), dtype=bool)
     with alike(faults, f"{file}, column {column.name}") as wrong:
         for part in _chunks(len(column.values)):
@@ -181,13 +191,20 @@ def check_numbers(column: Column, file: str, faults: Faults) -> Flags:
                 suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
             else:
                 suspects = np.full(len(values), not _is_short(values))
-            for k in np.flatnonzero(suspects).tolist():
+            passed = blank[part.start : part.stop]
+            finite[part.start : part.stop] &= ~passed
+            for k in np.flatnonzero(suspects & ~passed).tolist():
                 try:
                     finite[part[k]] = _is_finite(values[k])
                 except ValueError as error:
                     place = f"{file}, row {part[k] + 1}, column {column.name}"
                     wrong(str(error), shown(values[k]), place)
     return finite
+
+
+def entries_at(column: Column, places: Sequence[int]) -> Column:
+    """Return a column with some of its entries."""
+    return column._replace(values=_some(column.values, places))
 
 
 def _is_finite(raw: object) -> bool:

@@ -13,6 +13,7 @@ from typing import Final
 
 from taylor_verify.records.regular_file import regular_file
 from taylor_verify.solvers.files.formats.column import BYTES, Column
+from taylor_verify.solvers.files.formats.reading import parted
 from taylor_verify.solvers.values import exact
 
 # A column of these names that has one value says the step; it is no part of the motion.
@@ -23,11 +24,22 @@ _NUMBER: Final = (
     r"(?P<number>(?:[0-9]{1,20}(?:[.p][0-9]{1,40})?|\.[0-9]{1,40})(?:e[+-]?[0-9]{1,2})?)"
 )
 _WORD: Final = r"(?P<word>dt|h|step|step[ _-]?size|time[ _-]?step)"
-_STATED: Final = rf"(?<![A-Za-z]){_WORD}%s{_NUMBER}(?![0-9A-Za-z])"
-# run_h0.01, dt=0.01, rk4-step_0.5; neither ch0.1 nor dt10ms.
-_IN_NAME: Final = re.compile(_STATED % "[=_-]?", re.IGNORECASE)
-_IN_COMMENT: Final = re.compile(_STATED % r"\s*[=:]\s*", re.IGNORECASE)
-_IN_JSON: Final = re.compile(rf'"{_WORD}"\s*:\s*"?{_NUMBER}"?\s*[,}}]', re.IGNORECASE)
+
+
+def _stated(word: str, between: str) -> re.Pattern[str]:
+    """Return the pattern of a word and its number: run_h0.01, dt=0.01; neither ch0.1 nor dt10ms."""
+    text = rf"(?<![A-Za-z]){word}{between}{_NUMBER}(?![0-9A-Za-z])"
+    return re.compile(text, re.IGNORECASE)
+
+
+def _as_key(word: str) -> re.Pattern[str]:
+    """Return the pattern of a key of JSON with its number."""
+    return re.compile(rf'"{word}"\s*:\s*"?{_NUMBER}"?\s*[,}}]', re.IGNORECASE)
+
+
+_IN_NAME: Final = _stated(_WORD, "[=_-]?")
+_IN_COMMENT: Final = _stated(_WORD, r"\s*[=:]\s*")
+_IN_JSON: Final = _as_key(_WORD)
 # Comments that say the step stand at the top.
 _HEAD_BYTES: Final = 2**14
 # Rows are equally spaced if their spacing differs by no more than printed times make it.
@@ -60,7 +72,7 @@ def step_inside(path: Path, columns: Iterable[Column]) -> FileStep | None:
     for name, values in columns:
         if name.lower() in STEP_COLUMNS and (value := _only_value(values)) is not None:
             return FileStep(value, Source.FILE)
-    return _only(_stated_in_head(path), Source.FILE)
+    return _only(_stated_in_head(path, _IN_COMMENT, _IN_JSON), Source.FILE)
 
 
 def step_in_name(name: str) -> FileStep | None:
@@ -72,6 +84,20 @@ def step_in_name(name: str) -> FileStep | None:
     return None
 
 
+def knob_of(name: str, knob: str) -> FileStep | None:
+    """Return the number of a knob that a file's name states, that of its folder, or a comment or key in it.
+
+    A name is one such as ``run_rtol1e-6.csv``.
+    """
+    word = rf"(?P<word>{re.escape(knob)})"
+    path = parted(name)[0]
+    for part in (path.stem, path.parent.name):
+        if step := _only(_stated(word, "[=_-]?").finditer(part), Source.NAME):
+            return step
+    comment, key = _stated(word, r"\s*[=:]\s*"), _as_key(word)
+    return _only(_stated_in_head(path, comment, key), Source.FILE)
+
+
 def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
     """Return the spacing of equally spaced rows; None for other rows."""
     if len(times) < _FEWEST_ROWS:
@@ -81,18 +107,20 @@ def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
     return FileStep(float(abs(mean)), Source.ROWS) if even else None
 
 
-def _stated_in_head(path: Path) -> Iterator[re.Match[str]]:
+def _stated_in_head(
+    path: Path, comment: re.Pattern[str], key: re.Pattern[str]
+) -> Iterator[re.Match[str]]:
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".tsv", ".txt", ".json"):
         return
     with regular_file(path, "a trajectory file", BYTES) as file:
         head = file.read(_HEAD_BYTES).decode("utf-8", errors="replace")
     if suffix == ".json":
-        yield from _IN_JSON.finditer(head)
+        yield from key.finditer(head)
         return
     for line in head.splitlines():
         if line.lstrip().startswith("#"):
-            yield from _IN_COMMENT.finditer(line)
+            yield from comment.finditer(line)
 
 
 def _only(stated: Iterable[re.Match[str]], source: Source) -> FileStep | None:

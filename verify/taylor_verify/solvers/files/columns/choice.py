@@ -11,10 +11,13 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.records.faults import cut
-from taylor_verify.solvers.files.columns.names import GROUPS, Spelling
+from taylor_verify.solvers.files.columns.forms import FORMS
+from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.units import OWN, Unit
+from taylor_verify.solvers.files.columns.spelling import Spelling
+from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
 
+_TO_SPACE: Final = "body axes to space axes"
 MOST_NAMED: Final = 8
 _NUMBERED: Final = re.compile(r"[a-z]\d")
 
@@ -27,7 +30,8 @@ class Rank(IntEnum):
 
     ASKED = 0
     OURS = 1
-    USUAL = 2
+    PROGRAM = 2
+    USUAL = 3
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ class Choice:
     names: tuple[Name, ...]
     units: tuple[Unit | None, ...]
     rank: Rank
-    remark: str = ""
+    spelling: Spelling
     doubt: str = ""
 
     @property
@@ -48,13 +52,19 @@ class Choice:
     @property
     def note(self) -> str:
         """The sentence about what was taken; empty for our own names in the scene's units."""
+        if self.doubt:
+            return ""
         words = dict.fromkeys(unit.words for unit in self.units if unit and unit.words)
         is_plain = all(name.is_ours for name in self.names)
         if is_plain and not words and self.rank is not Rank.ASKED:
             return ""
-        parts = [f"{self.shown} taken as {' '.join(GROUPS[self.group])}"]
-        parts += [self.remark] if self.remark and not is_plain else []
+        form, spelling = FORMS.get(self.group), self.spelling
+        parts = [f"{self.shown} taken as {form.words if form else ' '.join(GROUPS[self.group])}"]
+        parts += [_TO_SPACE] if form and not spelling.turn else []
+        parts += [spelling.remark] if spelling.remark and not is_plain and not form else []
+        parts += [str(spelling.turn)] if spelling.turn else []
         parts += [f"in {' and in '.join(words)}"] if words else []
+        parts += [f"the habit of {spelling.whose}"] if spelling.whose else []
         return ", ".join(parts)
 
 
@@ -66,10 +76,11 @@ def shown_names(names: Sequence[Name]) -> str:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The names of a file, and those that the caller assigned to our names."""
+    """The names of a file, and those that the caller assigned to our names, some with ``units``."""
 
     names: Sequence[Name]
     asked: Mapping[str, Name]
+    units: Mapping[str, Unit]
 
     @cached_property
     def free(self) -> list[Name]:
@@ -79,7 +90,8 @@ class Candidates:
 
     @cached_property
     def _keys(self) -> set[str]:
-        return {name.key for name in self.free}
+        """The names without their units, and whole, for brackets that are a part of a name."""
+        return {key for name in self.names for key in (name.key, name.whole_key)}
 
     @cached_property
     def cells(self) -> Mapping[tuple[Spelling, str], Cells]:
@@ -95,11 +107,15 @@ class Candidates:
         """Return every spelling all of whose names are there; each set of columns once."""
         choices: dict[tuple[Name, ...], Choice] = {}
         for (spelling, path), cells in self.cells.items():
-            is_possible = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
-            is_possible = is_possible and self.keeps_company(spelling, path)
-            if spelling.group == group and is_possible and (whole := self._whole(spelling, cells)):
+            if spelling.group != group or not self._is_possible(spelling, path, chosen):
+                continue
+            if whole := self._whole(spelling, cells):
                 choices.setdefault(whole.names, whole)
         return list(choices.values())
+
+    def _is_possible(self, spelling: Spelling, path: str, chosen: Mapping[str, Choice]) -> bool:
+        is_alone = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
+        return is_alone and self.keeps_company(spelling, path) and self.has_signs(spelling)
 
     def keeps_company(self, spelling: Spelling, path: str) -> bool:
         """Return True if the company of a spelling stands behind its path, and what it shuns does not."""
@@ -108,6 +124,26 @@ class Candidates:
         there = {key for key, place in self._parts if place == path}
         is_apart = not spelling.apart_from or not there.issuperset(spelling.apart_from)
         return is_apart and there.issuperset(spelling.company)
+
+    def has_signs(self, spelling: Spelling) -> bool:
+        """Return True if the file has a name by which the program of a spelling is known."""
+        return not spelling.signs or any(
+            all(any(key.endswith(sign) for key in self._keys) for sign in signs)
+            for signs in spelling.signs
+        )
+
+    def asked_unit(self, own: str, group: str) -> Unit:
+        """Return the unit of a column that is asked for."""
+        name = self.asked[own]
+        if (spelling := self.of_clock(name)) and group == "time":
+            return in_brackets(spelling.unit, group) or OWN
+        return self.units.get(own) or name.unit(group) or OWN
+
+    def of_clock(self, name: Name) -> Spelling | None:
+        """Return the spelling of a program that states the unit of a time, where the name does not."""
+        spellings = (reading.spelling for reading in name.readings if reading.unit is OWN)
+        stated = (s for s in spellings if s.group == "time" and s.unit and self.has_signs(s))
+        return next(stated, None)
 
     @cached_property
     def _parts(self) -> set[tuple[str, str]]:
@@ -122,21 +158,22 @@ class Candidates:
         for component, own in enumerate(ours):
             hits = cells.get(component, ())
             if own in self.asked:
-                hits = [(self.asked[own], self.asked[own].unit(spelling.group) or OWN)]
+                hits = [(self.asked[own], self.asked_unit(own, spelling.group))]
             hits = [hit for hit in hits if hit[0].text == own] or hits
             if not hits:
                 return None
             if len(hits) > 1:
                 doubt = doubt or f"{shown_names([name for name, _ in hits])} are alike"
             names.append(hits[0][0])
-            units.append(hits[0][1])
+            stated = in_brackets(spelling.unit, spelling.group)
+            units.append(stated if stated and hits[0][1] is OWN else hits[0][1])
         is_own = all(name.is_ours for name in names) and spelling.keys == ours
         if not is_own and self.numbered_beside(spelling.keys):
             return None
-        rank = Rank.OURS if is_own else Rank.USUAL
+        rank = Rank.OURS if is_own else Rank.PROGRAM if spelling.whose else Rank.USUAL
         if not self.asked.keys().isdisjoint(ours):
             rank = Rank.ASKED
-        return Choice(spelling.group, tuple(names), tuple(units), rank, spelling.remark, doubt)
+        return Choice(spelling.group, tuple(names), tuple(units), rank, spelling, doubt)
 
     def numbered_beside(self, keys: Sequence[str]) -> list[Name]:
         """Return the names of a letter and a digit as these are, and others than these."""

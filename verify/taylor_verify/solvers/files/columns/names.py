@@ -8,14 +8,20 @@ add it here; the notes of a file, the help and the documentation speak of what w
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
 from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
+from taylor_verify.solvers.files.columns.programs import entries, spellings_of
+from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
 
-# Every group of columns, time among them, with the names that are ours.
-GROUPS: Final[Mapping[str, tuple[str, ...]]] = {"time": ("t",), **COLUMNS}
+# Every group of columns, time and forms of the attitude among them, with the names that are ours.
+GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
+    "time": ("t",),
+    **COLUMNS,
+    **{form.name: form.columns for form in FORMS.values()},
+}
 KNOWN: Final = tuple(name for names in GROUPS.values() for name in names)
 GROUP_OF: Final = {name: group for group, names in GROUPS.items() for name in names}
 
@@ -25,27 +31,6 @@ _FROM_ZERO: Final = ("0", "1", "2")
 _TRIPLES: Final = (_LETTERS, _FROM_ONE, _FROM_ZERO)
 
 
-@dataclass(frozen=True)
-class Spelling:
-    """Names of all components of a group; ``remark`` is said wherever it is taken.
-
-    ``is_whole`` names have no path in front of them: the x of ``acceleration.x`` is no position. A spelling
-    is taken only ``beside`` another group, and not where a name of ``unless`` is in the file. It is taken
-    with all names of ``company`` behind the same path, and not with all names of ``apart_from``. One with a
-    ``doubt`` is never taken: the doubt says why.
-    """
-
-    group: str
-    keys: tuple[str, ...]
-    remark: str = ""
-    is_whole: bool = False
-    beside: str = ""
-    unless: frozenset[str] = frozenset()
-    company: tuple[str, ...] = ()
-    apart_from: tuple[str, ...] = ()
-    doubt: str = ""
-
-
 def _pairs(components: Sequence[str]) -> tuple[str, ...]:
     return tuple(i + k for i, k in product(components, repeat=2))
 
@@ -53,9 +38,10 @@ def _pairs(components: Sequence[str]) -> tuple[str, ...]:
 # The ways to count the components of a group, each in our order.
 COMPONENTS: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
     "time": (("",),),
-    **dict.fromkeys(COLUMNS, _TRIPLES),
-    "quaternion": (("w", *_LETTERS), ("0", *_FROM_ONE), (*_FROM_ONE, "4")),
+    **dict.fromkeys((*COLUMNS, *FORMS), _TRIPLES),
+    "quaternion": (("w", *_LETTERS), ("s", *_LETTERS), ("0", *_FROM_ONE), (*_FROM_ONE, "4")),
     "attitude": tuple(_pairs(triple) for triple in (_FROM_ONE, _FROM_ZERO, _LETTERS)),
+    "axis_angle": ((*_LETTERS, "angle"), (*_FROM_ONE, "4"), (*_FROM_ZERO, "3")),
 }
 
 # Names that take x y z, 1 2 3 or 0 1 2 behind them.
@@ -70,7 +56,16 @@ _STEMS: Final = {
     "linear_impulse": "linearimpulse impulselinear",
     "angular_impulse": "angularimpulse impulseangular",
     "centre": "c centre center position pos translation location",
+    "rotvec": "rotvec rotationvector",
+    "mrp": "mrp mrps modifiedrodrigues",
+    **{name: f"euler{name} euler{name}angle" for name in SEQUENCES},
 }
+_OF_ANGLES: Final = ("euler", "eulerangle", "eulerangles", "eul", "att", "attitude", "angle")
+# Names that say that the components are along axes of space.
+_IN_SPACE: Final = (
+    "omegaworld omegaspace worldomega spaceomega angvelworld angularvelocityworld "
+    "angularvelocityspace worldangularvelocity"
+)
 # Other names of all components, in our order.
 _WORDS: Final = {
     "centre": ("xpos ypos zpos",),
@@ -82,13 +77,25 @@ _WORDS: Final = {
         "qr qi qj qk",
         "eta eps1 eps2 eps3",
         "eta epsilon1 epsilon2 epsilon3",
+        "beta0 beta1 beta2 beta3",
+        "ep0 ep1 ep2 ep3",
+    ),
+    "mrp": ("sigma1 sigma2 sigma3", "sigma0 sigma1 sigma2"),
+    "axis_angle": ("axisx axisy axisz angle", "axis1 axis2 axis3 angle", "axis0 axis1 axis2 angle"),
+    # Of ships, aircraft and robots: yaw, then pitch, then roll, about axes that move along.
+    "zyx": (
+        *(f"{yaw} pitch roll" for yaw in ("yaw", "heading")),
+        *("psi theta phi", "heading trim heel", "yawangle pitchangle rollangle"),
+        *(f"{stem}yaw {stem}pitch {stem}roll" for stem in _OF_ANGLES),
+        *(f"{stem}psi {stem}theta {stem}phi" for stem in _OF_ANGLES),
+        *("rpy2 rpy1 rpy0", "rpy3 rpy2 rpy1", "rpyz rpyy rpyx", "ypr0 ypr1 ypr2", "ypr1 ypr2 ypr3"),
     ),
 }
 _TIMES: Final = (
     "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed "
     "elapsedtime"
 )
-_ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
+_ATTITUDES: Final = "q quat quaternion orientation orn attitude att rotation"
 _MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
 # A direction cosine matrix takes space to body as often as body to space.
 _COSINES: Final = "dcm directioncosinematrix c"
@@ -100,18 +107,28 @@ _DOUBT: Final = "the scalar is the first of them or the last, and the names do n
 _TO_SPACE: Final = "body axes to space axes"
 _TO_BODY_SHOWS: Final = f"{_TO_SPACE}; one that takes space to body shows as transposed"
 _AXES: Final = {"omega": "body axes", "linear_velocity": "of the body's origin, in body axes"}
-_REMARKS: Final = {**_AXES, "quaternion": "scalar first", "attitude": _TO_SPACE}
+_REMARKS: Final = {
+    **_AXES,
+    "quaternion": "scalar first",
+    "attitude": _TO_SPACE,
+    **{form.name: f"{form.words}, {_TO_SPACE}" for form in FORMS.values()},
+}
 
 
 def _spellings() -> Iterator[Spelling]:
+    for entry in entries():
+        yield from spellings_of(entry, _REMARKS.get(entry["group"], ""))
     for group, names in GROUPS.items():
         yield Spelling(group, names, _REMARKS.get(group, ""))
     for group, stems in _STEMS.items():
         for stem, triple in product(stems.split(), _TRIPLES):
-            yield Spelling(group, tuple(stem + c for c in triple), _AXES.get(group, ""))
+            yield Spelling(group, tuple(stem + c for c in triple), _REMARKS.get(group, ""))
+    for stem, triple in product(_IN_SPACE.split(), _TRIPLES):
+        yield Spelling("omega", tuple(stem + c for c in triple), turn=Turn.SPACE_AXES)
     for group, spelled in _WORDS.items():
         for words in spelled:
-            yield Spelling(group, tuple(words.split()), _AXES.get(group, ""))
+            frame = Frame.ANGLES if words.startswith("roll") else Frame.UNSAID
+            yield Spelling(group, tuple(words.split()), _REMARKS.get(group, ""), frame=frame)
     for name in _TIMES.split():
         yield Spelling("time", (name,))
     yield Spelling("centre", _LETTERS, is_whole=True)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES, Spelling
+from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.spelling import Spelling
 from taylor_verify.solvers.files.columns.units import (
     OWN,
     Unit,
@@ -83,12 +84,17 @@ class Name:
         """All letters and digits of the name, the unit left out."""
         return letters(self._parts[0])
 
+    @cached_property
+    def whole_key(self) -> str:
+        """All letters and digits of the name, those in brackets too."""
+        return letters(plain(self.text[:_LONGEST]))
+
     def unit(self, group: str) -> Unit | None:
         """Return the unit of a column that is of this group, by its brackets or the end of its name."""
         name, brackets = self._parts
         if brackets is not None:
             return in_brackets(brackets, group)
-        suffixed = (as_suffix(end, group) for _, end in _suffixes(name))
+        suffixed = (as_suffix(end, group) for _, end in _without_units(name))
         return next((unit for unit in suffixed if unit is not None), OWN)
 
     @cached_property
@@ -98,8 +104,15 @@ class Name:
             return ()
         readings: dict[tuple[Spelling, int], Reading] = {}
         matched: set[str] = set()
-        for path, name in _tails(self._parts[0]):
-            here = [r for r in self._of(path, name) if r.spelling.group not in matched]
+        if self._parts[1] is not None and self.whole_key in PLACES:
+            # The brackets belong to the name: P_{inertial}.
+            return tuple(Reading(*place, "", OWN) for place in _places(self.whole_key, ""))
+        for path, name, is_behind in _tails(self._parts[0]):
+            # The T of IMU.T is a temperature.
+            if path and name == "t" and self.text.endswith("T"):
+                continue
+            every = (r for r in self._of(path, name) if r.spelling.is_behind is is_behind)
+            here = [r for r in every if r.spelling.group not in matched or is_behind]
             for reading in here:
                 readings.setdefault((reading.spelling, reading.component), reading)
             matched |= {reading.spelling.group for reading in here}
@@ -110,7 +123,7 @@ class Name:
         for spelling, component in _places(name, path):
             unit = OWN if brackets is None else in_brackets(brackets, spelling.group)
             yield Reading(spelling, component, path, unit)
-        for stem, end in _suffixes(name) if brackets is None else ():
+        for stem, end in _without_units(name) if brackets is None else ():
             for spelling, component in _places(stem, path):
                 if unit := as_suffix(end, spelling.group):
                     yield Reading(spelling, component, path, unit)
@@ -119,23 +132,27 @@ class Name:
 def _places(name: str, path: str) -> Iterator[tuple[Spelling, int]]:
     key = letters(name)
     # The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
-    if path and _TERSE.fullmatch(key):
-        return
+    is_terse = bool(path) and _TERSE.fullmatch(key) is not None
     for spelling, component in PLACES.get(key, ()):
-        if not (path and spelling.is_whole):
+        is_bare = spelling.is_whole or (is_terse and not spelling.whose)
+        if not (path and is_bare):
             yield spelling, component
 
 
-def _tails(name: str) -> Iterator[tuple[str, str]]:
-    """Yield the name, and what is left of it behind longer and longer paths."""
-    yield "", name
+def _tails(name: str) -> Iterator[tuple[str, str, bool]]:
+    """Yield the name, and what is left of it behind longer and longer paths, then behind a word and _."""
+    yield "", name, False
     for separator in re.finditer(r"[/.]", name):
         if separator.start():
-            yield name[: separator.start()], name[separator.end() :]
+            yield name[: separator.start()], name[separator.end() :], False
+    before, _, last = name.rpartition("_")
+    if before:
+        yield before, last, True
 
 
-def _suffixes(name: str) -> Iterator[tuple[str, str]]:
-    """Yield the name without its last words, and the letters of these, the longest end first."""
-    words = re.split(r"([_\s./]+)", name)
-    for count in range(min(_LONGEST_SUFFIX, len(words) // 2), 0, -1):
-        yield "".join(words[: -2 * count]), letters("".join(words[-2 * count + 1 :: 2]))
+def _without_units(name: str) -> Iterator[tuple[str, str]]:
+    """Yield the name without some of its later words, and the letters of these, the longest end first."""
+    words = re.split(r"([_\s./-]+)", name)
+    for last in range(len(words), 1, -2):
+        for first in range(max(2, last + 1 - 2 * _LONGEST_SUFFIX), last + 1, 2):
+            yield "".join(words[: first - 1] + words[last:]), letters("".join(words[first:last:2]))

@@ -1,7 +1,8 @@
 """The columns that a caller assigns by name: ``w1=wx,t=Time [s]``, each NAME one of ours.
 
 A NAME may also be a whole group, ``omega=gyro``: then ``gyro_x gyro_y gyro_z`` or ``gyro[0] ...`` are its
-columns, in our order.
+columns, in our order; ``omega=2:4`` and ``omega=p:r`` name its first and its last column, by number from 1
+or by name. A form of the attitude is a group too, in radians, or with a unit: ``zyx_deg=5:7``.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from taylor_verify.records.faults import Faults, cut, near
+from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.names import COMPONENTS, GROUPS, KNOWN
 from taylor_verify.solvers.files.columns.readings import Name
+from taylor_verify.solvers.files.columns.units import Unit, in_brackets
 from taylor_verify.solvers.files.formats.column import Column
 
 # Pairs of a name of ours and a name of the file's.
@@ -22,6 +25,8 @@ Request = Sequence[tuple[str, str]]
 # A comma belongs to the name of a column unless NAME= follows it.
 _NEXT: Final = re.compile(r",(?=\s*\w+\s*=)")
 _MOST_NEAR: Final = 3
+# The axes of a sequence by number: 321 is zyx.
+_AXES: Final = str.maketrans("123", "xyz")
 
 
 def request(texts: Iterable[str]) -> Request:
@@ -37,15 +42,20 @@ def _unquoted(text: str) -> str:
 
 def asked_columns(
     wanted: Request, names: Sequence[Name], place: str, faults: Faults
-) -> Mapping[str, Name]:
-    """Return the file's name for each of ours that is asked for; what cannot be met is a fault."""
+) -> tuple[Mapping[str, Name], Mapping[str, Unit]]:
+    """Return the file's name for each of ours that is asked for, and the units that are said with it.
+
+    What cannot be met is a fault.
+    """
     by_text = {name.text: name for name in names}
     asked: dict[str, Name] = {}
+    units: dict[str, Unit] = {}
     used: dict[str, str] = {}
     for name, theirs in wanted:
         at = f"columns {cut(name)}={cut(theirs)}"
-        if name in GROUPS and not (name == theirs and name in by_text):
-            pairs = _of_group(name, theirs, names, at, faults)
+        group, unit = _group(name)
+        if group in GROUPS and not (name == theirs and name in by_text):
+            pairs = _of_group(group, theirs, names, at, faults)
         elif name in KNOWN:
             pairs = [(name, theirs)]
         else:
@@ -62,21 +72,58 @@ def asked_columns(
                 faults.add("every column once", f"`{cut(own)}`, which is {used[own]}", at)
             else:
                 asked[ours], used[own] = by_text[own], ours
-    return asked
+                if unit and ours in FORMS[group].angles:
+                    units[ours] = unit
+    return asked, units
+
+
+def _group(name: str) -> tuple[str, Unit | None]:
+    """Return the group that a request names, and the unit behind the name of a form: ``zyx_deg``."""
+    stem, _, unit = name.rpartition("_")
+    for form, text in ((name, ""), (stem, unit)):
+        sequence = form.lower().translate(_AXES)
+        group = sequence if sequence in SEQUENCES else form
+        if group in FORMS and (not text or (FORMS[group].angles and in_brackets(text, group))):
+            return group, in_brackets(text, group)
+    return name, None
 
 
 def _of_group(
     group: str, theirs: str, names: Sequence[Name], at: str, faults: Faults
 ) -> list[tuple[str, str]]:
-    """Return the columns of a whole group, whose names begin with one word."""
+    """Return the columns of a whole group: between two ends, or with one word before each."""
     if group == "time":
         return [("t", theirs)]
+    ours, ends = GROUPS[group], theirs.split(":")
+    places = [place for end in ends if (place := _place(end, names)) is not None]
+    if len(ends) == len(places) == 2:
+        texts = [name.text for name in names[places[0] : places[1] + 1]]
+        if len(texts) == len(ours):
+            return list(zip(ours, texts, strict=True))
+        faults.add(f"{len(ours)} columns", f"{len(texts)} from {ends[0]} to {ends[1]}", at)
+        return []
+    return _of_stem(group, theirs, names, at, faults)
+
+
+def _place(end: str, names: Sequence[Name]) -> int | None:
+    """Return the index of the column that a name or a number from 1 means."""
+    texts = [name.text for name in names]
+    if end.strip() in texts:
+        return texts.index(end.strip())
+    is_number = end.strip().isdecimal() and 0 < int(end) <= len(names)
+    return int(end) - 1 if is_number else None
+
+
+def _of_stem(
+    group: str, theirs: str, names: Sequence[Name], at: str, faults: Faults
+) -> list[tuple[str, str]]:
+    """Return the columns of a whole group, whose names begin with one word."""
     stem = _key(theirs)
-    texts = {name.key: name.text for name in names}
+    by_key = {name.key: name.text for name in names}
     sets = [
-        [texts[stem + c] for c in components]
+        [by_key[stem + c] for c in components]
         for components in COMPONENTS[group]
-        if all(stem + c in texts for c in components)
+        if all(stem + c in by_key for c in components)
     ]
     if len(sets) == 1:
         return list(zip(GROUPS[group], sets[0], strict=True))

@@ -22,6 +22,7 @@ from taylor_verify.solvers.files.columns.choice import (
     Rank,
     shown_names,
 )
+from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.request import Request, asked_columns
@@ -31,7 +32,8 @@ from taylor_verify.solvers.files.step import STEP_COLUMNS
 
 # Printed by `publish reference` beside the motion, or a statement of the step: no part of the motion.
 _SILENT: Final = ("radius", *STEP_COLUMNS)
-_NANOSECONDS: Final = ("nanosec", "nsec", "nsecs", "nanosecs", "nanoseconds")
+# In the order in which a description of the attitude is taken.
+ATTITUDES: Final = ("quaternion", "attitude", *FORMS)
 
 
 class Taken(NamedTuple):
@@ -43,19 +45,23 @@ class Taken(NamedTuple):
 
 
 class Selection(NamedTuple):
-    """The columns that are taken, and sentences about what was taken and what was not."""
+    """The columns that are taken, and sentences about what was taken and what was not.
+
+    The ``attitudes`` are descriptions of one, ``omega`` is the choice of the angular velocity.
+    """
 
     columns: tuple[Taken, ...]
     notes: tuple[str, ...]
+    attitudes: tuple[Choice, ...] = ()
+    omega: Choice | None = None
 
 
 def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
     """Return the columns that are ours, and record what is wrong with them as faults."""
     names = [Name(column) for column in columns]
     before = len(faults.lines)
-    chooser = _Chooser(
-        Candidates(names, asked_columns(wanted, names, place, faults)), place, faults
-    )
+    asked, units = asked_columns(wanted, names, place, faults)
+    chooser = _Chooser(Candidates(names, asked, units), place, faults)
     if len(faults.lines) > before:
         # The rest of a group that was asked for in vain is no second fault.
         chooser.doubted |= {GROUP_OF.get(name, name) for name, _ in wanted}
@@ -66,7 +72,9 @@ def select(columns: Sequence[Column], wanted: Request, place: str, faults: Fault
         for ours, name, unit in zip(GROUPS[choice.group], choice.names, choice.units, strict=True):
             taken.append(Taken(ours, name.column, (unit or OWN).factor))
     notes = [choice.note for choice in chooser.chosen.values() if choice.note]
-    return Selection(tuple(taken), (*notes, *chooser.left_out()))
+    attitudes = tuple(chooser.chosen[group] for group in ATTITUDES if group in chooser.chosen)
+    sentences = (*notes, *chooser.notes, *chooser.left_out())
+    return Selection(tuple(taken), sentences, attitudes, chooser.chosen.get("omega"))
 
 
 @dataclass
@@ -79,13 +87,14 @@ class _Chooser:
     chosen: dict[str, Choice] = field(default_factory=dict)
     doubted: set[str] = field(default_factory=set)
     half: list[Name] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def choose(self) -> None:
         """Choose the columns of each group that the file has; what is no clear choice is a fault."""
         for group in GROUPS:
             if choice := self._choice(group):
                 self.chosen[group] = choice
-        self._drop_one_attitude()
+        self._drop_weaker_attitudes()
         self._refuse_shared()
         for group in GROUPS:
             if group in self.chosen:
@@ -103,23 +112,38 @@ class _Chooser:
         ours, asked = GROUPS[group], self.candidates.asked
         if asked.keys() >= set(ours):
             names = tuple(asked[name] for name in ours)
-            remark = next((s.remark for s in SPELLINGS if s.keys == ours), "")
-            return Choice(
-                group, names, tuple(n.unit(group) or OWN for n in names), Rank.ASKED, remark
-            )
+            units = tuple(self.candidates.asked_unit(name, group) for name in ours)
+            spelling = self.candidates.of_clock(names[0]) if group == "time" else None
+            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours)
+            return Choice(group, names, units, Rank.ASKED, spelling)
         every = self.candidates.of(group, self.chosen)
         clear = [choice for choice in every if not choice.doubt]
         best = min((choice.rank for choice in clear), default=Rank.USUAL)
-        clear = [choice for choice in clear if choice.rank == best]
-        if len(clear) == 1:
-            return clear[0]
-        if clear:
+        alike = [choice for choice in clear if choice.rank == best]
+        if clear := self._of_best_frame(alike):
+            if len(clear) == 1:
+                return clear[0]
             got = " and ".join(choice.shown for choice in clear[:3])
             self._doubt(group, f"{' '.join(ours)} once", got)
+        elif len(every) == 1 and group == "quaternion":
+            return every[0]
         elif every:
-            got = f"{every[0].shown}: {every[0].doubt}"
-            self._doubt(group, " ".join(ours), got, _scalar_requests(every[0]))
+            self._doubt_one(every[0])
         return None
+
+    def _of_best_frame(self, choices: Sequence[Choice]) -> list[Choice]:
+        """Return the choices relative to the best frame, with a note on the others."""
+        best = min((choice.spelling.precedence for choice in choices), default=None)
+        self.notes += [
+            f"{choice.shown} not taken: {choice.spelling.relation}"
+            for choice in choices
+            if choice.spelling.precedence != best
+        ]
+        return [choice for choice in choices if choice.spelling.precedence == best]
+
+    def _doubt_one(self, choice: Choice) -> None:
+        got = f"{choice.shown}: {choice.doubt}"
+        self._doubt(choice.group, " ".join(GROUPS[choice.group]), got, _scalar_requests(choice))
 
     def _doubt(self, group: str, expected: str, got: str, request: str = "") -> None:
         self.doubted.add(group)
@@ -130,18 +154,20 @@ class _Chooser:
 
     # All groups.
 
-    def _drop_one_attitude(self) -> None:
-        both = [self.chosen[name] for name in ("quaternion", "attitude") if name in self.chosen]
-        if len(both) < 2:
-            return
-        weaker = max(both, key=lambda choice: choice.rank)
-        if both[0].rank != both[1].rank:
-            del self.chosen[weaker.group]
-        elif weaker.rank is Rank.USUAL:
-            got = " and ".join(choice.shown for choice in both)
-            mend = "say which: --columns q0=NAME,... or r11=NAME,..."
-            self.faults.add("the attitude once", got, self.place, mend)
-        else:
+    def _drop_weaker_attitudes(self) -> None:
+        """Keep the attitudes of the strongest rank and the best frame, and doubts that these settle."""
+        every = [self.chosen[group] for group in ATTITUDES if group in self.chosen]
+        sure = [choice for choice in every if not choice.doubt]
+        is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
+        best = min((choice.rank for choice in sure), default=Rank.USUAL)
+        strongest = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
+        for choice in every:
+            if choice.doubt and not sure:
+                del self.chosen[choice.group]
+                self._doubt_one(choice)
+            elif choice not in strongest and not (choice.doubt and is_usual):
+                del self.chosen[choice.group]
+        if len(strongest) > 1 and best is Rank.OURS:
             got = "q0 q1 q2 q3 and r11 ... r33"
             self.faults.add("the attitude once", got, self.place, "keep one of them")
 
@@ -159,7 +185,7 @@ class _Chooser:
             self.faults.add("each column once", got, self.place, f"say which: --columns {ours}")
 
     def _refuse_odd(self, choice: Choice) -> None:
-        """Refuse unknown units, numbered states beside our own names, and halves of a time."""
+        """Refuse unknown units, and numbered states beside our own names."""
         ours = GROUPS[choice.group]
         for own, name, unit in zip(ours, choice.names, choice.units, strict=True):
             if unit is None:
@@ -175,15 +201,6 @@ class _Chooser:
             got = f"{shown_names(others)} beside them: are they the components of a state?"
             mend = f"say which: --columns {','.join(f'{own}={own}' for own in ours)}"
             self.faults.add(f"{' '.join(ours)} alone", got, self.place, mend)
-        if choice.group == "time" and choice.rank is not Rank.ASKED:
-            # Seconds whose fractions stand in a column of their own.
-            (clock,) = choice.names
-            stem = clock.key.removesuffix("s").removesuffix("sec")
-            for name in self.candidates.free:
-                if name is not clock and name.key in {f"{stem}{end}" for end in _NANOSECONDS}:
-                    got = f"{choice.shown} {shown_names([name])}"
-                    mend = "write their sum into one column, t"
-                    self.faults.add("one column of times", got, self.place, mend)
 
     def _refuse_incomplete(self, group: str) -> None:
         ours, used = GROUPS[group], self.used

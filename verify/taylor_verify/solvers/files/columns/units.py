@@ -19,6 +19,7 @@ from mpmath import mp
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
+from taylor_verify.solvers.files.columns.forms import FORMS
 
 
 @dataclass(frozen=True)
@@ -45,29 +46,53 @@ _RATES: Final = "radians per unit of time"
 _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
     "time": (
         (Fraction(1), "the scene's unit of time", "s sec secs second seconds"),
-        (Fraction(1, 1000), "thousandths of the scene's unit of time", "ms msec milliseconds"),
-        (Fraction(1, 10**6), "millionths of the scene's unit of time", "us usec microseconds"),
-        (Fraction(1, 10**9), "1e-9 of the scene's unit of time", "ns nsec nanoseconds"),
-        (Fraction(60), "sixties of the scene's unit of time", "min mins minutes"),
-        (Fraction(3600), "3600 of the scene's unit of time", "h hr hours"),
+        (
+            Fraction(1, 1000),
+            "thousandths of the scene's unit of time",
+            "ms msec millisecond milliseconds",
+        ),
+        (
+            Fraction(1, 10**6),
+            "millionths of the scene's unit of time",
+            "us usec microsecond microseconds",
+        ),
+        (Fraction(1, 10**9), "1e-9 of the scene's unit of time", "ns nsec nanosecond nanoseconds"),
+        (Fraction(60), "sixties of the scene's unit of time", "min mins minute minutes"),
+        (Fraction(3600), "3600 of the scene's unit of time", "h hr hour hours"),
+        (Fraction(86400), "86400 of the scene's unit of time", "d day days"),
     ),
     "rate": (
-        (Fraction(1), _RATES, "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 radps rad_per_s 1/s"),
+        (
+            Fraction(1),
+            _RATES,
+            "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 rads^-1 radps rad_per_s 1/s radian/second",
+        ),
         (Fraction(1, 1000), f"thousandths of {_RATES}", "mrad/s"),
         (
             DEGREE,
             "degrees per unit of time",
-            "deg/s deg/sec degs degps deg_per_s dps",
+            "deg/s deg/sec degs degps deg_per_s dps degree/second",
         ),
         (
             _of_pi(Fraction(1, 30)),
             "turns per minute, the unit of time being the second",
-            "rpm rev/min",
+            "rpm rev/min revolution/minute revolutions_per_minute",
         ),
         (_of_pi(Fraction(2)), "turns per unit of time", "rev/s rps"),
     ),
+    "angle": (
+        (Fraction(1), "radians", "rad rads radian radians -"),
+        (DEGREE, "degrees", "deg degs degree degrees"),
+        (Fraction(1, 1000), "thousandths of a radian", "mrad milliradian"),
+        (DEGREE / 3600, "seconds of arc", "arcsec"),
+        (_of_pi(Fraction(2)), "turns", "rev turns"),
+    ),
     "velocity": (
-        (Fraction(1), "the scene's unit of velocity", "m/s m/sec m.s^-1 m.s-1 mps m_per_s"),
+        (
+            Fraction(1),
+            "the scene's unit of velocity",
+            "m/s m/sec m.s^-1 m.s-1 mps m_per_s meter/second",
+        ),
         (Fraction(1, 100), "hundredths of the scene's unit of velocity", "cm/s"),
         (Fraction(1, 1000), "thousandths of the scene's unit of velocity", "mm/s"),
         (Fraction(1000), "1000 of the scene's unit of velocity", "km/s"),
@@ -88,9 +113,21 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
 DIMENSION: Final[Mapping[str, str]] = {
     "time": "time",
     **{name: group.dimension for name, group in GROUPS.items()},
+    **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
 _GREEK: Final = str.maketrans(
-    {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "°": "deg", "·": ".", "*": "."}
+    {
+        "ω": "omega",
+        "η": "eta",
+        "ε": "eps",
+        "μ": "u",
+        "φ": "phi",
+        "θ": "theta",
+        "ψ": "psi",
+        "°": "deg",
+        "·": ".",
+        "*": ".",
+    }
 )
 
 

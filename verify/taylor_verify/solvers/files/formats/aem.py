@@ -13,13 +13,20 @@ from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from math import nan
 from pathlib import Path
-from typing import Final
+from typing import Final, TypeVar
 
 from taylor_verify.models.algebra import apply, dot, transpose
 from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.units import DEGREE
+from taylor_verify.solvers.files.formats.aem_euler import (
+    angle_columns,
+    negative,
+    quaternion,
+    sequence,
+)
 from taylor_verify.solvers.files.formats.aem_segment import (
+    ANGLES,
     ANGULAR_VELOCITY,
     DERIVATIVE,
     QUATERNION,
@@ -61,11 +68,17 @@ _SCALAR_FIRST: Final = (3, 0, 1, 2)
 _UNIT_VECTORS: Final = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 Row = Sequence[Value]
+Kind = TypeVar("Kind")
 
 
 def is_text(file: Content) -> bool:
     """Return True for a file that begins like a CCSDS message in text, whatever its name."""
     return _beginning(file).startswith(b"CCSDS_")
+
+
+def is_turning(frame: str) -> bool:
+    """Return True for a frame that turns with the earth or with an orbit."""
+    return frame.upper().startswith(_TURNING) and not frame.upper().endswith("_INERTIAL")
 
 
 def _beginning(file: Content) -> bytes:
@@ -75,11 +88,11 @@ def _beginning(file: Content) -> bytes:
 def read(file: Content, path: Path, part: str) -> Table:
     """Return t, q0 ... q3 and, where the message has it, w1 w2 w3; ``part`` is the number of a segment."""
     is_xml = _beginning(file).startswith(b"<")
-    segment = _chosen(in_xml(file, path) if is_xml else in_text(file, path), part, path)
+    segment = chosen(in_xml(file, path) if is_xml else in_text(file, path), part, path)
     reverse = _check_frames(segment, path)
     faults = Faults()
     times = _times(segment, path, faults)
-    quaternions = list(_rows(segment, QUATERNION, path, faults))
+    states = list(_rows(segment, ANGLES if segment.is_of_angles else QUATERNION, path, faults))
     rates = [
         rate
         for names in (ANGULAR_VELOCITY, DERIVATIVE)
@@ -88,8 +101,13 @@ def read(file: Content, path: Path, part: str) -> Table:
     ]
     if faults.lines:
         raise Refused(faults.lines)
-    turned = [_body_to_space(q, reverse) for q in quaternions]
-    columns = [Column("t", times), *_quaternion_columns(segment, reverse)]
+    if segment.is_of_angles:
+        axes = sequence(segment, path)
+        turned = [quaternion(axes, angles, reverse) for angles in states]
+        columns = [Column("t", times), *angle_columns(segment, reverse, path)]
+    else:
+        turned = [_body_to_space(q, reverse) for q in states]
+        columns = [Column("t", times), *_quaternion_columns(segment, reverse)]
     velocities, note = _angular_velocities(segment, reverse, turned, rates, path)
     columns += [
         Column(f"w{i}", list(values))
@@ -103,7 +121,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     return Table(columns, (*notes, note) if note else notes)
 
 
-def _chosen(segments: Sequence[Segment], part: str, path: Path) -> Segment:
+def chosen(segments: Sequence[Kind], part: str, path: Path) -> Kind:
+    """Return the segment of this number, or the only one."""
     last = len(segments)
     if not segments:
         raise refusal("a segment with attitude data", "none", path)
@@ -123,7 +142,7 @@ def _check_frames(segment: Segment, path: Path) -> bool:
             expected, f"{cut(a)} and {cut(b)}", path, "a scene's axes are those of the body"
         )
     space = b if a.startswith(_BODY) else a
-    if space.startswith(_TURNING) and not space.endswith("_INERTIAL"):
+    if is_turning(space):
         raise refusal(f"an inertial frame beside {_BODY}", cut(space), path)
     direction = segment.metadata.get("ATTITUDE_DIR", "A2B").upper()
     if direction not in ("A2B", "B2A"):
@@ -136,11 +155,8 @@ def _check_frames(segment: Segment, path: Path) -> bool:
 
 def _times(segment: Segment, path: Path, faults: Faults) -> list[Fraction]:
     """Return the seconds since START_TIME."""
-    system = segment.metadata["TIME_SYSTEM"].upper()
-    if system in _NOT_UNIFORM:
-        faults.add("a TIME_SYSTEM like UTC, TAI or TT", cut(system), str(path))
-        return []
-    is_utc, start = system == "UTC", segment.metadata["START_TIME"]
+    is_utc = check_clock(segment.metadata["TIME_SYSTEM"], path)
+    start = segment.metadata["START_TIME"]
     try:
         zero = seconds(start, is_utc)
     except ValueError as error:
@@ -148,6 +164,13 @@ def _times(segment: Segment, path: Path, faults: Faults) -> list[Fraction]:
         faults.add(str(error), cut(start), f"{path}, START_TIME")
     epochs = _numbers(segment, "EPOCH", lambda text: seconds(text, is_utc), path, faults)
     return [Fraction(epoch) - zero for epoch in epochs if isinstance(epoch, Fraction)]
+
+
+def check_clock(system: str, path: Path) -> bool:
+    """Return True for UTC, which has leap seconds; refuse a TIME_SYSTEM that is not uniform."""
+    if system.upper() in _NOT_UNIFORM:
+        raise refusal("a TIME_SYSTEM like UTC, TAI or TT", cut(system), path)
+    return system.upper() == "UTC"
 
 
 def _rows(segment: Segment, names: Sequence[str], path: Path, faults: Faults) -> Iterator[Row]:
@@ -179,11 +202,7 @@ def _quaternion_columns(segment: Segment, reverse: bool) -> Iterator[Column]:
     """Yield q0 ... q3 as text, so that the number of printed digits is known."""
     for i, place in enumerate(_SCALAR_FIRST):
         texts = segment.columns[QUATERNION[place]]
-        yield Column(f"q{i}", [_negative(t) for t in texts] if reverse and i else texts)
-
-
-def _negative(text: str) -> str:
-    return text.removeprefix("-") if text.startswith("-") else f"-{text.removeprefix('+')}"
+        yield Column(f"q{i}", [negative(t) for t in texts] if reverse and i else texts)
 
 
 def _angular_velocities(
@@ -196,7 +215,9 @@ def _angular_velocities(
         dots = [_body_to_space(rate, reverse) for rate in rates]
         velocities = [_of_derivative(q, dot) for q, dot in zip(turned, dots, strict=True)]
         return velocities, "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
-    if segment.kind != "QUATERNION/ANGVEL":
+    if segment.kind == "EULER_ANGLE/DERIVATIVE":
+        return [], "ANGLE_1_DOT ... are rates of Euler angles, and are not read"
+    if not segment.kind.endswith("/ANGVEL"):
         return [], ""
     stated = segment.metadata.get("ANGVEL_FRAME", "").upper()
     frames = {"REF_FRAME_A": segment.frame("A"), "REF_FRAME_B": segment.frame("B")}

@@ -16,12 +16,16 @@ from taylor_verify.solvers.files.formats.content import Content
 QUATERNION: Final = ("Q1", "Q2", "Q3", "QC")
 DERIVATIVE: Final = ("Q1_DOT", "Q2_DOT", "Q3_DOT", "QC_DOT")
 ANGULAR_VELOCITY: Final = ("ANGVEL_X", "ANGVEL_Y", "ANGVEL_Z")
+ANGLES: Final = ("ANGLE_1", "ANGLE_2", "ANGLE_3")
 # What a state holds, in the order of QUATERNION_TYPE = LAST. X_RATE ... are rates of Euler angles.
 _STATES: Final[Mapping[str, tuple[str, ...]]] = {
     "QUATERNION": QUATERNION,
     "QUATERNION/DERIVATIVE": QUATERNION + DERIVATIVE,
     "QUATERNION/RATE": (*QUATERNION, "X_RATE", "Y_RATE", "Z_RATE"),
     "QUATERNION/ANGVEL": QUATERNION + ANGULAR_VELOCITY,
+    "EULER_ANGLE": ANGLES,
+    "EULER_ANGLE/DERIVATIVE": ANGLES + tuple(f"{name}_DOT" for name in ANGLES),
+    "EULER_ANGLE/ANGVEL": ANGLES + ANGULAR_VELOCITY,
 }
 _REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "ATTITUDE_TYPE")
 _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
@@ -56,7 +60,7 @@ class Segment:
         if missing := [name for name in _REQUIRED if name not in self.metadata]:
             raise refusal(", ".join(_REQUIRED), f"no {', '.join(missing)}", place)
         if self.kind not in _STATES:
-            expected = f"an ATTITUDE_TYPE of quaternions ({', '.join(_STATES)})"
+            expected = f"an ATTITUDE_TYPE of {', '.join(_STATES)}"
             raise refusal(expected, cut(self.kind), place, "write QUATERNION or QUATERNION/ANGVEL")
 
     def add(self, names: Sequence[str], cells: Sequence[str], place: object) -> None:
@@ -71,11 +75,24 @@ class Segment:
     def kind(self) -> str:
         return self.metadata["ATTITUDE_TYPE"].upper()
 
+    @property
+    def is_of_angles(self) -> bool:
+        return self.kind.startswith("EULER_ANGLE")
+
+    def _refuse_angles_by_axis(self, version: str, place: object) -> None:
+        """Refuse angles of version 1: it names them by their axes, and programs write them in turn."""
+        if version.startswith("1") and self.metadata.get("EULER_ROT_SEQ") != "123":
+            expected = "Euler angles of version 2, or EULER_ROT_SEQ = 123"
+            raise refusal(expected, f"version {cut(version)}", place, "write quaternions")
+
     def frame(self, letter: str) -> str:
         return self.metadata[f"REF_FRAME_{letter}"].upper()
 
     def state_names(self, version: str, place: object) -> tuple[str, ...]:
         """Return the order of the values in a line; the scalar is last, but where version 1 says so."""
+        if self.is_of_angles:
+            self._refuse_angles_by_axis(version, place)
+            return ("EPOCH", *_STATES[self.kind])
         default = "" if version.startswith("1") else "LAST"
         where = self.metadata.get("QUATERNION_TYPE", default).upper()
         if where not in ("FIRST", "LAST"):
@@ -95,7 +112,7 @@ def in_text(file: Content, path: Path) -> list[Segment]:
     """Return the segments in order; refuse a line that is neither metadata nor a state."""
     version, block, metadata = "", "", dict[str, str]()
     read, names = list[Segment](), tuple[str, ...]()
-    for place, line in _lines(file, path):
+    for place, line in lines_of_message(file, path):
         word, equals, value = (part.strip() for part in line.partition("="))
         if word == "META_START":
             block, metadata = "META", {}
@@ -122,7 +139,7 @@ def in_text(file: Content, path: Path) -> list[Segment]:
     return read
 
 
-def _lines(file: Content, path: Path) -> Iterator[tuple[str, str]]:
+def lines_of_message(file: Content, path: Path) -> Iterator[tuple[str, str]]:
     """Yield the lines with their places; blank lines and comments are left out."""
     for number, line in enumerate(file.lines(_LINE), start=1):
         text = line.strip()

@@ -15,11 +15,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.records.faults import refusal
+from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")
-_NUMBERS: Final = "fiu"
+# Decimals in text are numbers too.
+_NUMBERS: Final = "fiuU"
 _MOST_LISTED: Final = 8
+_MOST_OF_MATRIX: Final = 30
 
 
 class Array(NamedTuple):
@@ -53,13 +56,13 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
     inner = _without_common_group(_within(list(arrays), part, place))
     _refuse_several(inner, place)
     numbers = [array for array in inner if array.kind in _NUMBERS and array.shape]
-    rows = _rows(numbers)
+    rows = _rows_of_one(numbers[0], place) if len(numbers) == 1 else _rows(numbers)
     read = [array for array in numbers if rows in array.shape]
     COLUMNS.check(len(read), place)
     check_size(sum(prod(a.shape) // max(rows, 1) for a in read), rows, place)
     BYTES.check(sum(prod(array.shape) * array.itemsize for array in read), place)
     columns = [column for array in read for column in _columns(array, rows)]
-    return Table(columns, tuple(_left_out(inner, read, rows)))
+    return Table(columns, (*_left_out(inner, read, rows), *_matrices(read, rows)))
 
 
 def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
@@ -100,14 +103,29 @@ def _rows(arrays: Sequence[Array]) -> int:
     return max(lengths, key=lambda length: (lengths[length], length), default=0)
 
 
+def _rows_of_one(array: Array, place: object) -> int:
+    """Return the number of rows of the only array: its times say if a matrix is transposed."""
+    length, *width = array.shape
+    if len(width) != 1 or not min(array.shape):
+        return array.longest
+    BYTES.check(prod(array.shape) * array.itemsize, place)
+    values = array.load()
+    is_transposed = _rises(values[0]) and not _rises(values[:, 0])
+    return width[0] if is_transposed else length
+
+
+def _rises(line: np.ndarray[Any, Any]) -> bool:
+    return len(line) > 1 and bool((np.diff(line) > 0).all())
+
+
 def _columns(array: Array, rows: int) -> Iterator[Column]:
-    values = np.moveaxis(array.load(), array.shape.index(rows), 0)
+    values: Any = np.moveaxis(array.load(), array.shape.index(rows), 0)
     if values.size == rows:
-        yield Column(array.name, values.reshape(rows).tolist())
+        yield Column(array.name, values.reshape(rows))
         return
     for index in np.ndindex(values.shape[1:]):
         name = array.name + "".join(f"[{i}]" for i in index)
-        yield Column(name, values[(slice(None), *index)].tolist())
+        yield Column(name, values[(slice(None), *index)])
 
 
 def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iterator[str]:
@@ -117,6 +135,18 @@ def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iter
         yield f"not read, because they have no {rows} rows: {_listed(short)}"
     if strange := [array.name for array in other if array.kind not in _NUMBERS]:
         yield f"not read, because they hold no real numbers: {_listed(strange)}"
+
+
+def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
+    """Yield how to name the columns of a matrix whose own name says nothing."""
+    for array in read:
+        width = prod(array.shape) // max(rows, 1)
+        names = [f"{array.name}[{k}]" for k in range(width)]
+        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).readings:
+            example = ",".join(f"w{k}={name}" for k, name in enumerate(names[1:3], start=1))
+            shown = ", ".join(names[:_MOST_OF_MATRIX])
+            more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""
+            yield f"the columns of {array.name} are {shown}{more}, as in --columns {example},..."
 
 
 def _listed(names: Sequence[str]) -> str:

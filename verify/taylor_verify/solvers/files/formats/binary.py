@@ -1,4 +1,4 @@
-"""Columns in an NPZ archive: named one-dimensional arrays of numbers.
+"""Columns in files of NumPy: the arrays of an NPZ archive by name, those of one NPY array by number.
 
 The header of a member says how much it will be, and is believed only if the member is as long. Pickled
 objects are never read.
@@ -11,14 +11,16 @@ import zipfile
 import zlib
 from io import BytesIO
 from itertools import islice
+from math import prod
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -53,25 +55,51 @@ _BROKEN: Final = (
 )
 
 
+class _Header(NamedTuple):
+    """The header of an array, its length, and the bytes that follow it."""
+
+    name: str
+    shape: tuple[int, ...]
+    order: Literal["C", "F"]
+    dtype: np.dtype[np.generic]
+    length: int
+    stored: int
+
+    def values(self, data: bytes) -> np.ndarray[Any, Any]:
+        if len(data) != self.length + self.stored:
+            raise ValueError(f"{self.name} ends early")
+        values: np.ndarray[Any, Any] = np.frombuffer(data, self.dtype, offset=self.length)
+        return values.reshape(self.shape, order=self.order)
+
+
 class _Member(NamedTuple):
     """An array of an archive that is not read yet."""
 
-    name: str
     info: zipfile.ZipInfo
-    header_bytes: int
-    shape: tuple[int, ...]
-    dtype: np.dtype[np.generic]
+    header: _Header
+
+    def array(self, archive: zipfile.ZipFile) -> Array:
+        header = self.header
+        return Array(
+            header.name,
+            header.shape,
+            header.dtype.kind,
+            header.dtype.itemsize,
+            lambda: header.values(archive.read(self.info)),
+        )
 
 
 def read(file: Content, path: Path, part: str) -> Table:
     """Return the arrays; every header is checked before the data of any is read."""
     refuse_part(part, path)
+    if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
+        return _of_one(file, path)
     try:
         _check_entries(file, path)
         with zipfile.ZipFile(file.binary) as archive:
             members = [_member(archive, info, path) for info in archive.infolist()]
-            _check(members, path)
-            return Table([_column(archive, member) for member in members])
+            _check([member.header for member in members], path)
+            return table([member.array(archive) for member in members], "", path)
     except _BROKEN as error:
         raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 
@@ -86,8 +114,6 @@ def _checked_method(info: zipfile.ZipInfo, path: Path) -> zipfile.ZipInfo:
 
 def _check_entries(file: Content, path: Path) -> None:
     """Count the entries of the directory, of which zipfile would make an object each."""
-    if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
-        raise ValueError("one array, and no archive of named ones")
     with mmap(file.binary.fileno(), 0, access=ACCESS_READ) as content:
         entries = sum(1 for _ in islice(_ENTRY.finditer(content), COLUMNS.most + 1))
     if entries > COLUMNS.most:
@@ -95,42 +121,54 @@ def _check_entries(file: Content, path: Path) -> None:
 
 
 def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Member:
-    """Return what the header of an array says of it."""
-    name = info.filename.removesuffix(".npy")
+    """Return a member with what its header says of it."""
     with archive.open(_checked_method(info, path)) as stream:
-        start = BytesIO(stream.read(_LONGEST_HEADER))
+        start = stream.read(_LONGEST_HEADER)
+    return _Member(info, _header(start, info.filename.removesuffix(".npy"), info.file_size, path))
+
+
+def _header(start: bytes, name: str, size: int, path: Path) -> _Header:
+    """Return what the beginning of an array of so many bytes says of it."""
+    stream = BytesIO(start)
     try:
-        version = np.lib.format.read_magic(start)
+        version = np.lib.format.read_magic(stream)
         if version not in _READERS:
             raise ValueError(f"format version {version}")
-        shape, _, dtype = _READERS[version](start)
+        shape, is_fortran, dtype = _READERS[version](stream)
     except _BROKEN as error:
         got = repr(str(error).splitlines()[0])
         raise refusal("an array in NPY form", got, f"{path}, column {name}") from None
-    return _Member(name, info, start.tell(), shape, dtype)
+    order: Literal["C", "F"] = "F" if is_fortran else "C"
+    return _Header(name, shape, order, dtype, stream.tell(), size - stream.tell())
 
 
-def _check(members: list[_Member], path: Path) -> None:
+def _check(headers: list[_Header], path: Path) -> None:
     faults = Faults()
-    for name, info, header_bytes, shape, dtype in members:
-        place = f"{path}, column {name}"
-        if len(shape) != 1 or shape[0] < 0 or dtype.kind not in "fiuUb":
-            expected = "a one-dimensional array of real numbers"
-            faults.add(expected, f"shape {shape} of {dtype}", place)
-        elif dtype.kind == "U" and dtype.itemsize > 4 * CHARACTERS.most:
-            faults.lines += CHARACTERS.refusal(dtype.itemsize // 4, place).faults
-        elif info.file_size != header_bytes + shape[0] * dtype.itemsize:
-            expected = f"{shape[0] * dtype.itemsize} bytes of data as its header says"
-            faults.add(expected, str(info.file_size - header_bytes), place)
+    for header in headers:
+        place, size = f"{path}, column {header.name}", prod(header.shape) * header.dtype.itemsize
+        if any(length < 0 for length in header.shape):
+            faults.add("an array", f"shape {header.shape} of {header.dtype}", place)
+        elif header.dtype.kind == "U" and header.dtype.itemsize > 4 * CHARACTERS.most:
+            faults.lines += CHARACTERS.refusal(header.dtype.itemsize // 4, place).faults
+        elif header.dtype.kind in "fiuUb" and header.stored != size:
+            expected = f"{size} bytes of data as its header says"
+            faults.add(expected, str(header.stored), place)
     if faults.lines:
         raise Refused(faults.lines)
-    check_size(len(members), max((member.shape[0] for member in members), default=0), path)
-    BYTES.check(sum(member.info.file_size for member in members), path)
+    COLUMNS.check(len(headers), path)
 
 
-def _column(archive: zipfile.ZipFile, member: _Member) -> Column:
-    data = archive.read(member.info)
-    if len(data) != member.info.file_size:
-        raise ValueError(f"{member.name} ends early")
-    values: Any = np.frombuffer(data, member.dtype, offset=member.header_bytes)
-    return Column(member.name, values)
+# One array.
+
+
+def _of_one(file: Content, path: Path) -> Table:
+    """Return the columns of a matrix by their numbers."""
+    content = file.whole(BYTES)
+    header = _header(content[:_LONGEST_HEADER], "1", len(content), path)
+    _check([header], path)
+    if header.dtype.kind not in "fiu" or not 1 <= len(header.shape) <= 2:
+        got = f"shape {header.shape} of {header.dtype}"
+        raise refusal("a matrix of numbers, a row for each time", got, path)
+    matrix: Any = header.values(content).reshape(header.shape[0], -1)
+    check_size(matrix.shape[1], matrix.shape[0], path)
+    return Table([Column(str(k), column) for k, column in enumerate(matrix.T, start=1)])

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
 from functools import cached_property
 from io import TextIOWrapper
 from pathlib import Path
-from typing import BinaryIO, final
+from typing import BinaryIO, Final, final
 
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.formats.column import LINE, LINES, no_utf8
+
+_BEGINNING: Final = 4096
+_CONTROL: Final = frozenset({*range(32), 127}) - frozenset(b"\t\n\r\f")
 
 
 @final
@@ -33,6 +37,12 @@ class Content:
         """Return the first bytes."""
         return self.binary.read(count)
 
+    @property
+    def looks_like_text(self) -> bool:
+        """True if the beginning is not empty and has no control characters but those of lines."""
+        start = self.beginning(_BEGINNING)
+        return bool(start.strip()) and not _CONTROL.intersection(start)
+
     def whole(self, most: Limit) -> bytes:
         """Return all bytes. Raises Refused if there are more than the limit."""
         content = self.binary.read(most.most + 1)
@@ -41,14 +51,14 @@ class Content:
         return content
 
     def text(self, most: Limit) -> str:
-        """Return all of a text in UTF-8. Raises Refused for other bytes, and at the limit."""
+        """Return all of a text in UTF-8 or 16. Raises Refused for other bytes, and at the limit."""
         try:
-            return self.whole(most).decode("utf-8-sig")
+            return self.whole(most).decode(self._encoding)
         except UnicodeDecodeError:
             raise no_utf8(self.beginning(2), self.path) from None
 
     def lines(self, longest: Limit = LINE) -> Iterator[str]:
-        """Yield the lines of a text in UTF-8, blank ones too, each with its end.
+        """Yield the lines of a text in UTF-8 or 16, blank ones too, each with its end.
 
         Raises Refused for other bytes, and at the limits of a line and of their number.
         """
@@ -69,4 +79,11 @@ class Content:
 
     @cached_property
     def _text(self) -> TextIOWrapper:
-        return TextIOWrapper(self._file, encoding="utf-8-sig")
+        encoding = self._encoding
+        return TextIOWrapper(self.binary, encoding=encoding)
+
+    @cached_property
+    def _encoding(self) -> str:
+        """UTF-16, which PowerShell writes, has a byte order mark."""
+        has_mark = self.beginning(2) in (BOM_UTF16_BE, BOM_UTF16_LE)
+        return "utf-16" if has_mark else "utf-8-sig"

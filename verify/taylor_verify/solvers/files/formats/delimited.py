@@ -1,10 +1,11 @@
-"""Columns in text: a header line and rows, separated by comma, semicolon, tab or blanks."""
+"""Columns in text: a line that names them and rows, separated by comma, semicolon, tab, bar or blanks."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
-from itertools import chain, islice
+import re
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,71 +21,117 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.values import is_number
+from taylor_verify.solvers.files.formats.header import (
+    MARKS,
+    MOST_LINES,
+    Head,
+    Line,
+    head,
+    is_comment,
+    is_rule,
+)
 
 _ROWS_AT_ONCE: Final = 1000
+_DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
 
 
 def read(file: Content, path: Path, part: str) -> Table:
-    """Return the columns; # begins a comment line. The rows are counted before any of them is kept."""
+    """Return the columns; # and % begin a comment line. The rows are counted before any is kept."""
     refuse_part(part, path)
-    for count, _ in enumerate(_Lines(file)):
+    rows = (text for text in file.lines() if text.strip() and not is_comment(text))
+    for count, _ in enumerate(rows):
         if count > ROWS.most:
             raise ROWS.refusal("more", path)
+    return table(file, path, first=1)
+
+
+def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
+    """Return the columns of the table that stands from the ``first`` line on."""
     try:
-        return Table(_columns(_Lines(file), path))
+        top = head(list(islice(_lines(file, first, with_comments=True), MOST_LINES)), marks)
+        if top is None:
+            raise refusal("a header line and rows", "an empty file", path)
+        names, columns = _columns(file, top, path)
     except csv.Error as error:
         raise refusal("a CSV file", f"a fault in it: {error}", path) from None
+    columns, notes = _with_points(names, columns, top)
+    return Table(list(map(Column, names, columns)), (*top.notes, *notes))
 
 
-class _Lines:
-    """The lines that are neither blank nor a comment; ``number`` is that of the last one."""
-
-    def __init__(self, file: Content) -> None:
-        self._file, self.number = file, 0
-
-    def __iter__(self) -> Iterator[str]:
-        for number, line in enumerate(self._file.lines(), start=1):
-            self.number = number
-            if line.strip() and not line.lstrip().startswith("#"):
-                yield line
+def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterator[Line]:
+    """Yield the lines that are not blank, from the ``first`` one on."""
+    for number, text in enumerate(file.lines(), start=1):
+        if number >= first and text.strip() and (with_comments or not is_comment(text)):
+            yield Line(number, text)
 
 
-def _columns(lines: _Lines, path: Path) -> list[Column]:
-    rows = _rows(lines)
-    header = [name.strip() for name in next(rows, [])]
-    if not header:
-        raise refusal("a header line and rows", "an empty file", path)
-    if all(is_number(name) for name in header):
-        raise refusal("a header line that names the columns", "numbers", f"{path}, line 1")
+class _Rows:
+    """The cells of each line below the head; ``number`` is that of the last line."""
+
+    def __init__(self, file: Content, top: Head) -> None:
+        self._file, self._top, self.number = file, top, 0
+
+    def __iter__(self) -> Iterator[list[str]]:
+        return self._top.rows(self._texts())
+
+    def _texts(self) -> Iterator[str]:
+        for line in _lines(self._file, self._top.first):
+            self.number = line.number
+            if not is_rule(line.text):
+                yield line.text
+
+
+def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]]:
+    """Return the names of the columns, a number where there is none, and the texts of each."""
+    rows = _Rows(file, top)
+    width = len(top.names) or len(next(iter(rows)))
     faults, count, parts = Faults(), 0, list[Any]()
     with alike(faults, f"{path}, more lines") as ragged:
 
         def sound() -> Iterator[list[str]]:
             for row in rows:
-                if len(row) == len(header):
+                if not any(row) or not any(map(str.strip, row)):
+                    # Spreadsheets end in rows of nothing.
+                    continue
+                if len(row) == width + 1 and not row[-1].strip():
+                    row.pop()
+                if len(row) == width:
                     yield row
                 else:
-                    expected = f"{len(header)} values as in the header"
-                    ragged(expected, str(len(row)), f"{path}, line {lines.number}")
+                    of = "in the header" if top.names else "in the first row"
+                    place = f"{path}, line {rows.number}"
+                    ragged(f"{width} values as {of}", str(len(row)), place)
 
         whole = sound()
         while batch := list(islice(whole, _ROWS_AT_ONCE)):
             count += len(batch)
-            check_size(len(header), count, path)
+            check_size(width, count, path)
             # As a string of Python each text takes 50 bytes more.
             parts.append(np.array(batch, dtype=np.dtypes.StringDType()).T)
     if faults.lines:
         raise Refused(faults.lines)
-    empty = np.empty((len(header), 0), dtype=np.dtypes.StringDType())
-    columns: Iterator[Any] = map(np.concatenate, zip(empty, *parts, strict=True))
-    return [Column(name, column) for name, column in zip(header, columns, strict=True)]
+    empty = np.empty((width, 0), dtype=np.dtypes.StringDType())
+    columns = [*map(np.concatenate, zip(empty, *parts, strict=True))]
+    return _numbered(top.names, width), columns
 
 
-def _rows(lines: _Lines) -> Iterator[list[str]]:
-    """Return the cells of each line, by the separator of the first one."""
-    remaining = iter(lines)
-    first = next(remaining, "")
-    separator = next((mark for mark in ",;\t" if mark in first), None)
-    every = chain([first] if first else [], remaining)
-    return csv.reader(every, delimiter=separator) if separator else (line.split() for line in every)
+def _numbered(names: Sequence[str], width: int) -> list[str]:
+    """Return the names; a column without one has its number from 1."""
+    numbers = range(1, width + 1)
+    if not names:
+        return [str(k) for k in numbers]
+    return [name or f"column {k}" for k, name in zip(numbers, names, strict=True)]
+
+
+def _with_points(
+    names: Sequence[str], columns: Sequence[Any], top: Head
+) -> tuple[list[Any], list[str]]:
+    """Return the columns with decimal points, and a note where decimal commas were written."""
+    read, changed = [], []
+    for name, column in zip(names, columns, strict=True):
+        has_commas = top.mark != "," and bool((np.strings.find(column, ",") >= 0).any())
+        if has_commas and all(map(_DECIMAL_COMMA.fullmatch, column.tolist())):
+            column = np.strings.replace(column, ",", ".")
+            changed.append(name)
+        read.append(column)
+    return read, [f"decimal commas are read in {' '.join(changed)}"] if changed else []

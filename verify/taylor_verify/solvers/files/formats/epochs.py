@@ -1,24 +1,42 @@
-"""Seconds between epochs in ISO 8601 text, exactly, with the leap seconds of UTC.
+"""Seconds between epochs in text, exactly, with the leap seconds of UTC.
 
-Two forms are read: 2024-01-31T12:00:00.5 and 2024-031T12:00:00.5, with or without a Z behind. datetime
-rounds to microseconds and knows no second 60, and astropy rounds to a pair of doubles.
+A message has 2024-01-31T12:00:00.5 or 2024-031T12:00:00.5, with or without a Z behind. A log may have a
+blank for the T, an offset from UTC, a month by its name (31 Jan 2024 12:00:00.5), or the time of day alone.
+datetime rounds to microseconds and knows no second 60, and astropy rounds to a pair of doubles.
 """
 
 from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from datetime import datetime
+from datetime import date
 from fractions import Fraction
+from functools import lru_cache
 from typing import Final
 
-_EPOCH: Final = re.compile(
-    r"(\d{4})-(\d{2}-\d{2}|\d{3})T(\d{2}):(\d{2}):(\d{2}(?:\.\d{0,40})?)Z?", re.ASCII
-)
 _DAY: Final = 86400
+_OF_DAY: Final = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:[.,]\d{0,40})?)"
+_EPOCH: Final = re.compile(rf"(?P<date>\d{{4}}-(?:\d{{2}}-\d{{2}}|\d{{3}}))T{_OF_DAY}Z?", re.ASCII)
+_ZONE: Final = r"\s*(?:Z|UTC|(?P<offset>[+-]\d{2}:?\d{2}))?"
+_DATE: Final = r"\d{4}[-/](?:\d{1,2}[-/]\d{1,2}|\d{3})|\d{1,2} [A-Za-z]{3} \d{4}"
+_IN_A_LOG: Final = re.compile(rf"(?:(?P<date>{_DATE})(?:T|\s+))?{_OF_DAY}{_ZONE}", re.ASCII)
+_MONTHS: Final = (
+    "jan",
+    "feb",
+    "mar",
+    "apr",
+    "may",
+    "jun",
+    "jul",
+    "aug",
+    "sep",
+    "oct",
+    "nov",
+    "dec",
+)
 # Days of UTC that had a second 23:59:60, from the bulletins of the IERS; there was none after 2016.
 _LEAP_DAYS: Final = tuple(
-    datetime.fromisoformat(day).toordinal()
+    date.fromisoformat(day).toordinal()
     for day in (
         "1972-06-30",
         "1972-12-31",
@@ -52,24 +70,62 @@ _LEAP_DAYS: Final = tuple(
 
 
 def seconds(text: str, is_utc: bool) -> Fraction:
-    """Return the seconds from a day of long ago to an epoch.
+    """Return the seconds from a day of long ago to an epoch of a message.
 
     Raises ValueError, whose text is what was expected.
     """
     match = _EPOCH.fullmatch(text.strip())
     if match is None:
         raise ValueError("an epoch like 2024-01-31T12:00:00.5")
-    year, day, hour, minute, second = match.groups()
-    try:
-        date = datetime.strptime(f"{year}-{day}", "%Y-%j" if len(day) == 3 else "%Y-%m-%d")
-    except ValueError:
-        date = None
-    # strptime takes day 366 of a common year for the first day of the next one.
-    if date is None or date.year != int(year):
-        raise ValueError("an epoch on a day of the calendar")
-    ordinal = date.toordinal()
-    leaps = is_utc and ordinal in _LEAP_DAYS and (hour, minute) == ("23", "59")
-    if int(hour) > 23 or int(minute) > 59 or not Fraction(second) < 60 + leaps:
+    return _seconds(match, is_utc)
+
+
+def is_epoch(text: str) -> bool:
+    """Return True for a text in the form of a time of a calendar or of a day."""
+    return _IN_A_LOG.fullmatch(text) is not None
+
+
+def seconds_in_log(text: str) -> Fraction:
+    """Return the seconds from a day of long ago, or from midnight, to a time of a log.
+
+    Raises ValueError, whose text is what was expected.
+    """
+    match = _IN_A_LOG.fullmatch(text.strip())
+    if match is None:
+        raise ValueError("a time like 2024-01-31T12:00:00.5Z, as in the first row")
+    sign, hours, minutes = (match["offset"] or "+0000")[0], *_two(match["offset"])
+    ahead = (hours * 60 + minutes) * 60
+    return _seconds(match, is_utc=match["date"] is not None) - (-ahead if sign == "-" else ahead)
+
+
+def _two(offset: str | None) -> tuple[int, int]:
+    digits = (offset or "+0000")[1:].replace(":", "")
+    return int(digits[:2]), int(digits[2:])
+
+
+def _seconds(match: re.Match[str], is_utc: bool) -> Fraction:
+    ordinal = _ordinal(match["date"]) if match["date"] else 0
+    hour, minute, second = int(match["hour"]), int(match["minute"]), match["second"]
+    leaps = is_utc and ordinal in _LEAP_DAYS and (hour, minute) == (23, 59)
+    since_minute = Fraction(second.replace(",", "."))
+    if hour > 23 or minute > 59 or not since_minute < 60 + leaps:
         raise ValueError("an epoch at a time of the day")
     before = bisect_left(_LEAP_DAYS, ordinal) if is_utc else 0
-    return ordinal * _DAY + int(hour) * 3600 + int(minute) * 60 + Fraction(second) + before
+    return ordinal * _DAY + hour * 3600 + minute * 60 + since_minute + before
+
+
+@lru_cache
+def _ordinal(text: str) -> int:
+    """Return the number of a day: 2024-01-31, 2024-031 or 31 Jan 2024."""
+    parts = re.split(r"[-/ ]", text)
+    try:
+        if len(parts) == 2:
+            day = date(int(parts[0]), 1, 1).toordinal() + int(parts[1]) - 1
+            if date.fromordinal(day).year != int(parts[0]):
+                raise ValueError
+            return day
+        if parts[1].isalpha():
+            parts = [parts[2], str(_MONTHS.index(parts[1].lower()) + 1), parts[0]]
+        return date(*map(int, parts)).toordinal()
+    except (ValueError, OverflowError):
+        raise ValueError("an epoch on a day of the calendar") from None

@@ -1,4 +1,4 @@
-"""Arrays and structs in a MATLAB file: versions 5 to 7 here, version 7.3 with h5py, because it is HDF5.
+"""Arrays and structs in a MATLAB file: versions 5 to 7 here, 4 beside it, 7.3 with h5py, as it is HDF5.
 
 Nothing but numbers is read: no object is made, no cell is opened, and structs in each other are not deep.
 SciPy reads these files too, and its process dies of one whose cells are nested twenty thousand deep.
@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.records.faults import cut, refusal
-from taylor_verify.solvers.files.formats import hdf5
+from taylor_verify.solvers.files.formats import hdf5, version4
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
@@ -58,9 +58,11 @@ def read(file: Content, path: Path, part: str) -> Table:
     version = struct.unpack(f"{order}H", header[124:126])[0] if order else 0
     if version == _HDF5 or header.startswith(b"\x89HDF"):
         return hdf5.opened(file, path, lambda f: _checked(list(_hdf5_arrays(f, path)), part, path))
+    if version4.is_one(header):
+        return _checked(list(version4.arrays(file.whole(BYTES), path)), part, path)
     if version != _VERSION:
         got = f"one that begins with {header[:10].decode('latin-1')!r}"
-        raise refusal("a MATLAB file of version 5 to 7.3", got, path)
+        raise refusal("a MATLAB file of version 4 to 7.3", got, path)
     try:
         arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
     except _BROKEN as error:

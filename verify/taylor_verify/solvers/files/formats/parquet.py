@@ -1,6 +1,7 @@
 """Columns in a Parquet file, read with pyarrow; those in structs have dotted names.
 
-What can hold no numbers is not read: a page of text may be a thousand times its size in the file.
+A list of numbers in each row is as many columns, numbered from 0, if all lists are equally long. What can
+hold no numbers is not read: a page of text may be a thousand times its size in the file.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -32,45 +33,66 @@ def read(file: Content, path: Path, part: str) -> Table:
 
     try:
         footer = parquet.ParquetFile(file.binary)
-        texts = _checked(footer, path)
+        names, texts, left = _checked(footer, path)
         long = _long_texts(footer, texts)
-        wanted = [name for name in footer.schema_arrow.names if name not in long]
-        table = parquet.ParquetFile(file.binary, read_dictionary=texts).read(
-            wanted, use_threads=False
-        )
+        reader = parquet.ParquetFile(file.binary, read_dictionary=texts)
+        wanted = [name for name in names if name not in long]
+        table = _flat(reader.read(wanted, use_threads=False))
+        _check_texts(table, texts, path)
+        table = _seconds(_without_lists(table, path))
     except MemoryError:
         raise
     except (ArrowException, OSError, ValueError) as error:
+        if isinstance(error, Refused):
+            raise
         reason = str(error).splitlines()[0]
         raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
-    table = _flat(table)
-    _check_texts(table, texts, path)
     columns = [Column(name, _values(table.column(i))) for i, name in enumerate(table.column_names)]
     notes = [
         f"not read, because it is longer than numbers are: column {cut(name)}" for name in long
     ]
+    notes += [f"not read, because they hold no numbers: {cut(', '.join(left))}"] if left else []
     return Table(columns, tuple(notes))
 
 
-def _checked(footer: Any, path: Path) -> list[str]:
-    """Return the names of the columns of text, if the file is not too large and holds numbers."""
+def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
+    """Return the names of the columns of numbers, of those of text among them, and of all others.
+
+    The file is refused if it is too large.
+    """
     import pyarrow as pa
 
     metadata = footer.metadata
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    is_a, faults, texts = pa.types, Faults(), []
-    numbers = (is_a.is_integer, is_a.is_floating, is_a.is_decimal, is_a.is_boolean)
+    is_a = pa.types
+    numbers = (
+        is_a.is_integer,
+        is_a.is_floating,
+        is_a.is_decimal,
+        is_a.is_boolean,
+        is_a.is_timestamp,
+    )
+    names, texts, left = list[str](), list[str](), list[str]()
     for field in _flat(footer.schema_arrow.empty_table()).schema:
-        if is_a.is_string(field.type) or is_a.is_large_string(field.type):
+        kind = field.type.value_type if _is_list(field.type) else field.type
+        if is_a.is_string(kind) or is_a.is_large_string(kind):
             texts.append(field.name)
-        elif not any(is_such(field.type) for is_such in numbers):
-            place = f"{path}, column {field.name}"
-            faults.add("a column of numbers", f"the type {field.type}", place)
-    if faults.lines:
-        raise Refused(faults.lines)
-    return texts
+        elif not any(is_such(kind) for is_such in numbers):
+            left.append(field.name)
+            continue
+        names.append(field.name)
+    return names, texts, left
+
+
+def _is_list(kind: Any) -> bool:
+    import pyarrow as pa
+
+    return any(
+        is_such(kind)
+        for is_such in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
+    )
 
 
 def _long_texts(footer: Any, texts: Sequence[str]) -> Sequence[str]:
@@ -106,6 +128,38 @@ def _flat(table: Any) -> Any:
 
     while any(pa.types.is_struct(field.type) for field in table.schema):
         table = table.flatten()
+    return table
+
+
+def _without_lists(table: Any, path: Path) -> Any:
+    """Return a table with a column for each place in a list, numbered from 0."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    columns: dict[str, Any] = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        if not _is_list(column.type):
+            columns[name] = column
+            continue
+        lengths = pc.min_max(pc.list_value_length(column)).as_py()
+        if lengths["min"] != lengths["max"] or column.null_count:
+            got = f"lists of {lengths['min']} to {lengths['max']}"
+            raise refusal("lists of one length", got, f"{path}, column {name}")
+        for k in range(lengths["max"] or 0):
+            columns[f"{name}[{k}]"] = pc.list_element(column, k)
+        check_size(len(columns), len(column), path)
+    return pa.table(columns)
+
+
+def _seconds(table: Any) -> Any:
+    """Return a table whose times of a calendar are text."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    for i, field in enumerate(table.schema):
+        if pa.types.is_timestamp(field.type):
+            texts = pc.strftime(table.column(i), format="%Y-%m-%dT%H:%M:%SZ")
+            table = table.set_column(i, field.name, texts)
     return table
 
 

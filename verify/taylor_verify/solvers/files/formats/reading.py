@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
+from taylor_verify.records.plugins import Plugin, free
 from taylor_verify.records.regular_file import regular_file
-from taylor_verify.solvers.files.formats import aem, rosbag
-from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table
+from taylor_verify.solvers.files.formats import aem, oem, rosbag
+from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
 
@@ -42,12 +43,21 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".csv": Format("a header line and rows", "delimited"),
     ".tsv": Format("a header line and rows, with tabs", "delimited"),
     ".txt": Format("a header line and rows, with blanks; or an AEM", "delimited"),
-    ".json": Format("an object of arrays", "documents"),
+    ".json": Format(
+        "an object of arrays, a list of objects, or an object in each line", "documents"
+    ),
+    ".jsonl": Format("an object in each line", "documents"),
+    ".ndjson": Format("an object in each line", "documents"),
     ".npz": Format("named arrays of NumPy", "binary"),
+    ".npy": Format("a matrix of NumPy, whose columns have numbers from 1", "binary"),
     ".parquet": Format("columns of numbers", "parquet", "pyarrow"),
     ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", "aem"),
-    ".kvn": Format("attitude ephemeris of the CCSDS, as text", "aem"),
+    ".kvn": Format("attitude or orbit ephemeris of the CCSDS, as text", "aem"),
+    ".oem": Format("orbit ephemeris of the CCSDS, as text", "oem"),
     ".xml": Format("attitude ephemeris of the CCSDS, as XML", "aem"),
+    ".sto": Format("a table of OpenSim", "opensim"),
+    ".mot": Format("a table of OpenSim", "opensim"),
+    ".a": Format("attitudes of STK", "stk"),
     ".h5": Format("datasets of numbers", "hdf5", "h5py"),
     ".hdf5": Format("datasets of numbers", "hdf5", "h5py"),
     ".nc": Format("NetCDF 4, which is HDF5", "hdf5", "h5py"),
@@ -57,6 +67,9 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".db3": Format("a topic of a rosbag of ROS 2; its folder is read too", "rosbag", "rosbags"),
 }
 
+# A file of any other name that is text.
+_TEXT: Final = FORMATS[".txt"]
+
 
 def read_table(file: str | os.PathLike[str]) -> Table:
     """Return the columns as they are written.
@@ -65,6 +78,8 @@ def read_table(file: str | os.PathLike[str]) -> Table:
     no regular file of bounded size, and for a fault of its format.
     """
     path, part = parted(os.fspath(file))
+    if reader := plugged().get(path.suffix.lower()) if path.suffix not in FORMATS else None:
+        return _read_by(reader, path)
     with needed(path):
         if rosbag.is_folder(path):
             table = rosbag.read_folder(path, part)
@@ -74,6 +89,26 @@ def read_table(file: str | os.PathLike[str]) -> Table:
                 table = _reader(content, path).read(content, path, part)
     ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
+
+
+def plugged() -> dict[str, Plugin]:
+    """Return the readers of other packages by suffix."""
+    sound = free("readers", lambda plugin: iter(plugin.content.suffixes), iter(FORMATS))
+    return {suffix: plugin for plugin in sound for suffix in plugin.content.suffixes}
+
+
+def _read_by(reader: Plugin, path: Path) -> Table:
+    """Return the columns that another package reads. Raises Refused with its name for any error of it."""
+    with regular_file(path, "a trajectory file", BYTES):
+        pass
+    try:
+        table = reader.content.read(path)
+        columns = [Column(str(name), list(table[name])) for name in table]
+    except Exception as error:  # other people's code
+        got = f"{type(error).__name__}: {error}"
+        raise refusal(f"a file that {reader.package} reads", got, path) from error
+    ROWS.check(max((len(column.values) for column in columns), default=0), path)
+    return Table(columns, (f"read by {reader.name} {reader.origin}",))
 
 
 def parted(file: str) -> tuple[Path, str]:
@@ -87,11 +122,13 @@ def parted(file: str) -> tuple[Path, str]:
 
 def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
+    if oem.is_one(content):
+        return oem
     if aem.is_text(content):
         return aem
-    known = FORMATS.get(path.suffix.lower())
+    known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
-        expected = f"a file that ends in {', '.join(FORMATS)}"
+        expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"
         raise refusal(expected, path.suffix or "no suffix", path)
     return import_module(f"{__package__}.{known.module}")
 

@@ -1,0 +1,113 @@
+"""Angles and rates of another meaning are found by the exact attitude, and the floor has their poles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from math import cos, pi, radians
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.trajectories import QUATERNION, VECTORS, exact_columns, rows_of
+from scipy.spatial.transform import Rotation
+
+from taylor_verify.judge.conventions.angles import with_angles
+from taylor_verify.judge.conventions.readings import readings
+from taylor_verify.judge.conventions.search import conventions
+from taylor_verify.judge.floor.angles import with_angles_rounded
+from taylor_verify.judge.floor.inputs import InputRounding
+from taylor_verify.numbers.precision import rung
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
+from taylor_verify.solvers.files.formats.column import Column
+
+SCENE = "euler/with-attitude"
+SOUND = exact_columns(SCENE)
+OMEGA = rows_of(SOUND, VECTORS["omega"])
+TURNS = Rotation.from_quat(np.roll(rows_of(SOUND, QUATERNION), -1, axis=1))
+ZYX = TURNS.as_euler("ZYX")
+
+
+def of_columns(names: str, rows: Any, wanted: Sequence[str] = ()) -> TrajectoryFile:
+    table = np.column_stack([SOUND["t"], rows])
+    columns = [Column(n, list(c)) for n, c in zip(["t", *names.split()], table.T, strict=True)]
+    return from_columns(columns, "mine", request(wanted))
+
+
+@cache
+def plain() -> TrajectoryFile:
+    return of_columns("yaw pitch roll", ZYX)
+
+
+@pytest.mark.parametrize(
+    ("angles", "words"),
+    [
+        (np.degrees(ZYX), "are in degrees"),
+        (ZYX * [1, -1, 1], "have the other sign in angle 2"),
+        (ZYX[:, ::-1], "stand in the order 3 2 1"),
+        (TURNS.as_euler("zyx"), "are about axes that stay fixed"),
+        (TURNS.as_euler("ZXZ"), "are of the sequence zxz"),
+        (TURNS.inv().as_euler("ZYX"), "take space to body axes"),
+        (np.degrees(ZYX[:, ::-1]), "are in degrees; stand in the order 3 2 1"),
+    ],
+)
+def test_each_meaning_of_angles_is_found_and_mended(angles: Any, words: str) -> None:
+    """A unit, a sign, an order, a sequence: named, and read as the sound file is."""
+    file, finding = with_angles(of_columns("yaw pitch roll", angles), load(SCENE), rung("f64"))
+    assert finding is not None
+    assert finding.is_certain
+    assert finding.words == f"the angles {words}"
+    q, right = (f.groups["quaternion"].doubles() for f in (file, plain()))
+    assert np.max(np.abs(np.abs(np.sum(q * right, axis=1)) - 1)) < 1e-14
+
+
+def test_nothing_is_found_in_sound_angles_and_in_wrong_ones() -> None:
+    """Angles that no meaning explains stay as they are."""
+    for angles in (ZYX, ZYX * [1, 1, 0.5]):
+        file = of_columns("yaw pitch roll", angles)
+        assert with_angles(file, load(SCENE), rung("f64")) == (file, None)
+
+
+def euler_rates() -> Any:
+    """The rates of roll, pitch and yaw of the motion."""
+    _, pitch, roll = ZYX.T
+    p, q, r = OMEGA.T
+    turn = (q * np.sin(roll) + r * np.cos(roll)) / np.cos(pitch)
+    return np.array([p + turn * np.sin(pitch), q * np.cos(roll) - r * np.sin(roll), turn]).T
+
+
+@pytest.mark.parametrize(
+    ("rates", "words"),
+    [
+        (euler_rates(), "are rates of Euler angles"),
+        (OMEGA * 2, "are turns between two rows, in radians for each 2"),
+    ],
+)
+def test_rates_of_angles_and_turns_between_rows(rates: Any, words: str) -> None:
+    """omega of these columns is that of the motion: the attitude beside it tells."""
+    q = np.roll(TURNS.as_quat(), 1, axis=1)
+    # Every second second there is a row, but for the last of the scene's own samples.
+    file = of_columns("w1 w2 w3 q0 q1 q2 q3", np.column_stack([rates, q]))
+    (finding,) = conventions(file, load(SCENE), rung("f64")).findings
+    assert finding.is_certain
+    assert words in finding.words
+
+
+def test_turns_between_rows_are_asked_of_even_rows_alone() -> None:
+    """Rows at odd times have no spacing by which a rate could be counted."""
+    assert len(readings("omega")) + 1 == len(readings("omega", spacing=2))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("pitch", "sequence"), [(0.0, "zyx"), (89.9, "zyx"), (0.1, "zxz")])
+def test_the_floor_grows_towards_the_singularity(pitch: float, sequence: str) -> None:
+    """Two angles are rounded by u over the cosine of the second one, or its sine."""
+    rows = np.tile([0.1, radians(pitch), 0.2], (len(OMEGA), 1))
+    file = of_columns("a b c", rows, [f"{sequence}=2:4"])
+    inputs = InputRounding("nothing", {})
+    moved = with_angles_rounded(inputs, file, range(2), 2.0**-53).at_samples
+    lever = radians(pitch) if sequence == "zxz" else cos(pitch * pi / 180)
+    assert moved["attitude"] == pytest.approx([3**0.5 * 2.0**-53 / lever] * 2, rel=1e-4)
+    assert set(moved) >= {"attitude", "H_space"}
+    assert with_angles_rounded(inputs, of_columns("w1 w2 w3", OMEGA), range(2), 1.0) is inputs

@@ -1,0 +1,267 @@
+"""The times of a file: the column that has them, and its numbers in the scene's unit from its start on.
+
+Seconds beside nanoseconds are added. Of several clocks the one that fits the scene's times is taken. Times
+of a calendar, and seconds since 1970, count from the first row, which is then at the scene's start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime
+from fractions import Fraction
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from taylor_verify.records.faults import Faults, cut
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.choice import Candidates
+from taylor_verify.solvers.files.columns.readings import Name
+from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
+from taylor_verify.solvers.files.formats.column import Column, shown
+from taylor_verify.solvers.files.formats.epochs import is_epoch, seconds_in_log
+from taylor_verify.solvers.values import exact
+
+_OURS: Final = ("t", "time")
+# The ends of the names of a second and of its fractions, and how many of these a second has.
+_SECONDS: Final = ("seconds", "secs", "sec", "s")
+_FRACTIONS: Final[Mapping[str, int]] = {
+    **dict.fromkeys(("nanoseconds", "nanosecs", "nanosec", "nsecs", "nsec"), 10**9),
+    **dict.fromkeys(("microseconds", "usecs", "usec"), 10**6),
+}
+# Seconds since 1970 of the years 2001 to 2286, and in how many parts of a second they may be counted.
+_CLOCK: Final = (10**9, 10**10)
+_PARTS: Final[Mapping[int, str]] = {
+    1: "seconds",
+    10**3: "milliseconds",
+    10**6: "microseconds",
+    10**9: "nanoseconds",
+}
+# A file whose first row is this near to the start, in spans of the scene, begins there.
+_NEAR: Final = Fraction(1, 10**6)
+
+
+class Times(NamedTuple):
+    """The columns of a file, what is asked of them with the time in it, and sentences about the time."""
+
+    columns: list[Column]
+    wanted: Request
+    notes: tuple[str, ...]
+
+
+def with_times(
+    columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
+) -> Times:
+    """Return the columns with times that count from the scene's start, and ask for the one that fits."""
+    sums = list(_sums_of_seconds(columns, place, faults))
+    notes = [each.note for each in sums]
+    read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
+    whole = [c for c in read if not any(c is each.fractions for each in sums)]
+    asked = [theirs for ours, theirs in wanted if ours in _OURS]
+    units = Candidates([Name(column) for column in read], {}, {})
+    clocks = [_Clock(c, scene, _unit(c, units)) for c in _candidates(whole, asked)]
+    chosen = _fitting(clocks)
+    if chosen is None:
+        return Times(read, wanted, tuple(notes))
+    others = [clock for clock in clocks if clock is not chosen]
+    if others:
+        named = ", ".join(f"`{cut(other.column.name)}`" for other in others)
+        notes.append(f"`{cut(chosen.column.name)}` fits the scene's times better than {named}")
+    column, note = chosen.counted(place, faults)
+    read = [column if each is chosen.column else each for each in read]
+    if others or sums or column is not chosen.column or not _is_called_a_time(Name(column)):
+        wanted = [*(pair for pair in wanted if pair[0] not in _OURS), ("t", column.name)]
+    return Times(read, wanted, (*notes, *note))
+
+
+def _candidates(columns: Sequence[Column], asked: Sequence[str]) -> list[Column]:
+    """Return the columns that are asked for, or called a time, or else those with times of a calendar."""
+    if asked:
+        return [column for column in columns if column.name.strip() in asked]
+    names = [Name(column) for column in columns]
+    called = [name.column for name in names if _is_called_a_time(name)]
+    return called or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
+
+
+def _unit(column: Column, names: Candidates) -> Unit:
+    name = Name(column)
+    spelling = names.of_clock(name)
+    stated = in_brackets(spelling.unit, "time") if spelling else name.unit("time")
+    return stated or OWN
+
+
+def _is_called_a_time(name: Name) -> bool:
+    return any(reading.spelling.group == "time" for reading in name.readings)
+
+
+def _is_calendar(value: object) -> bool:
+    return isinstance(value, datetime | np.datetime64) or (
+        isinstance(value, str) and is_epoch(value.strip())
+    )
+
+
+# Seconds beside their fractions.
+
+
+class _Sum(NamedTuple):
+    """A column of whole seconds, that of their fractions, and the column of their sums."""
+
+    whole: Column
+    fractions: Column
+    column: Column
+
+    @property
+    def note(self) -> str:
+        return f"`{cut(self.fractions.name)}` is added to `{cut(self.whole.name)}`"
+
+
+def _sums_of_seconds(columns: Sequence[Column], place: str, faults: Faults) -> Iterator[_Sum]:
+    """Yield the sums of whole seconds and of fractions that have a column of their own."""
+    by_key = {Name(column).key: column for column in columns}
+    for key, fractions in by_key.items():
+        end = next((end for end in _FRACTIONS if key.endswith(end)), None)
+        stem = key.removesuffix(end or "")
+        whole = next((by_key[stem + s] for s in _SECONDS if end and stem + s in by_key), None)
+        if whole is not None and end is not None:
+            values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
+            yield _Sum(whole, fractions, whole._replace(values=values))
+
+
+def _sums(
+    whole: Column, fractions: Column, parts: int, place: str, faults: Faults
+) -> Iterator[Fraction | float]:
+    for row, pair in enumerate(zip(whole.values, fractions.values, strict=False), start=1):
+        at = f"{place}, row {row}, column {cut(fractions.name)}"
+        try:
+            seconds, below = map(exact, pair)
+        except ValueError as error:
+            faults.add(str(error), " ".join(map(shown, pair)), at)
+            return
+        if not 0 <= below < parts:
+            faults.add(f"less than a second, {parts} of which are one", shown(pair[1]), at)
+            return
+        yield seconds + Fraction(below) / parts
+
+
+# One clock.
+
+
+class _Clock:
+    """A column that may have the times."""
+
+    def __init__(self, column: Column, scene: Scene | None, unit: Unit) -> None:
+        self.column, self._scene = column, scene
+        # The unit that the name states, or the program's manual, by which its numbers are multiplied.
+        self._unit = unit
+
+    @cached_property
+    def _is_calendar(self) -> bool:
+        return bool(len(self.column.values)) and _is_calendar(self.column.values[0])
+
+    def _number(self, value: Any) -> Any:
+        """Return a number as it is written, in seconds where it is of a calendar."""
+        return seconds_in_log(str(value)) if self._is_calendar else exact(value)
+
+    @cached_property
+    def _numbers(self) -> list[Any]:
+        return [self._number(value) for value in self.column.values]
+
+    @cached_property
+    def _first(self) -> Fraction:
+        first = self._number(self.column.values[0]) if len(self.column.values) else None
+        return first if isinstance(first, Fraction) else Fraction(0)
+
+    @cached_property
+    def _factor(self) -> Fraction:
+        """The scene's unit of time in that of the column."""
+        return OWN.factor if self._is_calendar else self._unit.factor / self._parts
+
+    @cached_property
+    def _parts(self) -> int:
+        """The parts of a second that large whole numbers since 1970 count; 1 for all other numbers."""
+        if self._is_calendar or self._unit.words or self._first.denominator != 1:
+            return 1
+        fitting = (parts for parts in _PARTS if _CLOCK[0] <= self._first / parts < _CLOCK[1])
+        return next(fitting, 1)
+
+    @cached_property
+    def is_of_the_day(self) -> bool:
+        """True for times of a calendar or since 1970, which no scene begins at."""
+        start = self._scene.clock.start if self._scene else Fraction(0)
+        return self._is_calendar or (
+            abs(start) < _CLOCK[0] <= self._first * self._factor < _CLOCK[1]
+        )
+
+    @cached_property
+    def times(self) -> list[Any]:
+        """The times in the scene's unit."""
+        start = self._scene.clock.start if self._scene else Fraction(0)
+        zero = self._first if self.is_of_the_day else Fraction(0)
+        shift = start if self.is_of_the_day else Fraction(0)
+        return [(number - zero) * self._factor + shift for number in self._numbers]
+
+    @cached_property
+    def runs(self) -> bool:
+        """True if the numbers go on in one direction, though some may stand twice."""
+        try:
+            numbers = self._numbers
+        except ValueError:
+            return False
+        if len(numbers) < 2 or numbers[0] == numbers[-1]:
+            return False
+        rises = numbers[-1] > numbers[0]
+        return all((a <= b) if rises else (a >= b) for a, b in pairwise(numbers))
+
+    @cached_property
+    def misfit(self) -> tuple[bool, bool, int]:
+        """Reasons against the times of a scene, the gravest first: the smaller the better."""
+        if self._scene is None:
+            return (self.is_of_the_day, False, 0)
+        clock = self._scene.clock
+        span = max(abs(time) for time in clock.elapsed)
+        is_apart = self.is_of_the_day or abs(self.times[0] - clock.start) > _NEAR * span
+        is_beyond = abs(self.times[-1] - clock.start) > span * (1 + _NEAR)
+        instants = set(map(float, clock.instants))
+        return (is_apart, is_beyond, -sum(float(time) in instants for time in self.times))
+
+    def counted(self, place: str, faults: Faults) -> tuple[Column, list[str]]:
+        """Return the column, from the scene's start on where it is a clock of the day, and a note on it."""
+        try:
+            if not self.is_of_the_day:
+                return self.column, []
+            values = [time / self._unit.factor for time in self.times]
+        except ValueError:
+            return self._without_faults(place, faults), []
+        name = Name(self.column)
+        bare = self.column.name.replace(name.unit_text, "").strip(" []()") or "t"
+        first = shown(self.column.values[0]).strip("'")
+        parts = "" if self._parts == 1 else f", in {_PARTS[self._parts]}"
+        note = f"t counts from {first} of `{cut(self.column.name)}`{parts}, the first row"
+        return Column(bare if name.unit_text else self.column.name, values), [note]
+
+    def _without_faults(self, place: str, faults: Faults) -> Column:
+        """Return the column; the first time of a calendar that is none is a fault, and no second one."""
+        for row, value in enumerate(self.column.values if self._is_calendar else (), start=1):
+            try:
+                seconds_in_log(str(value))
+            except ValueError as error:
+                at = f"{place}, row {row}, column {cut(self.column.name)}"
+                faults.add(str(error), shown(value), at)
+                return self.column._replace(values=range(len(self.column.values)))
+        return self.column
+
+
+def _fitting(clocks: Sequence[_Clock]) -> _Clock | None:
+    """Return the clock that fits best; of equal ones ours, and none where they differ."""
+    if len(clocks) > 1:
+        clocks = [clock for clock in clocks if clock.runs] or clocks[:1]
+    if len(clocks) < 2:
+        return clocks[0] if clocks else None
+    best = min(clock.misfit for clock in clocks)
+    alike = [clock for clock in clocks if clock.misfit == best]
+    ours = [clock for clock in alike if clock.column.name in _OURS[:1]]
+    same = all(clock.times == alike[0].times for clock in alike)
+    return next(iter(ours), alike[0] if same else None)

@@ -1,0 +1,145 @@
+"""The one attitude of a file, of all its descriptions: a quaternion, a matrix, angles or a vector.
+
+Several descriptions have to agree. Four numbers that do not say where their scalar is are settled by
+another description. What a program's manual says of its names is applied.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from taylor_verify.models.algebra import apply, transpose
+from taylor_verify.models.frame import rotation
+from taylor_verify.records.faults import Faults
+from taylor_verify.scenes.instants import evenly
+from taylor_verify.solvers.files.columns.choice import Choice
+from taylor_verify.solvers.files.columns.forms import FORMS
+from taylor_verify.solvers.files.columns.selection import ATTITUDES, Selection
+from taylor_verify.solvers.files.columns.spelling import Turn
+from taylor_verify.solvers.files.made import MadeRows
+from taylor_verify.solvers.files.rows import Floats, Rows
+
+Groups = Mapping[str, Rows]
+# Rationals, or NaN.
+Numbers = Sequence[Any]
+
+# Two descriptions of one attitude differ by no more, in radians: programs print angles with two decimals.
+_AGREE: Final = 0.01
+_COMPARED: Final = 24
+
+
+class _Description(NamedTuple):
+    """A description of the attitude as a quaternion or a matrix; ``order`` is settled by another one."""
+
+    choice: Choice
+    rows: Rows
+    order: str = ""
+
+    @property
+    def group(self) -> str:
+        return "attitude" if self.rows.width == 9 else "quaternion"
+
+    @property
+    def matrices(self) -> Floats:
+        """The rotations of some rows of the file."""
+        doubles = self.rows.doubles(evenly(len(self.rows), _COMPARED))
+        if self.group == "attitude":
+            return doubles.reshape(-1, 3, 3)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            squares = np.sum(doubles**2, axis=1)
+            return np.moveaxis(np.array(rotation(list(doubles.T))) / squares, -1, 0)
+
+
+def one_attitude(
+    groups: Groups, selection: Selection, place: str, faults: Faults
+) -> tuple[Groups, str, list[str]]:
+    """Return the groups with one description of the attitude, its form, and how it was settled."""
+    choices = [choice for choice in selection.attitudes if choice.group in groups]
+    every = [
+        description
+        for choice in choices
+        for description in _descriptions(choice, groups[choice.group])
+    ]
+    left = {name: rows for name, rows in groups.items() if name not in ATTITUDES}
+    first, notes = _settled(every, choices, place, faults)
+    if first:
+        left[first.group] = first.rows
+    is_turned = selection.omega and selection.omega.spelling.turn is Turn.SPACE_AXES
+    if is_turned and "omega" in groups:
+        if first:
+            make = _in_body_by_matrix if first.group == "attitude" else _in_body
+            left["omega"] = MadeRows([left["omega"], first.rows], make, 3)
+        else:
+            notes.append("w1 w2 w3 are left in space axes: the file has no attitude")
+    form = first.choice.group if first and first.choice.group in FORMS else ""
+    return left, form, notes
+
+
+def _descriptions(choice: Choice, rows: Rows) -> Iterator[_Description]:
+    """Yield a description in our convention; two where the place of the scalar is open."""
+    if choice.group in FORMS:
+        rows = MadeRows([rows], FORMS[choice.group].quaternion, 4)
+    if choice.doubt:
+        yield _Description(choice, rows, "first")
+        yield _Description(choice, MadeRows([rows], _scalar_first, 4), "last")
+    elif choice.spelling.turn is Turn.TO_BODY:
+        make = _transposed if choice.group == "attitude" else _conjugate
+        yield _Description(choice, MadeRows([rows], make, rows.width))
+    else:
+        yield _Description(choice, rows)
+
+
+def _settled(
+    every: Sequence[_Description], choices: Sequence[Choice], place: str, faults: Faults
+) -> tuple[_Description | None, list[str]]:
+    """Return the first of the descriptions, which all agree; it is a fault where two do not."""
+    if len(choices) < 2:
+        return (every[0] if every else None), []
+    right = next((each for each in every if not each.choice.doubt), every[0]).matrices
+    apart = [_apart(each.matrices, right) for each in every]
+    agree = [each for each, angle in zip(every, apart, strict=True) if angle <= _AGREE]
+    if [each.choice for each in agree] != list(choices):
+        got = " and ".join(choice.shown for choice in choices)
+        mend = "say which: --columns q0=NAME,... or r11=NAME,... or zyx=NAME:NAME"
+        faults.add("the attitude once", f"{got}, which differ", place, mend)
+        return None, []
+    first, *others = agree
+    scalar = f": the scalar is {first.order}" if first.order else ""
+    beside = " and ".join(each.choice.shown for each in others)
+    return first, [f"{first.choice.shown} taken, with which {beside} agree{scalar}"]
+
+
+def _apart(matrices: Floats, right: Floats) -> float:
+    """Return the largest angle between rotations, in radians; infinite where none can be compared."""
+    sizes = np.linalg.norm((matrices - right).reshape(len(right), -1), axis=1) / np.sqrt(2)
+    finite = sizes[np.isfinite(sizes)]
+    return float(np.max(finite)) if len(finite) else inf
+
+
+# From a row to a row, in any arithmetic.
+
+
+def _scalar_first(row: Numbers) -> Numbers:
+    return (row[3], *row[:3])
+
+
+def _conjugate(row: Numbers) -> Numbers:
+    return (row[0], *(-part for part in row[1:]))
+
+
+def _transposed(row: Numbers) -> Numbers:
+    return [row[3 * i + k] for k in range(3) for i in range(3)]
+
+
+def _in_body(omega: Numbers, q: Numbers) -> Numbers:
+    """Return R^T omega for a quaternion of any length."""
+    square = sum(part * part for part in q)
+    return [part / square for part in apply(transpose(rotation(q)), omega)]
+
+
+def _in_body_by_matrix(omega: Numbers, R: Numbers) -> Numbers:
+    return apply([R[i::3] for i in range(3)], omega)

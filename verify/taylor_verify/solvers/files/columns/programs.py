@@ -1,0 +1,58 @@
+"""The names that programs write, read from the table `programs.txt`, an entry in a line.
+
+What a name does not say and the program's manual does stands there too: a unit, a frame, a convention.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.resources import files
+from itertools import product
+from typing import Final
+
+from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
+
+TABLE: Final = files(__package__).joinpath("programs.txt").read_text(encoding="utf-8")
+FIELDS: Final = ("program", "group", "names", "beside", "unit", "frame", "turn", "source")
+
+
+def entries() -> Iterator[dict[str, str]]:
+    """Yield the entries of the table, each field by its name."""
+    for line in TABLE.splitlines():
+        if line and not line.startswith("#"):
+            fields = (field.strip() for field in line.split("|"))
+            yield dict(zip(FIELDS, fields, strict=True))
+
+
+def spellings_of(entry: Mapping[str, str], remark: str = "") -> Iterator[Spelling]:
+    """Yield the spelling of an entry; three for names with a star."""
+    together = [sign.split("+") for sign in entry["beside"].split()]
+    for names in _written_out(entry["names"].split(), entry["group"]):
+        yield Spelling(
+            group=entry["group"],
+            keys=tuple(map(_letters, names)),
+            remark="" if entry["turn"] else remark,
+            whose=entry["program"],
+            is_behind=names[0].startswith("_"),
+            signs=tuple(tuple(map(_letters, signs)) for signs in together),
+            unit=entry["unit"],
+            frame=Frame[entry["frame"].upper() or "UNSAID"],
+            turn=Turn(entry["turn"]),
+        )
+
+
+def _written_out(names: Sequence[str], group: str) -> Iterator[Sequence[str]]:
+    (stem, star), *more = (name.partition("*")[:2] for name in names)
+    if not star:
+        yield names
+        return
+    assert not more
+    for components in ("xyz", "123", "012"):
+        yield [
+            stem + "".join(each) for each in product(components, repeat=2 - (group != "attitude"))
+        ]
+
+
+def _letters(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())

@@ -1,0 +1,123 @@
+"""The rows of a file that are there: rows that repeat the one before, and groups with rows of their own.
+
+A group has no row where all of its cells are blank, and none where all are NaN between its numbers, as in a
+table of two rates. NaN that is rare, or in which a group ends, is an answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.records.faults import cut
+from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.values import Value, exact
+
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
+
+# R writes NA, and other programs null.
+_BLANK: Final = ("", "NA", "null", None)
+
+
+def blanks(values: Sequence[Any]) -> Flags:
+    """Return True for the cells that are blank."""
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
+        return np.zeros(len(values), dtype=bool)
+    if isinstance(values, np.ndarray) and values.dtype.kind == "T":
+        texts = np.strings.strip(values)
+        return np.logical_or.reduce([texts == blank for blank in _BLANK[:-1]])
+    cells = (value.strip() if isinstance(value, str) else value for value in values)
+    return np.fromiter((cell in _BLANK for cell in cells), dtype=bool, count=len(values))
+
+
+def first_of_equal(times: Sequence[Value], columns: Sequence[Sequence[Any]]) -> list[int]:
+    """Return the places of the rows that do not repeat the row before, time and numbers."""
+    first: list[int] = []
+    for k, time in enumerate(times):
+        if not (first and time == times[first[-1]] and _are_equal(columns, first[-1], k)):
+            first.append(k)
+    return first
+
+
+def _are_equal(columns: Sequence[Sequence[Any]], before: int, now: int) -> bool:
+    return all(_number(column[before]) == _number(column[now]) for column in columns)
+
+
+def _number(raw: Any) -> object:
+    """Return a number; a text that is none, and NaN, are equal to themselves."""
+    try:
+        value = exact(raw)
+    except ValueError:
+        return raw
+    return value if isinstance(value, Fraction) else str(value)
+
+
+def repeated_note(count: int) -> str:
+    """Return the sentence on rows that are left out because they repeat the row before."""
+    rows = "1 row that repeats" if count == 1 else f"{count} rows that repeat"
+    return f"{rows} the row before, time and numbers, left out"
+
+
+def rows_of_groups(
+    groups: Mapping[str, Sequence[Column]], blank: Mapping[str, Flags], finite: Mapping[str, Flags]
+) -> dict[str, Flags]:
+    """Return True for the rows that each group has.
+
+    ``blank`` are those without a number, and ``finite`` those whose numbers are all finite.
+    """
+    if not groups:
+        return {}
+    there = {group: ~blank[group] for group in groups}
+    nan = {g: there[g] & _of_nan(columns, there[g] & ~finite[g]) for g, columns in groups.items()}
+    sparse = [group for group in groups if _is_sparse(finite[group], nan[group])]
+    elsewhere = np.zeros_like(next(iter(there.values())))
+    for group in sparse:
+        elsewhere |= finite[group]
+    for group, rows in there.items():
+        if group in sparse or _complements(nan[group], elsewhere):
+            rows &= ~nan[group]
+    return there
+
+
+def _complements(nan: Flags, elsewhere: Flags) -> bool:
+    """Return True for NaN in most of the rows that another group has, and in no others."""
+    return bool(elsewhere[nan].all()) and 2 * nan.sum() > elsewhere.sum()
+
+
+def blank_rows(columns: Sequence[Column]) -> Flags:
+    """Return True for the rows all of whose cells are blank."""
+    return np.asarray(np.logical_and.reduce([blanks(column.values) for column in columns]))
+
+
+def _of_nan(columns: Sequence[Column], rows: Flags) -> Flags:
+    """Return True for those of some rows all of whose numbers are NaN."""
+    nan = np.zeros(len(rows), dtype=bool)
+    for k in np.flatnonzero(rows).tolist():
+        nan[k] = all(_is_nan(column.values[k]) for column in columns)
+    return nan
+
+
+def _is_sparse(finite: Flags, nan: Flags) -> bool:
+    """Return True for a group whose numbers stand between at least as many rows of NaN."""
+    if nan.sum() < max(finite.sum() - 1, 1):
+        return False
+    runs = [(lost, len(list(run))) for lost, run in groupby((~finite).tolist())]
+    inner = max((length for lost, length in runs[1:-1] if lost), default=0)
+    return inner > 0 and not (runs[-1][0] and runs[-1][1] > inner)
+
+
+def _is_nan(raw: Any) -> bool:
+    value = exact(raw)
+    return value != value
+
+
+def rows_note(names: Sequence[str], has: int, count: int) -> str:
+    """Return a sentence on a group that does not have all rows of the file; empty for any other."""
+    columns = cut(" ".join(names))
+    if not has:
+        return f"{columns} not read: no row has numbers"
+    return f"{columns} have {has} of the {count} rows" if has < count else ""
