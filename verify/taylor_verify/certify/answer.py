@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
-from decimal import Decimal
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,6 +20,7 @@ from taylor_verify.certify.dense import (
 from taylor_verify.certify.pieces import Pieces
 from taylor_verify.certify.samples import of_callable, of_samples
 from taylor_verify.records.faults import brief, refusal
+from taylor_verify.records.json_text import exact_document
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.objects import trajectory
@@ -73,8 +72,5 @@ def _document(file: str | os.PathLike[str]) -> Mapping[str, Any] | None:
     path = Path(file)
     if path.suffix.lower() != ".json" or not path.is_file():
         return None
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
-    except ValueError as error:
-        raise refusal("a JSON document", str(error), path) from None
+    document = exact_document(path)
     return document if isinstance(document, dict) and set(document) >= _DOCUMENT else None

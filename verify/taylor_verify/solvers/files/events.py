@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from decimal import Decimal
 from fractions import Fraction
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.json_text import exact_document
 from taylor_verify.solvers.files.formats.reading import read_table
 from taylor_verify.solvers.values import exact
 
@@ -40,10 +40,7 @@ def read_events(file: str | os.PathLike[str]) -> list[Fraction]:
 def _entries(file: str | os.PathLike[str]) -> list[Any]:
     path = Path(file)
     if path.suffix.lower() == ".json" and path.is_file():
-        try:
-            document = json.loads(path.read_text(encoding="utf-8"), parse_float=Decimal)
-        except ValueError as error:
-            raise refusal("a JSON document", str(error), path) from None
+        document = exact_document(path)
         if isinstance(document, dict) and isinstance(document.get(_NAME), list):
             return list(document[_NAME])
         raise refusal(f"a list `{_NAME}`", "none", path)
