@@ -18,6 +18,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from builders.processes import on_one_core
 from builders.scenes import LISTED_INSTANTS, scene_file
 from builders.schema import SCHEMA, violations
 from builders.verdicts import far_off as row
@@ -621,12 +622,21 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
             "PYTHONPATH": str(ROOT / "verify"),
             "RUNNER_TEMP": str(Path.cwd()),
         }
-        return subprocess.run(
-            ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", script("run taylor-verify")],
-            env={**environment, **files, **empty, **given},
-            stderr=subprocess.DEVNULL,
-            check=False,
-        ).returncode
+        with on_one_core():
+            return subprocess.run(
+                [
+                    "bash",
+                    "--noprofile",
+                    "--norc",
+                    "-eo",
+                    "pipefail",
+                    "-c",
+                    script("run taylor-verify"),
+                ],
+                env={**environment, **files, **empty, **given},
+                stderr=subprocess.DEVNULL,
+                check=False,
+            ).returncode
 
     asked = {"SCENES": "short.toml\nother.toml $(touch injected)", "RUNG": "f32 f64"}
     assert step(**asked) == 2  # what looks like a command is a word, and no scene
