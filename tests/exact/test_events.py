@@ -96,7 +96,7 @@ def test_what_is_conserved_has_no_event_or_is_undecided(text: str) -> None:
     """A constant is beside a value, or no time is distinguished."""
     answer = events(GENERIC, text, 3, DIGITS)
     assert not answer.times
-    assert answer.passed is (not found.undecided)
+    assert answer.passed is (not answer.undecided)
 
 
 def test_the_start_is_known_exactly() -> None:
