@@ -53,10 +53,8 @@ _CI: Final = """
 --explain  also show how each bound was computed
 --junit FILE  write the verdicts to FILE as JUnit XML
 --github  print annotations for GitHub on stderr, and write a summary to the file $GITHUB_STEP_SUMMARY
---baseline FILE  fail if a row is worse than in FILE, by more than rounding explains; FILE is the output of
-  an earlier --json, or verdicts.json of an earlier `run --out`
---gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
-  baseline alone, for an answer that is beyond its bounds and must not get worse; default: bound
+--baseline FILE  fail if a row is worse than in FILE (an earlier --json, or verdicts.json), beyond rounding
+--gate bound|baseline [bound]  the exit status is that of the bounds (and --baseline), or of the baseline alone
 """
 _VERBS: Final = {
     "list": (
@@ -111,8 +109,7 @@ scene {_SCENE}
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
   (default elsewhere)
---attitude matrix|quaternion|zyx [matrix]  the form of the attitude: R row by row; q0 q1 q2 q3; or yaw,
-  pitch and roll in radians; default: matrix
+--attitude matrix|quaternion|zyx [matrix]  R row by row (default), q0 q1 q2 q3, or yaw pitch roll in rad
 """,
     ),
     "check": (
@@ -125,18 +122,14 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
   and a note says so. All other columns are ignored, and a note names them. Several files are the answers
   of one solver at several steps: their order of convergence is shown too
---columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro), or
-  its first and last column (zyx_deg=5:7, mrp=2:4, rotvec=2:4: angles and vectors of the attitude); a comma
-  belongs to THEIRS unless NAME= follows it; may be repeated: --columns 't=Time [ms],w1=rate, axis 1'
+--columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); or
+  its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
---accept-conventions  correct the conventions that the file does not share with the scene (order of the
-  quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
---partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
-  to such a file is undecided
+--accept-conventions  correct the order of the quaternion, axes, units, time, ... of a file, then judge it
+--partial  accept a file that lacks tracked columns or a part of the time, which is undecided otherwise
 {_TOLERANCE}
---steps H,H,...  the steps of several files, in their order; default: what the files or their names say
-  (run_h0.05.csv)
+--steps H,H,...  the steps of several files, in their order; default: what the files say (run_h0.05.csv)
 --knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",

@@ -81,7 +81,7 @@ class Meaning:
 
     @property
     def _moving(self) -> str:
-        """The same turns about axes that move along: in the opposite order."""
+        """The sequence of the same turns about axes that move along, in the opposite order."""
         return self.sequence[::-1] if self.is_fixed else self.sequence
 
 

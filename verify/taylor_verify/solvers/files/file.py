@@ -142,18 +142,17 @@ def from_columns(
     times = parts.times(place, faults)
     if faults.lines:
         raise Refused(faults.lines)
-    settled: list[str] = []
-    files = []
+    files, agreed = [], list[str]()
     for part in parts.of_rows(times, place, faults):
-        groups, form, said = one_attitude(part.groups, selection, place, faults)
-        settled += said
+        groups, form, settled = one_attitude(part.groups, selection, place, faults)
+        agreed += settled
         instants, every = tuple(times[k] for k in part.places), {**COLUMNS, **own}
         file = TrajectoryFile(place, instants, groups, part.digits, columns=every, form=form)
         files.append(file)
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files
-    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *settled)
+    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *agreed)
     return replace(first, notes=sentences, apart=tuple(others))
 
 

@@ -77,6 +77,8 @@ _WORDS: Final = {
         "qr qi qj qk",
         "eta eps1 eps2 eps3",
         "eta epsilon1 epsilon2 epsilon3",
+        "beta0 beta1 beta2 beta3",
+        "ep0 ep1 ep2 ep3",
     ),
     "mrp": ("sigma1 sigma2 sigma3", "sigma0 sigma1 sigma2"),
     "axis_angle": ("axisx axisy axisz angle", "axis1 axis2 axis3 angle", "axis0 axis1 axis2 angle"),
@@ -93,7 +95,7 @@ _TIMES: Final = (
     "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed "
     "elapsedtime"
 )
-_ATTITUDES: Final = "q quat quaternion orientation attitude att rotation"
+_ATTITUDES: Final = "q quat quaternion orientation orn attitude att rotation"
 _MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
 # A direction cosine matrix takes space to body as often as body to space.
 _COSINES: Final = "dcm directioncosinematrix c"

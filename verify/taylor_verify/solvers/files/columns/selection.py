@@ -114,7 +114,7 @@ class _Chooser:
             names = tuple(asked[name] for name in ours)
             units = tuple(self.candidates.asked_unit(name, group) for name in ours)
             spelling = self.candidates.of_clock(names[0]) if group == "time" else None
-            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours)
+            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours and not s.whose)
             return Choice(group, names, units, Rank.ASKED, spelling)
         every = self.candidates.of(group, self.chosen)
         clear = [choice for choice in every if not choice.doubt]
@@ -160,14 +160,14 @@ class _Chooser:
         sure = [choice for choice in every if not choice.doubt]
         is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
         best = min((choice.rank for choice in sure), default=Rank.USUAL)
-        kept = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
+        strongest = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
         for choice in every:
             if choice.doubt and not sure:
                 del self.chosen[choice.group]
                 self._doubt_one(choice)
-            elif choice not in kept and not (choice.doubt and is_usual):
+            elif choice not in strongest and not (choice.doubt and is_usual):
                 del self.chosen[choice.group]
-        if len(kept) > 1 and best is Rank.OURS:
+        if len(strongest) > 1 and best is Rank.OURS:
             got = "q0 q1 q2 q3 and r11 ... r33"
             self.faults.add("the attitude once", got, self.place, "keep one of them")
 

@@ -59,12 +59,13 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
         (Fraction(1, 10**9), "1e-9 of the scene's unit of time", "ns nsec nanosecond nanoseconds"),
         (Fraction(60), "sixties of the scene's unit of time", "min mins minute minutes"),
         (Fraction(3600), "3600 of the scene's unit of time", "h hr hour hours"),
+        (Fraction(86400), "86400 of the scene's unit of time", "d day days"),
     ),
     "rate": (
         (
             Fraction(1),
             _RATES,
-            "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 radps rad_per_s 1/s radian/second",
+            "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 rads^-1 radps rad_per_s 1/s radian/second",
         ),
         (Fraction(1, 1000), f"thousandths of {_RATES}", "mrad/s"),
         (
@@ -115,7 +116,18 @@ DIMENSION: Final[Mapping[str, str]] = {
     **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
 _GREEK: Final = str.maketrans(
-    {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "°": "deg", "·": ".", "*": "."}
+    {
+        "ω": "omega",
+        "η": "eta",
+        "ε": "eps",
+        "μ": "u",
+        "φ": "phi",
+        "θ": "theta",
+        "ψ": "psi",
+        "°": "deg",
+        "·": ".",
+        "*": ".",
+    }
 )
 
 
