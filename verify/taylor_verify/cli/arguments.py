@@ -54,7 +54,7 @@ _CI: Final = """
 --junit FILE  write the verdicts to FILE as JUnit XML
 --github  print annotations for GitHub on stderr, and write a summary to the file $GITHUB_STEP_SUMMARY
 --baseline FILE  fail if a row is worse than in FILE (an earlier --json, or verdicts.json), beyond rounding
---gate bound|baseline [bound]  the exit status is that of the bounds (and --baseline), or of the baseline alone
+--gate bound|baseline [bound]  the exit status is that of the bounds, or of the baseline; default: bound
 """
 _VERBS: Final = {
     "list": (
