@@ -11,6 +11,7 @@ from datetime import datetime
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from math import nan
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -137,13 +138,13 @@ def _sums(
         at = f"{place}, row {row}, column {cut(fractions.name)}"
         try:
             seconds, below = map(exact, pair)
-        except ValueError as error:
-            faults.add(str(error), " ".join(map(shown, pair)), at)
-            return
-        if not 0 <= below < parts:
+        except ValueError:
+            # A row of another topic, or no time at all.
+            seconds, below = nan, Fraction(0)
+        if below < 0 or below >= parts:
             faults.add(f"less than a second, {parts} of which are one", shown(pair[1]), at)
             return
-        yield seconds + Fraction(below) / parts
+        yield seconds + Fraction(below) / parts if below == below else nan
 
 
 # One clock.
