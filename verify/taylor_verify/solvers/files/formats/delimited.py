@@ -23,6 +23,7 @@ from taylor_verify.solvers.files.formats.column import (
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.header import (
     MARKS,
+    MOST_CHARACTERS,
     MOST_LINES,
     Head,
     Line,
@@ -48,7 +49,7 @@ def read(file: Content, path: Path, part: str) -> Table:
 def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
     """Return the columns of the table that stands from the ``first`` line on."""
     try:
-        top = head(list(islice(_lines(file, first, with_comments=True), MOST_LINES)), marks)
+        top = head(list(_first_lines(file, first)), marks)
         if top is None:
             raise refusal("a header line and rows", "an empty file", path)
         names, columns = _columns(file, top, path)
@@ -63,6 +64,16 @@ def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterat
     for number, text in enumerate(file.lines(), start=1):
         if number >= first and text.strip() and (with_comments or not is_comment(text)):
             yield Line(number, text)
+
+
+def _first_lines(file: Content, first: int) -> Iterator[Line]:
+    """Yield the lines among which the header stands, the first two in any case."""
+    size = 0
+    for count, line in enumerate(islice(_lines(file, first, with_comments=True), MOST_LINES)):
+        size += len(line.text)
+        if count > 1 and size > MOST_CHARACTERS:
+            return
+        yield line
 
 
 class _Rows:

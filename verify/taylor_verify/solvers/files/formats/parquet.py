@@ -149,9 +149,9 @@ def _without_lists(table: Any, path: Path) -> Any:
         if lengths["min"] != lengths["max"] or column.null_count:
             got = f"lists of {lengths['min']} to {lengths['max']}"
             raise refusal("lists of one length", got, f"{path}, column {name}")
+        check_size(len(columns) + (lengths["max"] or 0), len(column), path)
         for k in range(lengths["max"] or 0):
             columns[f"{name}[{k}]"] = pc.list_element(column, k)
-        check_size(len(columns), len(column), path)
     return pa.table(columns)
 
 

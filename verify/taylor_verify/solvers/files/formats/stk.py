@@ -41,7 +41,8 @@ def read(file: Content, path: Path, part: str) -> Table:
             if names:
                 if len(words) != len(names) + 1:
                     ragged(f"{len(names) + 1} numbers", str(len(words)), place)
-                rows.append(words)
+                else:
+                    rows.append(words)
                 ROWS.check(len(rows), path)
             elif word.startswith("attitudetime"):
                 names = _named(word, words[0], keywords.get("sequence", ""), place)
