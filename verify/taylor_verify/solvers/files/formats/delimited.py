@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
@@ -49,7 +50,7 @@ def read(file: Content, path: Path, part: str) -> Table:
 def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
     """Return the columns of the table that stands from the ``first`` line on."""
     try:
-        top = head(list(_first_lines(file, first)), marks)
+        top = head(_first_lines(file, first), marks)
         if top is None:
             raise refusal("a header line and rows", "an empty file", path)
         names, columns = _columns(file, top, path)
@@ -66,14 +67,18 @@ def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterat
             yield Line(number, text)
 
 
-def _first_lines(file: Content, first: int) -> Iterator[Line]:
-    """Yield the lines among which the header stands, the first two in any case."""
-    size = 0
-    for count, line in enumerate(islice(_lines(file, first, with_comments=True), MOST_LINES)):
-        size += len(line.text)
-        if count > 1 and size > MOST_CHARACTERS:
-            return
-        yield line
+def _first_lines(file: Content, first: int) -> list[Line]:
+    """Return the lines among which the header stands: the first ones, and the last comments before."""
+    comments, others, size = deque[Line](maxlen=MOST_LINES), list[Line](), 0
+    for line in _lines(file, first, with_comments=True):
+        if line.is_comment and len(line.text) < MOST_CHARACTERS:
+            comments.append(line)
+        elif not line.is_comment:
+            others.append(line)
+            size += len(line.text)
+        if len(others) == MOST_LINES or (len(others) > 1 and size > MOST_CHARACTERS):
+            break
+    return sorted([*comments, *others])
 
 
 class _Rows:

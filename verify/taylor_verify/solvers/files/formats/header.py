@@ -188,6 +188,8 @@ def _names(line: Line, mark: str, row: Sequence[str]) -> _Names | None:
     """Return the names in a line, if there are as many as cells in a row of numbers."""
     readings = [_fitting(cells, row) for cells in _ways(line.bare, mark)]
     named = [cells for cells in readings if cells and not any(map(is_value, cells))]
+    if line.is_comment:
+        named = [cells for cells in named if len(set(cells)) == len(cells)]
     if not named:
         return None
     cells = max(named, key=_known)
