@@ -167,6 +167,23 @@ def test_terminate_ends_workers_in_the_middle(tmp_path: Any) -> None:
     assert set(multiprocessing.active_children()) <= before
 
 
+def test_a_second_interrupt_does_not_end_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C while workers are ended leaves none of them, no traceback, and the handler as it was."""
+    pool = LocalPool(1)
+    worker = pool._workers[0]
+    exit_status = worker.exit_status
+
+    def interrupted() -> int | None:
+        signal.raise_signal(signal.SIGINT)
+        return exit_status()
+
+    monkeypatch.setattr(worker, "exit_status", interrupted)
+    before = signal.getsignal(signal.SIGINT)
+    pool.terminate()
+    assert not worker.process.is_alive()
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_shutdown_waits_for_the_work() -> None:
     """Leaving the `with` block ends the processes after what was submitted."""
     before = set(multiprocessing.active_children())

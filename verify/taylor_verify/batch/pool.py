@@ -73,12 +73,13 @@ class LocalPool(Executor):
 
     def terminate(self) -> None:
         """End the workers at once, in the middle of whatever they do; return when they have ended."""
-        self._threads.shutdown(wait=False, cancel_futures=True)
-        for worker in self._workers:
-            worker.process.terminate()
-        for worker in self._workers:
-            worker.exit_status()
-        self.shutdown()
+        with _interrupts_ignored():
+            self._threads.shutdown(wait=False, cancel_futures=True)
+            for worker in self._workers:
+                worker.process.terminate()
+            for worker in self._workers:
+                worker.exit_status()
+            self.shutdown()
 
     def _call(
         self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -194,6 +195,19 @@ def _end_with_parent() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Let a second interrupt not end the end of the workers, which takes some seconds at most."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before or signal.default_int_handler)
 
 
 @contextmanager

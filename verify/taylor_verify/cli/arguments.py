@@ -15,18 +15,16 @@ from __future__ import annotations
 import argparse
 import difflib
 import re
-import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib import import_module
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
-from taylor_verify.cli.streams import print_out
+from taylor_verify.cli.parser import Parser
 from taylor_verify.cli.verbs import add, described, package_of, verbs
 from taylor_verify.records.version import __version__
-from taylor_verify.scenes.names import one_line
 
 _VERB: Final = "VERB"
 # What this distribution publishes is not on the first page of help.
@@ -293,23 +291,9 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
     return rungs, scenes
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose message is one harmless line: it repeats words that may be names of files."""
-
-    def error(self, message: str) -> NoReturn:
-        super().error(one_line(message))
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        """Print help and version as any answer: argparse says nothing of a disk that is full."""
-        if file is sys.stderr:
-            super()._print_message(message, file)
-        else:
-            print_out(message.removesuffix("\n"))
-
-
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Return the parser; verbs of other packages are loaded if they are among the words."""
-    parser = _Parser(
+    parser = Parser(
         prog="taylor-verify",
         description="Find out how wrong a simulation is: of a rigid body, or of a solid in an ideal "
         "fluid. Its numbers are compared with the exact motion.",
@@ -348,7 +332,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _verb_parser(
-    verbs: argparse._SubParsersAction[_Parser], name: str, what: str, example: str
+    verbs: argparse._SubParsersAction[Parser], name: str, what: str, example: str
 ) -> argparse.ArgumentParser:
     """Return the parser of a verb, with what every verb has."""
     verb = verbs.add_parser(

@@ -140,9 +140,11 @@ def sweep(
                 raise
             raise Failed(f"{lost}; what was judged is stored: go on with --resume") from lost
         made = _explained(work, summary(dataset, asked, asked.title, worst))
+        if out is None:
+            # Nothing is drawn or written for a folder that goes.
+            return with_files(made, {})
         written, _ = write_summary(folder, made, asked)
-    # What was written into a folder that is gone has no file.
-    return written if out is not None else with_files(written, {})
+    return written
 
 
 def _faults(
