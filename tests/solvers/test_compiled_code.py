@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import locale
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -14,7 +16,9 @@ import heyoka as hy
 import pytest
 from builders.turns import by_turns
 
+import taylor_verify
 from taylor_verify.models.problem import pose
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor import cache
@@ -184,3 +188,56 @@ def test_the_cache_has_a_largest_size(folder: Path, monkeypatch: pytest.MonkeyPa
     compile_afresh("f32", tolerance=Fraction(1, 10))
     assert oldest in files(folder)
     assert younger not in files(folder)
+
+
+# The locale.
+
+COMMA = """
+import locale
+locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+from taylor_verify import run
+print(run("euler/generic", rung="f128").passed, locale.localeconv()["decimal_point"])
+"""
+
+
+@pytest.fixture(scope="module")
+def german(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the locale of Germany, whose decimal mark is a comma."""
+    folder = tmp_path_factory.mktemp("locales")
+    if not shutil.which("localedef"):
+        pytest.skip("no localedef to make the locale de_DE with")
+    words = ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")]
+    if subprocess.run(words, capture_output=True, check=False).returncode:
+        pytest.skip("localedef cannot make the locale de_DE")
+    return folder
+
+
+def test_a_decimal_comma_reaches_no_code(german: Path, tmp_path: Path) -> None:
+    """heyoka is imported, and its code compiled and stored, with decimal points; the comma comes back."""
+    own = {"LOCPATH": str(german), cache.CACHE_VARIABLE: str(tmp_path)}
+    package = str(Path(taylor_verify.__file__).parents[1])
+    done = subprocess.run(
+        [sys.executable, "-c", COMMA],
+        env={**os.environ, **own, "PYTHONPATH": package},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "True ,\n"), done.stderr
+
+
+def test_blocks_with_decimal_points_may_overlap(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The locale before the first block comes back behind the last, whoever ends it, and not before."""
+    calls: list[str | None] = []
+
+    def setlocale(category: int, name: str | None = None) -> str:
+        assert category == locale.LC_NUMERIC
+        calls.append(name)
+        return "de_DE.UTF-8"
+
+    monkeypatch.setattr(locale, "setlocale", setlocale)
+    with decimal_point():
+        with decimal_point():
+            pass
+        assert "de_DE.UTF-8" not in calls
+    assert calls == [None, "C", "C", "de_DE.UTF-8"]

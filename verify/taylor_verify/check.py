@@ -5,6 +5,8 @@ from __future__ import annotations
 from os import PathLike
 from typing import TYPE_CHECKING, Any, overload
 
+from taylor_verify.numbers.working_precision import in_turn
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
@@ -39,6 +41,7 @@ def check(
     steps: Sequence[float] | None = None,
     knob: str = "",
 ) -> FilesJudgement: ...
+@in_turn
 def check(
     scene: Scene | str | PathLike[str],
     solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,

@@ -5,6 +5,8 @@ from __future__ import annotations
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from taylor_verify.numbers.working_precision import in_turn
+
 if TYPE_CHECKING:
     from os import PathLike
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.trajectory import Trajectory
 
 
+@in_turn
 def run(
     scene: Scene | str | PathLike[str],
     solver: Solver | str = "taylor",
@@ -92,6 +95,7 @@ def run(
     return replace(judged, costs=total([costs.seconds, judged.costs]))
 
 
+@in_turn
 def solve(
     scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
 ) -> Trajectory:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -15,17 +14,14 @@ from concurrent.futures import (
 from contextlib import ExitStack, closing
 from functools import partial
 from itertools import islice
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.pool import LocalPool, WorkerLost, available_cores
+from taylor_verify.numbers.working_precision import ONE_AT_A_TIME
 
 Asked = TypeVar("Asked")
 Result = TypeVar("Result")
-
-# mpmath and FLINT have one working precision for a whole process. Two threads that both set it compute
-# wrong numbers, so that threads of one process take turns, whatever executor they belong to.
-_ONE_AT_A_TIME: Final = threading.RLock()
 
 
 def run_all(
@@ -116,7 +112,7 @@ def _ended(
 
 
 def _take_turn(work: Callable[[Asked], Result], one: Asked) -> Result:
-    with _ONE_AT_A_TIME:
+    with ONE_AT_A_TIME:
         return work(one)
 
 

@@ -53,10 +53,8 @@ _CI: Final = """
 --explain  also show how each bound was computed
 --junit FILE  write the verdicts to FILE as JUnit XML
 --github  print annotations for GitHub on stderr, and write a summary to the file $GITHUB_STEP_SUMMARY
---baseline FILE  fail if a row is worse than in FILE, by more than rounding explains; FILE is the output of
-  an earlier --json, or verdicts.json of an earlier `run --out`
---gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
-  baseline alone, for an answer that is beyond its bounds and must not get worse; default: bound
+--baseline FILE  fail if a row is worse than in FILE (an earlier --json, or verdicts.json), beyond rounding
+--gate bound|baseline [bound]  the exit status is that of the bounds, or of the baseline; default: bound
 """
 _VERBS: Final = {
     "list": (
@@ -128,15 +126,11 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
---accept-conventions  correct the conventions that the file does not share with the scene (order of the
-  quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
---partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
-  to such a file is undecided
+--accept-conventions  correct the order of the quaternion, axes, units, time, ... of a file, then judge it
+--partial  accept a file that lacks tracked columns or a part of the time, which is undecided otherwise
 {_TOLERANCE}
---steps H,H,...  the steps of several files, in their order; default: what the files or their names say
-  (run_h0.05.csv)
---knob NAME  what differs between several files in place of the step: rtol, substeps, ...; its number is
-  read in their names (run_rtol1e-6.csv), or in a comment or key of each file
+--steps H,H,...  the steps of several files, in their order; default: what the files say (run_h0.05.csv)
+--knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),

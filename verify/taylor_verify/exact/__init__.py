@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from taylor_verify.numbers.working_precision import in_turn
+
 if TYPE_CHECKING:
     import os
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
 
 
+@in_turn
 def exact(
     scene: Scene | str | os.PathLike[str],
     times: Iterable[Any],

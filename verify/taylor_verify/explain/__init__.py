@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from taylor_verify.numbers.working_precision import in_turn
+
 if TYPE_CHECKING:
     from os import PathLike
 
@@ -11,6 +13,7 @@ if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
 
 
+@in_turn
 def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dict[str, Any]:
     """Run a scene on one rung and explain the equations, the orbit and the terms of each bound.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from math import isfinite
 from os import PathLike
 from typing import Any
@@ -18,6 +19,7 @@ from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.explain.loads import loads_document
+from taylor_verify.explain.patience import Patience
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.attainable import orbit_of_run
 from taylor_verify.judge.floor.carrying import Carrying, carrying
@@ -28,6 +30,8 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.quantities import TRACKED
+from taylor_verify.records.reason import Cause, stated
+from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -37,6 +41,9 @@ from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
 
 _DIGITS = 15
+# Whoever asks for an explanation reads it at once.
+_SECONDS = 8.0
+_NO_ORBIT: Mapping[str, Any] = {"orbit": {}, "elements": [], "sentences": []}
 # Digits beyond those of a rung, so that the exact number is rounded once.
 _SPARE_DIGITS = 6
 _FROM_RECORD = ("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff")
@@ -51,11 +58,19 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     scene = as_scene(scene)
     body = scene.body
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
-    judged, lacking = _judged(scene, rung_named(rung))
+    patience = Patience(_SECONDS)
+    orbit = patience.made(partial(_orbit, scene), _NO_ORBIT)
+    path = patience.made(partial(_loaded_path, scene, rung_named(rung)), None)
+    screws = patience.made(
+        lambda: [_screw(screw) for screw in screws_beside(scene)], list[dict[str, Any]]()
+    )
+    loads = patience.made(lambda: path and loads_document(scene, path), None)
+    too_long = _unjudged(scene, rung)
+    judged, lacking = patience.made(partial(_judged, scene, rung_named(rung)), too_long)
     record = judged.record.document() if judged.record is not None else {}
     first = judged.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
-    orbit, path = _orbit(scene), _loaded_path(scene, rung_named(rung))
+    condition = partial(_condition, scene, path, rung_named(rung))
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
     return {
         "scene": scene.name,
@@ -76,12 +91,25 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
             **{name: None if lacking else getattr(first, name) for name in effort},
         },
         **orbit,
-        "screws": [_screw(screw) for screw in screws_beside(scene)],
-        "loads": None if path is None else loads_document(scene, path),
-        "condition": _condition(scene, path, rung_named(rung), period) if judged.record else None,
+        "screws": screws,
+        "loads": loads,
+        "condition": patience.made(lambda: condition(period) if judged.record else None, None),
         "outcome": first.outcome,
         "gates": [_gate(verdict) for verdict in judged.verdicts],
     }
+
+
+def _unjudged(scene: Scene, rung: str) -> tuple[Judgement, list[str]]:
+    """Return a judgement without a record, and a warning that says what is left out."""
+    sentence = (
+        f"left out: the run, its gates and the condition of the orbit take more than {_SECONDS:g} s of "
+        "processor time (`run` takes the time that it needs)"
+    )
+    row = Verdict(
+        *(scene.name, "taylor", rung, "", "scene", Status.UNDECIDED, Outcome.TIMED_OUT.value),
+        reason=stated(Cause.UNFINISHED, sentence),
+    )
+    return Judgement((row,), None), [sentence]
 
 
 def _loaded_path(scene: Scene, rung: Rung) -> Path | None:
@@ -130,7 +158,7 @@ def _rounded(scene: Scene, rung: Rung) -> list[str]:
     return [name for name, (own, other) in pairs.items() if own.parts() != other.parts()]
 
 
-def _orbit(scene: Scene) -> dict[str, Any]:
+def _orbit(scene: Scene) -> Mapping[str, Any]:
     """Return the numbers of the orbit by name, the meaning of each, and sentences about them.
 
     They follow from the scene's own numbers and from omega or the impulses; attitude and centre do not

@@ -14,6 +14,8 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.numbers.decimal_point import decimal_point
+
 Functions = Mapping[str, Callable[..., Any]]
 # The same name in every library.
 _ALIKE: Final = (
@@ -91,6 +93,7 @@ def _of_mpmath() -> Functions:
 
 
 @cache
+@decimal_point()
 def _of_heyoka() -> Functions:
     """Return heyoka's functions. It has no abs, min and max."""
     import heyoka as hy

@@ -61,7 +61,7 @@ class FilesJudgement(Judgement):
 
     @property
     def knob(self) -> str:
-        """What differs from file to file: ``step``, or the name of another number."""
+        """The name of the number that differs from file to file, ``step`` by default."""
         named = {order.knob.removeprefix("1/") for order in self.order} - {STEP}
         return next(iter(named), "step")
 

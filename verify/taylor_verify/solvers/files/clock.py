@@ -217,7 +217,7 @@ class _Clock:
 
     @cached_property
     def misfit(self) -> tuple[bool, bool, int]:
-        """What speaks against the times of a scene, the gravest first: the smaller the better."""
+        """Reasons against the times of a scene, the gravest first: the smaller the better."""
         if self._scene is None:
             return (self.is_of_the_day, False, 0)
         clock = self._scene.clock

@@ -143,7 +143,7 @@ def from_columns(
     if faults.lines:
         raise Refused(faults.lines)
     files, agreed = [], list[str]()
-    for part in parts.of_rows(len(times)):
+    for part in parts.of_rows(times, place, faults):
         groups, form, settled = one_attitude(part.groups, selection, place, faults)
         agreed += settled
         instants, every = tuple(times[k] for k in part.places), {**COLUMNS, **own}

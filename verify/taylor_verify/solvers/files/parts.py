@@ -84,15 +84,16 @@ class Parts:
         self._first = first_of_equal(times, every)
         if repeated := len(times) - len(self._first):
             self.notes.append(repeated_note(repeated))
-        _refuse_disorder(times, self._first, f"{place}, row {{}}, column {cut(clock.name)}", faults)
-        return tuple(time * self.taken["t"].factor for time in times)
+        factor = self.taken["t"].factor
+        return tuple(times) if factor == 1 else tuple(time * factor for time in times)
 
     def _checked(self, place: str, faults: Faults) -> dict[str, Flags]:
         """Return True for the entries of each column that are finite numbers."""
         none = {name: np.zeros(len(c.values), dtype=bool) for name, c in self._columns.items()}
+        self._blank = {g: blank_rows(self._of(g)) for g in self._groups if not faults.lines}
         blank = dict(none)
-        for group, names in self._groups.items() if not faults.lines else ():
-            blank |= dict.fromkeys(names, blank_rows(self._of(group)))
+        for group, rows in self._blank.items():
+            blank |= dict.fromkeys(self._groups[group], rows)
         return {
             name: check_numbers(column, place, faults, blank[name])
             for name, column in self._columns.items()
@@ -112,12 +113,12 @@ class Parts:
 
     # The parts.
 
-    def of_rows(self, count: int) -> list[Part]:
+    def of_rows(self, times: Sequence[Fraction], place: str, faults: Faults) -> list[Part]:
         """Return the rows that all groups have as a part, and each group that has others in all its rows.
 
-        Where groups have no rows in common, each is a part.
+        Where groups have no rows in common, each is a part. Times that do not go on are a fault.
         """
-        places = self._places(count)
+        places, count = self._places(len(times)), len(times)
         rest = list(places)
         common = set.intersection(*(set(rows) for rows in places.values())) if places else set()
         parts = []
@@ -125,7 +126,11 @@ class Parts:
             first = sorted(common) if places else self._first
             parts.append(self._part(first, places))
             rest = [group for group in places if len(places[group]) > len(common)]
-        return parts + [self._part(places[group], [group]) for group in rest]
+        parts += [self._part(places[group], [group]) for group in rest]
+        at = f"{place}, row {{}}, column {cut(self._columns['t'].name)}"
+        for part in parts if not faults.lines else ():
+            _refuse_disorder(times, part.places, at, faults)
+        return parts
 
     def _places(self, count: int) -> dict[str, list[int]]:
         """Return the places of the rows that each group has, and note where these are not all."""
@@ -133,7 +138,7 @@ class Parts:
             group: np.asarray(np.logical_and.reduce([self._finite[name] for name in names]))
             for group, names in self._groups.items()
         }
-        present = rows_of_groups({group: self._of(group) for group in self._groups}, finite)
+        present = rows_of_groups({g: self._of(g) for g in self._groups}, self._blank, finite)
         for group, rows in present.items():
             if note := rows_note(self._groups[group], int(rows.sum()), count):
                 self.notes.append(note)
@@ -141,8 +146,9 @@ class Parts:
         return {group: rows for group, rows in places.items() if rows}
 
     def _part(self, places: Sequence[int], names: Iterable[str]) -> Part:
+        is_whole = len(places) == len(self._finite["t"])
         columns = {
-            name: entries_at(self._columns[name], places)
+            name: self._columns[name] if is_whole else entries_at(self._columns[name], places)
             for group in names
             for name in self._groups[group]
         }

@@ -19,7 +19,8 @@ from taylor_verify.solvers.values import Value, exact
 
 Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
-_BLANK: Final = ("", None)
+# R writes NA, and other programs null.
+_BLANK: Final = ("", "NA", "null", None)
 
 
 def blanks(values: Sequence[Any]) -> Flags:
@@ -27,18 +28,19 @@ def blanks(values: Sequence[Any]) -> Flags:
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiub":
         return np.zeros(len(values), dtype=bool)
     if isinstance(values, np.ndarray) and values.dtype.kind == "T":
-        return np.asarray(np.strings.str_len(np.strings.strip(values)) == 0)
+        texts = np.strings.strip(values)
+        return np.logical_or.reduce([texts == blank for blank in _BLANK[:-1]])
     cells = (value.strip() if isinstance(value, str) else value for value in values)
     return np.fromiter((cell in _BLANK for cell in cells), dtype=bool, count=len(values))
 
 
 def first_of_equal(times: Sequence[Value], columns: Sequence[Sequence[Any]]) -> list[int]:
     """Return the places of the rows that do not repeat the row before, time and numbers."""
-    kept: list[int] = []
+    first: list[int] = []
     for k, time in enumerate(times):
-        if not (kept and time == times[kept[-1]] and _are_equal(columns, kept[-1], k)):
-            kept.append(k)
-    return kept
+        if not (first and time == times[first[-1]] and _are_equal(columns, first[-1], k)):
+            first.append(k)
+    return first
 
 
 def _are_equal(columns: Sequence[Sequence[Any]], before: int, now: int) -> bool:
@@ -61,12 +63,15 @@ def repeated_note(count: int) -> str:
 
 
 def rows_of_groups(
-    groups: Mapping[str, Sequence[Column]], finite: Mapping[str, Flags]
+    groups: Mapping[str, Sequence[Column]], blank: Mapping[str, Flags], finite: Mapping[str, Flags]
 ) -> dict[str, Flags]:
-    """Return True for the rows that each group has; ``finite`` are those whose numbers are all finite."""
+    """Return True for the rows that each group has.
+
+    ``blank`` are those without a number, and ``finite`` those whose numbers are all finite.
+    """
     if not groups:
         return {}
-    there = {group: ~blank_rows(columns) for group, columns in groups.items()}
+    there = {group: ~blank[group] for group in groups}
     nan = {g: there[g] & _of_nan(columns, there[g] & ~finite[g]) for g, columns in groups.items()}
     sparse = [group for group in groups if _is_sparse(finite[group], nan[group])]
     elsewhere = np.zeros_like(next(iter(there.values())))

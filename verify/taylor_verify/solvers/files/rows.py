@@ -191,9 +191,9 @@ def check_numbers(column: Column, file: str, faults: Faults, blank: Flags) -> Fl
                 suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
             else:
                 suspects = np.full(len(values), not _is_short(values))
-            gone = blank[part.start : part.stop]
-            finite[part.start : part.stop] &= ~gone
-            for k in np.flatnonzero(suspects & ~gone).tolist():
+            passed = blank[part.start : part.stop]
+            finite[part.start : part.stop] &= ~passed
+            for k in np.flatnonzero(suspects & ~passed).tolist():
                 try:
                     finite[part[k]] = _is_finite(values[k])
                 except ValueError as error:

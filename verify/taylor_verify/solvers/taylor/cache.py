@@ -28,6 +28,8 @@ from typing import Any, Final
 import numpy as np
 from platformdirs import user_cache_path
 
+from taylor_verify.numbers.decimal_point import decimal_point
+
 CACHE_VARIABLE: Final = "HEYOKA_CACHE_DIR"
 # In bytes. The standard set fills a third of it; the least recently used files go first.
 _LARGEST_CACHE: Final = 2**28
@@ -35,6 +37,7 @@ _DIGEST_SIZE: Final = hashlib.sha256().digest_size
 _log = logging.getLogger(__name__)
 
 
+@decimal_point()
 def stored(make: Callable[..., Any], system: Any, **options: Any) -> Any:
     """Return ``make(system, **options)``, from the disk where an earlier process has stored it.
 
@@ -49,6 +52,7 @@ def stored(make: Callable[..., Any], system: Any, **options: Any) -> Any:
     return integrator
 
 
+@decimal_point()
 def heyoka_cache_off() -> None:
     """Switch heyoka's own disk cache off, and its warnings, which it prints on stdout."""
     import heyoka as hy
@@ -109,7 +113,8 @@ def _build() -> bytes:
 
     installed = os.stat(hy.__file__)
     python = platform.python_version()
-    return f"{hy.__version__} {installed.st_mtime_ns} {installed.st_size} {python}".encode()
+    # Code of earlier versions may have been compiled with decimal commas.
+    return f"{hy.__version__} decimal point {installed.st_mtime_ns} {installed.st_size} {python}".encode()
 
 
 def _read(file: Path) -> Any:

@@ -24,6 +24,7 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.roots import lengths, radicands, unsquared
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.pieces import piece_by_piece
@@ -67,6 +68,7 @@ class Taylor(Solver):
             return f"{rung.name} has no number for a tolerance so small"
         return unavailable(rung)
 
+    @decimal_point()
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem):
             return refused(reason)
@@ -117,6 +119,7 @@ class Taylor(Solver):
 
 
 @lru_cache(maxsize=_MOST_COMPILED)
+@decimal_point()
 def compiled(
     form: Form,
     rung: Rung,

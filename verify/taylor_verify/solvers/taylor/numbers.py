@@ -17,6 +17,7 @@ import numpy as np
 from mpmath import libmp
 
 from taylor_verify.models.times import BinaryTimes, TypedTimes
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung, exact_value, power_of_two
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.taylor.package import lack
@@ -79,6 +80,7 @@ _OF_NUMPY: Final = {
 }
 
 
+@decimal_point()
 def arithmetic(rung: Rung) -> Arithmetic:
     """Return the number type of a rung that is available here; ``unavailable`` tells which are not."""
     if rung.name in _OF_NUMPY:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -16,6 +17,7 @@ INSTALL: Final = (
 )
 
 
+@decimal_point()
 def lack() -> Lack | None:
     """Return the reason why heyoka cannot be imported, with the command that installs it."""
     try:

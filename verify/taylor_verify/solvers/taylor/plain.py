@@ -13,6 +13,7 @@ from typing import final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung, exact_value, held_exactly
 from taylor_verify.solvers.solver import Solver, float64_alone, refused
 from taylor_verify.solvers.taylor.cache import heyoka_cache_off
@@ -32,6 +33,7 @@ class Plain(Solver):
     def unavailable(self, rung: Rung) -> str:
         return float64_alone(self.name, rung) or unavailable(rung)
 
+    @decimal_point()
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem):
             return refused(reason)

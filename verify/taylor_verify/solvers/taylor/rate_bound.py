@@ -11,6 +11,7 @@ import numpy as np
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.rates import momenta
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.solvers.taylor.equations import equations
 
 
@@ -46,6 +47,7 @@ class Look:
 
 
 @lru_cache(maxsize=32)
+@decimal_point()
 def rate_bound(form: Form) -> RateBound:
     """Return the bound for a form, compiled in some hundredths of a second."""
     import heyoka as hy

@@ -56,7 +56,7 @@ _BROKEN: Final = (
 
 
 class _Header(NamedTuple):
-    """What the header of an array says, and the bytes of the array without it."""
+    """The header of an array, its length, and the bytes that follow it."""
 
     name: str
     shape: tuple[int, ...]

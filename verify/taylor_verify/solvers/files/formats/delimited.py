@@ -21,7 +21,15 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.header import MARKS, MOST_LINES, Head, Line, head, is_rule
+from taylor_verify.solvers.files.formats.header import (
+    MARKS,
+    MOST_LINES,
+    Head,
+    Line,
+    head,
+    is_comment,
+    is_rule,
+)
 
 _ROWS_AT_ONCE: Final = 1000
 _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
@@ -30,7 +38,8 @@ _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
 def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; # and % begin a comment line. The rows are counted before any is kept."""
     refuse_part(part, path)
-    for count, _ in enumerate(_lines(file)):
+    rows = (text for text in file.lines() if text.strip() and not is_comment(text))
+    for count, _ in enumerate(rows):
         if count > ROWS.most:
             raise ROWS.refusal("more", path)
     return table(file, path, first=1)
@@ -52,9 +61,8 @@ def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -
 def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterator[Line]:
     """Yield the lines that are not blank, from the ``first`` one on."""
     for number, text in enumerate(file.lines(), start=1):
-        line = Line(number, text)
-        if number >= first and text.strip() and (with_comments or not line.is_comment):
-            yield line
+        if number >= first and text.strip() and (with_comments or not is_comment(text)):
+            yield Line(number, text)
 
 
 class _Rows:
@@ -82,6 +90,9 @@ def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]
 
         def sound() -> Iterator[list[str]]:
             for row in rows:
+                if not any(row) or not any(map(str.strip, row)):
+                    # Spreadsheets end in rows of nothing.
+                    continue
                 if len(row) == width + 1 and not row[-1].strip():
                     row.pop()
                 if len(row) == width:

@@ -41,11 +41,14 @@ def read(file: Content, path: Path, part: str) -> Table:
     if path.suffix.lower() in _LINES or _is_of_lines(file):
         return table(_objects(file, path), path)
     document = _document(file, path)
-    if isinstance(document, list) and document and isinstance(document[0], dict):
-        rows = enumerate(document, start=1)
-        return table((_object(each, f"{path}, row {k}") for k, each in rows), path)
-    if isinstance(document, dict) and isinstance(document.get("columns"), dict):
-        document = document["columns"]
+    if isinstance(document, dict):
+        lists = [each for each in document.values() if isinstance(each, list)]
+        document = lists[0] if len(lists) == 1 and _are_objects(lists[0]) else document
+    if _are_objects(document):
+        counted = enumerate(document, start=1)
+        return table((_object(each, f"{path}, row {k}") for k, each in counted), path)
+    if isinstance(document, dict) and isinstance(document.get("columns"), dict | list):
+        document = _by_name(document["columns"], document.get("data"))
     while isinstance(document, dict) and len(document) == 1:
         (inner,) = document.values()
         if not isinstance(inner, dict):
@@ -55,7 +58,7 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise refusal(_EXPECTED, shown(document), path)
     faults, columns = Faults(), list(_columns(document, path))
     for name, values in document.items():
-        if name in KNOWN and not isinstance(values, list):
+        if name in KNOWN and not _has_parts(values):
             faults.add("an array of numbers", shown(values), f"{path}, column {name}")
     if faults.lines:
         raise Refused(faults.lines)
@@ -63,16 +66,38 @@ def read(file: Content, path: Path, part: str) -> Table:
     return Table(columns)
 
 
+def _by_name(names: Any, rows: Any) -> Any:
+    """Return the columns of a table whose rows stand apart from their names, as pandas splits it."""
+    if isinstance(names, dict) or not isinstance(rows, list):
+        return names
+    return {str(n): [_entry(row, k) for row in rows] for k, n in enumerate(names)}
+
+
+def _entry(row: Any, k: int) -> Any:
+    return row[k] if isinstance(row, list) and k < len(row) else None
+
+
 def _columns(document: Mapping[str, Any], path: Path, group: str = "") -> Iterator[Column]:
     """Yield the arrays of an object and of the objects in it, an array of vectors by its components."""
     for name, values in document.items():
-        if isinstance(values, dict) and not group:
+        if isinstance(values, dict) and values and not any(map(_has_parts, values.values())):
+            # pandas writes the numbers of a column by the labels of the rows.
+            yield Column(f"{group}{name}", list(values.values()))
+        elif isinstance(values, dict) and not group:
             yield from _columns(values, path, f"{name}.")
         elif isinstance(values, list) and values and isinstance(values[0], list | dict):
             entries = (Entries.of(each, f"{group}{name}") for each in values)
             yield from table(entries, path).columns
         elif isinstance(values, list):
             yield Column(f"{group}{name}", values)
+
+
+def _are_objects(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+
+
+def _has_parts(value: Any) -> bool:
+    return isinstance(value, list | dict)
 
 
 def _document(file: Content, path: Path) -> Any:

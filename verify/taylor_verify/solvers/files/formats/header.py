@@ -26,6 +26,8 @@ COMMENTS: Final = ("#", "%")
 _BLANKS: Final = ""
 MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
+# A name with its unit in brackets, between blanks.
+_WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _MOSTLY: Final = 0.5
@@ -39,7 +41,7 @@ class Line(NamedTuple):
 
     @property
     def is_comment(self) -> bool:
-        return self.text.lstrip().startswith(COMMENTS)
+        return is_comment(self.text)
 
     @property
     def bare(self) -> str:
@@ -90,6 +92,11 @@ def is_value(cell: str) -> bool:
 def is_rule(line: str) -> bool:
     """Return True for a line of dashes, such as stands below a header."""
     return ("--" in line or "==" in line) and _OF_RULES.issuperset(line)
+
+
+def is_comment(text: str) -> bool:
+    """Return True for a line that begins with the mark of a comment."""
+    return text.lstrip().startswith(COMMENTS)
 
 
 def head(lines: Sequence[Line], marks: Sequence[str] = MARKS) -> Head | None:
@@ -188,6 +195,7 @@ def _ways(text: str, mark: str) -> Iterator[list[str]]:
     for each in (mark, *(other for other in MARKS if other != mark)):
         yield _cells(text, each)
     yield [cell.strip() for cell in _WIDE_BLANKS.split(text.strip())]
+    yield _WITH_UNIT.findall(text)
 
 
 def _fitting(cells: Sequence[str], row: Sequence[str]) -> list[str]:

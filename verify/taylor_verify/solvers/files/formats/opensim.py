@@ -31,18 +31,18 @@ def read(file: Content, path: Path, part: str) -> Table:
     below = next((k for k, line in enumerate(top, start=1) if line.lower() == _END), None)
     if below is None:
         raise refusal(f"a line `{_END}`", "none", path)
-    said = {key.strip().lower(): text.strip() for key, _, text in (x.partition("=") for x in top)}
+    stated = {key.strip().lower(): text.strip() for key, _, text in (x.partition("=") for x in top)}
     table = delimited.table(file, path, first=below + 1, marks=_MARKS)
     rows = len(table.columns[0].values) if table.columns else 0
     for key, count, what in (("nrows", rows, "rows"), ("ncolumns", len(table.columns), "columns")):
-        if said.get(key, str(count)) != str(count):
-            raise refusal(f"{cut(said[key])} {what} as the header says", str(count), path)
-    elements = _ELEMENTS.get(said.get("datatype", "double").lower())
+        if stated.get(key, str(count)) != str(count):
+            raise refusal(f"{cut(stated[key])} {what} as the header says", str(count), path)
+    elements = _ELEMENTS.get(stated.get("datatype", "double").lower())
     if elements is None:
         expected = f"DataType {', '.join(_ELEMENTS)}"
-        raise refusal(expected, cut(said["datatype"]), path)
+        raise refusal(expected, cut(stated["datatype"]), path)
     if not elements:
-        _refuse_degrees(said.get("indegrees", "no"), path)
+        _refuse_degrees(stated.get("indegrees", "no"), path)
         return table
     clock, *others = table.columns
     check_size(len(others) * len(elements) + 1, rows, path)
@@ -50,8 +50,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     return table._replace(columns=[clock, *columns])
 
 
-def _refuse_degrees(said: str, path: Path) -> None:
-    if said.lower() == "yes":
+def _refuse_degrees(stated: str, path: Path) -> None:
+    if stated.lower() == "yes":
         mend = (
             "write radians, or name the columns with their units (`wx [deg/s]`) in a file that ends "
             "in .csv"
