@@ -63,21 +63,22 @@ def readings(answer: Answer) -> dict[str, Cause]:
     for name in answer.failed:
         tried = _attitudes(answer) if name == "attitude" else _vectors(answer, name)
         near, least = [], _ROUNDINGS * answer.roundings[name]
-        for place, reading in enumerate(tried):
+        for reading in tried:
             left = _left(answer, name, reading.rows)
             if left <= max(least, _PART * answer.worst[name]) and left < _MOST * answer.worst[name]:
-                # Of two that leave no more than roundings, the simpler one was tried first.
-                near.append((reading.count, max(left, least), place, reading.name))
+                near.append((reading.count, left, reading.name))
         if near:
             count = min(each[0] for each in near)
-            same = sorted(each for each in near if each[0] == count)
+            # Of those that leave no more than roundings the simplest was tried first.
+            order = [(max(left, least), k) for k, (n, left, _) in enumerate(near) if n == count]
+            same = [near[k] for _, k in sorted(order)]
             noun = _NOUNS.get(name, name)
             alike = [each for each in same[1:4] if each[1] <= max(10 * same[0][1], least)]
             causes[name] = Cause(
-                f"{noun} {same[0][3]}",
+                f"{noun} {same[0][2]}",
                 "convention",
                 {name: same[0][1] / answer.worst[name]},
-                alike=tuple(f"{noun} {each[3]}" for each in alike),
+                alike=tuple(f"{noun} {each[2]}" for each in alike),
             )
     omega = causes.get("omega")
     is_alone = "attitude" in answer.failed and "attitude" not in causes
