@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ import pytest
 from builders.processes import PATIENCE, interruptible, wait_until
 from builders.programs import is_alive
 from builders.scenes import LISTED_INSTANTS, scene_file
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.batch.job import Job
@@ -360,13 +362,17 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
 # What is wrong.
 
 
-@pytest.mark.parametrize("file", REFUSED, ids=lambda file: file.stem)
-@pytest.mark.parametrize("verb", [["run"], ["exact", "--at", "1"], ["explain"]], ids=lambda v: v[0])
+@pytest.mark.parametrize(
+    ("verb", "file"),
+    by_turns(product(("run", "exact --at 1", "explain"), REFUSED), 3, lambda verb, file: verb),
+    ids=lambda case: getattr(case, "stem", None),
+)
 def test_a_scene_that_is_refused_ends_with_2_and_a_message(
-    capsys: Captured, verb: list[str], file: Path
+    capsys: Captured, verb: str, file: Path
 ) -> None:
     """Every fault is named on stderr; stdout stays empty."""
-    assert main([verb[0], str(file), *verb[1:], "--json"]) == 2
+    verb, *options = verb.split()
+    assert main([verb, str(file), *options, "--json"]) == 2
     out, error = capsys.readouterr()
     assert out == ""
     assert error.startswith("taylor-verify: expected ")

@@ -245,6 +245,7 @@ def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) ->
     assert counts[0] == counts[1]
 
 
+@pytest.mark.slow
 def test_an_axis_for_each_error_keeps_what_a_frame_wraps_away(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

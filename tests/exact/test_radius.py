@@ -13,7 +13,7 @@ from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact import balls, taylor
+from taylor_verify.exact import balls, proving
 from taylor_verify.exact.printed import _printed, document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
@@ -94,13 +94,13 @@ def test_both_routes_in_balls_measure_alike() -> None:
         matrix = [*vector, *vector, *vector]
         for entries in (vector, matrix):
             width = balls.width(entries)
-            assert taylor._Size(0.0).radius(entries, 60) == (width, int(mp.mag(width)) + 60)
+            assert proving.Size(0.0).radius(entries, 60) == (width, int(mp.mag(width)) + 60)
             assert mpf("2e-21") <= width <= mpf("2.0001e-21")
     # Of a vector from which zero is not excluded no digit is known; far below its own size it is told.
     small = [arb(0, 1e-90), arb(0)]
     assert balls.width(small) == mp.inf
-    assert taylor._Size(0.0).radius(small, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
-    assert taylor._Size(0.0).radius([arb(0, 1e-30)], 60)[1] > 0
+    assert proving.Size(0.0).radius(small, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
+    assert proving.Size(0.0).radius([arb(0, 1e-30)], 60)[1] > 0
 
 
 @pytest.mark.parametrize("error", [0, mpf("1e-22"), mpf("1e-3")])

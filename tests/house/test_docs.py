@@ -242,5 +242,5 @@ def test_a_docstring_tells_of_every_argument(name: str) -> None:
 
 def test_every_call_is_in_the_reference() -> None:
     """The names of `import taylor_verify` are documented under those names."""
-    calls = {f"taylor_verify.{name}" for name in taylor_verify.__all__ if name != "__version__"}
+    calls = {f"taylor_verify.{name}" for name in taylor_verify.__all__ if name[0].islower()}
     assert calls <= {name for _, name in PUBLIC}

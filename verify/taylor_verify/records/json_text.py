@@ -104,8 +104,8 @@ def read(file: Path, kind: type[Document]) -> Document:
     """Read a file as a document of a type. Raises OSError, and ValueError that names the file."""
     try:
         return parsed(bounded_bytes(file, "a stored document", DOCUMENT), kind)
-    except Refused as refused:
-        raise ValueError(str(refused)) from None
+    except Refused:
+        raise
     except ValueError as error:
         raise ValueError(f"{error} @ {file}") from error
 
