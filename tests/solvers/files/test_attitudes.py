@@ -58,6 +58,14 @@ FORMS_OF = {
 }
 
 
+def test_a_quaternion_by_its_first_word_is_no_habit_of_a_program() -> None:
+    """quaternion=att takes att[0] ... att[3], scalar first."""
+    names = " ".join(f"att[{k}]" for k in range(4))
+    file = of_rows(np.roll(TURNS.as_quat(), 1, axis=1), names, "quaternion=att")
+    assert is_the_turn(file)
+    assert not any("habit" in note for note in file.notes)
+
+
 @pytest.mark.parametrize("wanted", FORMS_OF)
 def test_vectors_by_request(wanted: str) -> None:
     """Rotation vectors, and Rodrigues parameters of either branch, are the turn."""
