@@ -201,7 +201,9 @@ def classes_in(annotations: Iterable[object], module: str) -> set[str]:
     text = (PACKAGE.parent / f"{module.replace('.', '/')}.py").read_text(encoding="utf-8")
     classes = set()
     for name in re.findall(r"[A-Z]\w+", " ".join(map(str, annotations))):
-        source = re.search(rf"^ *from (taylor_verify[\w.]*) import [^\n]*\b{name}\b", text, re.M)
+        source = re.search(
+            rf"^ *from (taylor_verify[\w.]*) import [^\n]*\b{name}\b(?! as )", text, re.M
+        )
         if source or re.search(rf"^class {name}\b", text, re.M):
             kind = getattr(importlib.import_module(source[1] if source else module), name)
             classes |= {f"{kind.__module__}.{name}"} if inspect.isclass(kind) else set()

@@ -147,8 +147,11 @@ def test_definitions_of_values_alone_may_jump() -> None:
         ),
         ('h = { rate = "w1" }', "got nothing @ states.h.start"),
         ("h = { start = 1 }", "got nothing @ states.h.rate"),
-        ('h = { start = [1], rate = "w1" }', "expected one number, got [1] @ states.h.start"),
-        ('h = { start = 1, rate = ["w1"] }', "an array of 1 numbers, got 1 @ states.h.start"),
+        (
+            'h = { start = [1], rate = "w1" }',
+            "expected one number, got an array of 1 @ states.h.start",
+        ),
+        ('h = { start = 1, rate = ["w1"] }', "an array of 1, got one number @ states.h.start"),
         ("h = { start = [], rate = [] }", "from 1 to 100 entries, got 0 @ states.h.rate"),
         ("h = { start = 1, rate = 1, value = 2 }", "got nothing @ states.h.every"),
         ("w = { start = [0], rate = [0] }", "a name that is free, got `w1` @ states.w"),
@@ -176,6 +179,21 @@ def test_all_faults_of_states_come_at_once() -> None:
     )
     for place in ("inertia[1]", "moment[0]", "moment[2]", "states.m.every"):
         assert place in text
+
+
+def test_a_malformed_number_hides_no_other_fault() -> None:
+    """It stands as a number while texts are examined, and a state that has no shape lends them no name."""
+    text = faults(
+        'w1 = { start = ["x"], rate = ["w2"] }\nm = { every = "a", offset = 1, value = "m + w9" }',
+        body='moment = ["1/0", "sign(w1)", "2*k"]\nrotor = ["m", "w2", 0]',
+        top='define = { k = "1/0" }',
+    )
+    assert [line.rpartition("@ ")[2] for line in text.splitlines()] == [
+        "states.w1.start[0]", "states.m.every", "body.moment[0]", "define.k", "body.moment[1], column 1",
+        "states.m.value, column 5", "body.rotor[0], column 1", "body.rotor[1], column 1", "states.m",
+    ]  # fmt: skip
+    shapeless = faults('h = { start = [0, 0], rte = ["w1", "w2"] }', body='moment = ["h1", 0, 0]')
+    assert "h1" not in shapeless
 
 
 @pytest.mark.parametrize(

@@ -159,7 +159,7 @@ samples = 2
 def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = TWIN) -> Outside:
     """The script as an engine that runs in this interpreter."""
     monkeypatch.setattr(python, "interpreter", lambda *_: sys.executable)
-    for module in ("acting.py", "equations.py", "free_body.py", "question.py"):
+    for module in ("acting.py", "axes.py", "equations.py", "free_body.py", "question.py"):
         shutil.copy(SCRIPTS / module, folder)
     path = folder / "with_twin.py"
     path.write_text(text.replace("{data}", data), encoding="utf-8")

@@ -15,6 +15,7 @@ from taylor_verify.solvers.registry import solver_named
         ("taylor?", r"expected \?tol=NUMBER after taylor, got none"),
         ("taylor?rtol=1e-6", r"got 'rtol'; did you mean tol\?"),
         ("taylor?tol=1&tol=2", r"got tol twice"),
+        ("scipy:RK45?stop=never", r"expected yes or no, got 'never' @ stop"),
         ("taylor?code=fast", r"expected optimised, got 'fast' @ code"),
         ("taylor?code=optimised&tol=0", r"expected a positive number, got '0' @ tol"),
         ("taylor:tol=1e-6", r"expected a solver"),

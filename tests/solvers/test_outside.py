@@ -137,7 +137,7 @@ def test_no_script_hides_a_library() -> None:
     """No file has the name of a module that a script imports, which Python would find first."""
     own = {file.stem for file in SCRIPTS.glob("*.py")}
     imported = set().union(*(imported_tops(file.read_text()) for file in scripts()))
-    shared = {"equations", "free_body", "immersed_body", "question"}
+    shared = {"axes", "equations", "free_body", "immersed_body", "question"}
     # MJX and Brax take the model that MuJoCo compiles.
     assert own & imported == {*shared, "with_mujoco"}
 

@@ -199,6 +199,20 @@ def test_held_values_are_those_of_the_law(law: str, solver: str) -> None:
         np.testing.assert_allclose(got, [float(v) for v in exact[name]], rtol=1e-10, atol=1e-10)
 
 
+def test_without_stops_all_instants_count_and_digits_are_lost() -> None:
+    """A value is taken from the state of a later evaluation, which no tolerance makes the right one."""
+    exact = by_recurrence(LAWS["-w1/2"])
+    for tolerance in ("1e-4", "1e-7", "1e-10"):
+        errors = []
+        for stop in ("yes", "no"):
+            name = f"scipy:DOP853?rtol={tolerance}&atol={tolerance}&stop={stop}"
+            answer = solved(sampled("-w1/2"), name)
+            assert [row[0] for row in answer["n"]] == exact["n"]
+            pairs = zip(answer["omega"], exact["w"], strict=True)
+            errors.append(max(abs(float(row[0] - w)) for row, w in pairs))
+        assert errors[1] > 1e4 * errors[0]
+
+
 def test_taken_together_they_read_what_was_before() -> None:
     """At one instant no value sees another that is taken there; a row on it is read after it."""
     problem = sampled("-w1/2")

@@ -59,11 +59,27 @@ def test_every_solver_of_the_sweep_is_listed() -> None:
 
 
 @pytest.mark.parametrize(
+    ("scene", "expected"),
+    [
+        ("loads/sampled-controller", True),
+        ("loads/thruster-pulses", True),
+        ("loads/heavy-top", False),
+    ],
+)
+def test_stops_are_measured_both_ways(scene: str, expected: bool) -> None:
+    """Where there are switches or held states, some settings step over them."""
+    families = {one.family for one in settings(load(scene), ["f64"])}
+    assert ("scipy DOP853 without stops" in families) is expected
+    assert "scipy DOP853" in families
+
+
+@pytest.mark.parametrize(
     ("name", "asked", "requested", "family"),
     [
         ("taylor", TOLERANCE, 2.0**-52, "taylor f64"),
         ("taylor?tol=1e-6", TOLERANCE, 1e-6, "taylor f64"),
         ("scipy:RK45?atol=1e-3&rtol=1e-7", TOLERANCE, 1e-7, "scipy RK45"),
+        ("scipy:RK45?rtol=1e-7&stop=no", TOLERANCE, 1e-7, "scipy RK45 without stops"),
         ("scipy:LSODA", NOTHING, None, "scipy LSODA"),
         ("geometric:splitting?step=1/64", STEP, 1 / 64, "geometric splitting"),
         ("mpmath:odefun?degree=9&tol=1e-5", TOLERANCE, 1e-5, "mpmath odefun"),

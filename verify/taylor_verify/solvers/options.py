@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
@@ -43,6 +43,13 @@ class Options:
             expected = "a positive number that a double holds"
             raise ValueError(f"expected {expected}, got {text!r:.60} @ {key}")
         return value
+
+    def word(self, key: str, words: Sequence[str]) -> str:
+        """Return the word of that key, the first where it was not set; ValueError for any other word."""
+        word = self.values.get(key, words[0])
+        if word not in words:
+            raise ValueError(f"expected {' or '.join(words)}, got {word!r:.60} @ {key}")
+        return word
 
     def whole(self, key: str, least: int, most: int) -> int:
         """Return the whole number of that key; ValueError for anything else, and outside the limits."""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from taylor_verify.models.problem import Problem, in_piece
 from taylor_verify.models.stretch import holding, taking
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.solvers.solver import raised
@@ -46,7 +47,7 @@ def piece_by_piece(problem: Problem, solve: Solve) -> Trajectory:
         return solve(problem)
     way = _Way(problem)
     try:
-        for leg in _legs(problem, loads):
+        for leg in legs(problem, loads):
             if not way.goes(leg, solve):
                 break
     except (ArithmeticError, ValueError) as error:  # a held value that there is not
@@ -65,7 +66,7 @@ class _Way:
     def goes(self, leg: Leg, solve: Solve) -> bool:
         """Go on by a leg; return False where the solver does not finish it."""
         if not self._answers:
-            self._begin()
+            self._held = held_at_start(self._problem)
         posed = replace(holding(leg.problem, self._held), initial_momenta=self._state)
         answer = solve(posed)
         self._answers.append(answer)
@@ -83,12 +84,6 @@ class _Way:
             self._rows[-1][-len(held) :] = self._held
         return True
 
-    def _begin(self) -> None:
-        """Take what is taken at the start."""
-        first = self._problem.takings[:1]
-        if first and not first[0].time:
-            self._held = taking(self._problem, first[0], self._state)
-
     def trajectory(self) -> Trajectory:
         last = self._answers[-1]
         if last.outcome is not Outcome.FINISHED:
@@ -102,7 +97,15 @@ class _Way:
         return number if isinstance(number, Fraction) else self._exact(number)
 
 
-def _legs(problem: Problem, loads: Loads) -> Iterator[Leg]:
+def held_at_start(problem: Problem) -> Vector:
+    """Return the held values from the start on."""
+    first = problem.takings[:1]
+    if first and not first[0].time:
+        return taking(problem, first[0], problem.initial_momenta)
+    return problem.held
+
+
+def legs(problem: Problem, loads: Loads) -> Iterator[Leg]:
     """Yield the legs of a motion, in the direction of time."""
     times, is_later = list(problem.times), problem.times[-1] > 0
     sign = 1 if is_later else -1

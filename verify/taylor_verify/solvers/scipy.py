@@ -1,7 +1,8 @@
 """SciPy's `solve_ivp`, an optional extra: `scipy:METHOD?rtol=NUMBER&atol=NUMBER`.
 
 It integrates the problem's own equations, in units of size one, and answers at the samples with the
-method's own interpolation, as `t_eval` does for any user of it.
+method's own interpolation, as `t_eval` does for any user of it. Under written loads it begins anew at
+each switch and each instant; with `stop=no` one call steps over all of them.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
+from taylor_verify.solvers.unstopped import Unstopped
 
 METHODS: Final = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 
@@ -59,6 +61,7 @@ class SciPy(Solver):
     name: str
     rtol: float = float(_RTOL)
     atol: float = float(_ATOL)
+    stops: bool = True
     counts_steps = True
     takes_loads = True
 
@@ -75,12 +78,12 @@ class SciPy(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unavailable(problem.rung):
             return Trajectory(Outcome.NOT_STARTED, detail=reason)
-        return piece_by_piece(problem, self._solve)
+        return piece_by_piece(problem, self._solve) if self.stops else self._solve(problem)
 
     def _solve(self, problem: Problem) -> Trajectory:
         asked = perf_counter()
         import_module("scipy.integrate")
-        run = _Run(problem)
+        run = _Run(problem, self.stops)
         began = perf_counter()
         try:
             solution = run.solve(self)
@@ -97,7 +100,7 @@ class SciPy(Solver):
             "seconds": perf_counter() - began,
             "compile_seconds": began - asked,
         }
-        rows = solution.y.T.tolist()
+        rows = run.rows(solution)
         if solution.status != 0 or len(rows) != len(problem.times):
             detail = f"solve_ivp: {solution.message}"
             return Trajectory(Outcome.INTERRUPTED, detail=detail, **work)
@@ -111,10 +114,14 @@ class _NotFinite(Exception):
 class _Run:
     """A call of solve_ivp, its steps and evaluations counted."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, stops: bool) -> None:
         self.problem, self.steps = problem, 0
         # On Python's own floats: those of a NumPy array take five times as long each.
-        self.rates = Counted(problem.form, list(map(float, problem.parameters)), _MOST_EVALUATIONS)
+        self.rates: Counted | Unstopped = (
+            Counted(problem.form, list(map(float, problem.parameters)), _MOST_EVALUATIONS)
+            if stops or problem.given.body.loads is None
+            else Unstopped(problem, _MOST_EVALUATIONS)
+        )
 
     def solve(self, asked: SciPy) -> Any:
         from scipy import integrate
@@ -132,6 +139,15 @@ class _Run:
                 rtol=asked.rtol,
                 atol=asked.atol,
             )
+
+    def rows(self, solution: Any) -> list[list[Any]]:
+        """Return the states at the samples, with the held values of a motion without stops."""
+        rows: list[list[Any]] = solution.y.T.tolist()
+        if not isinstance(self.rates, Unstopped):
+            return rows
+        return [
+            [*row, *self.rates.held_at(t, row)] for t, row in zip(solution.t, rows, strict=True)
+        ]
 
     def _finite_rates(self, t: float, state: Any) -> list[float]:
         rates = self.rates(t, state.tolist())
@@ -156,11 +172,12 @@ def named(name: str) -> SciPy:
     Raises ValueError for a method that there is not, and for tolerances that are not positive or
     smaller than SciPy can take.
     """
-    asked = options(name, METHODS, ["rtol", "atol"])
+    asked = options(name, METHODS, ["rtol", "atol", "stop"])
     rtol, atol = asked.positive("rtol", _RTOL), asked.positive("atol", _ATOL)
     if not rtol >= _LEAST_RTOL:
         raise ValueError(
             f"expected at least {float(_LEAST_RTOL):.3g}, SciPy's own bound, got "
             f"{asked.values['rtol']!r} @ rtol"
         )
-    return SciPy(asked.method, name, float(rtol), float(atol))
+    stops = asked.word("stop", ("yes", "no")) == "yes"
+    return SciPy(asked.method, name, float(rtol), float(atol), stops)

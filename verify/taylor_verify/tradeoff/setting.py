@@ -26,6 +26,8 @@ _TOLERANCES: Final = tuple(f"1e-{digits}" for digits in range(3, 75, 3))
 _SCIPY: Final = tuple(f"scipy:{name}" for name in ("RK45", "DOP853", "Radau", "BDF", "LSODA"))
 # Tolerances of solvers of other libraries, the coarsest first.
 LIBRARY_TOLERANCES: Final = ("1e-3", "1e-6", "1e-9", "1e-12")
+# What begins anew at no switch and at no instant shows what that costs, and what stepping over them loses.
+_UNSTOPPED: Final = "&stop=no"
 _GEOMETRIC: Final = (
     "implicit-midpoint",
     "splitting",
@@ -92,6 +94,8 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
         all_settings += taylor(rung)
         if rung.name == "f64":
             all_settings += library(_SCIPY, LIBRARY_TOLERANCES, rung)
+            if has_stops(scene):
+                all_settings += library(_SCIPY[:2], LIBRARY_TOLERANCES, rung, _UNSTOPPED)
             all_settings += geometric(scene, rung) if is_rigid else ()
             all_settings += odefun(scene, rung)
             all_settings += [setting(ELLIPJ, rung)] if is_rigid else []
@@ -156,6 +160,8 @@ def setting(name: str, rung: Rung) -> Setting:
         return Setting(solver, rung, requested=None, asked=NOTHING, family=name)
     method, _, options = name.partition("?")
     family = method.replace(":", " ")
+    if _UNSTOPPED in options:
+        family += " without stops"
     for option in options.split("&"):
         key, _, value = option.partition("=")
         if key in _ASKED:
@@ -173,11 +179,19 @@ def taylor(rung: Rung, tolerances: Iterable[str] = _TOLERANCES) -> Iterator[Sett
     yield setting(TAYLOR, rung)
 
 
-def library(solvers: Iterable[str], tolerances: Sequence[str], rung: Rung) -> Iterator[Setting]:
+def library(
+    solvers: Iterable[str], tolerances: Sequence[str], rung: Rung, option: str = ""
+) -> Iterator[Setting]:
     """Yield each solver at each tolerance, both as the absolute and as the relative one."""
     for solver in solvers:
         for text in tolerances:
-            yield setting(f"{solver}?rtol={text}&atol={text}", rung)
+            yield setting(f"{solver}?rtol={text}&atol={text}{option}", rung)
+
+
+def has_stops(scene: Scene) -> bool:
+    """Return True if there are switches, or instants of held states, at which a solver begins anew."""
+    loads = scene.body.loads
+    return loads is not None and bool(loads.switches or loads.held_states)
 
 
 def geometric(scene: Scene, rung: Rung) -> Iterator[Setting]:

@@ -123,7 +123,7 @@ class Laws:
 
     @cached_property
     def _rounded(self) -> Floats:
-        """What one rounding of each step, and of each number, makes of all laws, at every sample."""
+        """The effect of one rounding of each step, and of each number, on all laws, at every sample."""
         along = self._along
         parts = [along.split(part)[2] for part in (along.sizes(), along.by_numbers())]
         return np.array(parts)[:, self._samples]

@@ -191,16 +191,14 @@ class Loads:
 
     def faults(self) -> Iterator[Fault]:
         """Yield the faults of all texts, also of definitions that nothing names."""
-        faults = list(PieceReader(self, is_scan=True).faults())
-        yield from faults
-        if not faults:
-            yield from self._faults_of_rotor()
-            yield from self._missing_starts()
+        yield from PieceReader(self, is_scan=True).faults()
+        yield from self._faults_of_rotor()
+        yield from self._missing_starts()
 
     def _faults_of_rotor(self) -> Iterator[Fault]:
         for i, entry in enumerate(self.rotor):
             reader, place = PieceReader(self, is_scan=True), f"body.rotor[{i}]"
-            reader.entries((entry,), place)
+            reader.look_at((entry,), place, is_vector=False)
             others = sorted(reader.reads().difference(("t", *self.continuous)))
             if others:
                 yield Fault(place, 1, _OF_TIME, ", ".join(f"`{name}`" for name in others))
@@ -218,7 +216,8 @@ class Loads:
 
     def _read_by(self, states: Sequence[Held]) -> frozenset[str]:
         reader = PieceReader(self, is_scan=True)
-        reader.values_of(states)
+        for state in states:
+            reader.look_at_state(state)
         return reader.reads()
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.grammar import Fault, Grammar, Unread
-from taylor_verify.scenes.loads.states import Continuous, Held
+from taylor_verify.scenes.loads.states import Continuous, Held, State
 from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
 from taylor_verify.scenes.loads.tables import Kind, Table
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entries, Entry, names
@@ -103,15 +103,12 @@ class PieceReader:
         ]
 
     def values(self) -> list[int]:
-        """The steps of the values of all held components."""
-        return self.values_of([s for s in self._loads.states if isinstance(s, Held)])
-
-    def values_of(self, states: Sequence[Held]) -> list[int]:
-        """The steps of the values of some states; these alone may jump with the state."""
+        """The steps of the values of all held components; these alone may jump with the state."""
         self._grammar.may_jump = True
         places = [
             place
-            for state in states
+            for state in self._loads.states
+            if isinstance(state, Held)
             for place in self.entries(state.value, f"states.{state.name}.value", state.is_vector)
         ]
         self._grammar.may_jump = False
@@ -262,19 +259,17 @@ class PieceReader:
         """Yield the faults of all texts, also of definitions that nothing names."""
         loads = self._loads
         for name, entries in loads.vectors:
-            self._look_at(entries, f"body.{name}")
-        self._look_at(loads.rotor, "body.rotor")
+            self.look_at(entries, f"body.{name}")
+        self.look_at(loads.rotor, "body.rotor")
         for state in loads.states:
-            self._grammar.may_jump = isinstance(state, Held)
-            key = "value" if self._grammar.may_jump else "rate"
-            self._look_at(state.entries, f"states.{state.name}.{key}", state.is_vector)
+            self.look_at_state(state)
         for name in self._definitions:
             self._grammar.may_jump = self._stands_in_values_alone(name)
             self._look_at_one(partial(self._named, name), f"define.{name}")
         for name, entries in loads.space:
             components = [f"{name}{i}" for i in (1, 2, 3)]
             self._grammar.may_jump = any(map(self._stands_in_values_alone, components))
-            self._look_at(entries, f"space.{name}")
+            self.look_at(entries, f"space.{name}")
         # The components of a vector share their texts.
         yield from dict.fromkeys(self._grammar.faults)
 
@@ -282,7 +277,14 @@ class PieceReader:
         asked = self._places.keys() | self._faulty
         return (name, True) in asked and (name, False) not in asked
 
-    def _look_at(self, entries: Entries, place: str, is_vector: bool = True) -> None:
+    def look_at_state(self, state: State) -> None:
+        """Read the rate or the value of a state; faults are for `faults` to yield."""
+        self._grammar.may_jump = isinstance(state, Held)
+        key = "value" if self._grammar.may_jump else "rate"
+        self.look_at(state.entries, f"states.{state.name}.{key}", state.is_vector)
+
+    def look_at(self, entries: Entries, place: str, is_vector: bool = True) -> None:
+        """Read entries as far as they have no faults, which are for `faults` to yield."""
         for entry, where in _placed(entries, place, is_vector):
             self._look_at_one(partial(self._entry, entry, where), where)
 

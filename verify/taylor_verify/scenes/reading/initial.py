@@ -21,7 +21,7 @@ from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Shape, Value
 from taylor_verify.scenes.reading.attitude import attitude
-from taylor_verify.scenes.reading.table import Table, exact_number, quantity
+from taylor_verify.scenes.reading.table import Number, Table, exact_number, quantity
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in, written
 
 IMPULSES: Final = ("linear_impulse", "angular_impulse")
@@ -106,7 +106,7 @@ def _rates(table: Table, key: str) -> Vector | None:
     units = dict.fromkeys(unit for _, unit in filter(None, map(quantity, table.peek(key))))
     if not units:
         return table.vector(key)
-    vector = table.vector(key, number=_in_radians)
+    vector = table.vector(key, reader=Number(_in_radians))
     if any(unit in _DEGREES for unit in units):
         table.note(
             f"{table.path(key)} is given in {' and '.join(units)}, so the unit of time is the second. The "

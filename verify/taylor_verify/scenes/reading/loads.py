@@ -24,7 +24,14 @@ from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.measured import columns
-from taylor_verify.scenes.reading.table import Table, complete, exact_number, is_numeral, quantity
+from taylor_verify.scenes.reading.table import (
+    Number,
+    Table,
+    complete,
+    exact_number,
+    is_numeral,
+    quantity,
+)
 
 _HANGING: Final = ("weight", "buoyancy")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -36,7 +43,7 @@ _UNITS: Final = frozenset(
 MOST_ROWS: Final = 10_000
 
 
-def entry(value: object) -> Any:
+def _entry(value: object) -> Any:
     """Return a number, or a text that is no number as it is.
 
     Raises ValueError for anything else, and for a number with a unit.
@@ -44,6 +51,10 @@ def entry(value: object) -> Any:
     if isinstance(value, str) and not is_numeral(value.strip()) and not _has_unit(value):
         return value
     return exact_number(value)
+
+
+# A faulty entry stands as 1, which divides, has a root and a logarithm, and is a whole power.
+ENTRY: Final = Number(_entry, Fraction(1))
 
 
 def _has_unit(text: str) -> bool:
@@ -77,9 +88,9 @@ def _hung(table: Table, name: str) -> Hung | None:
 class Vocabulary:
     """Words that the texts of a scene may use: [define], [space], [tables], and its states."""
 
-    def __init__(self, top: Table, folder: Path | None, states: Sequence[State]) -> None:
-        self._folder, self._states = folder, states
-        self.is_complete = True
+    def __init__(self, top: Table, folder: Path | None, states: Sequence[State] | None) -> None:
+        self._folder, self._states = folder, states or ()
+        self.is_complete = states is not None
         self.definitions = self._named(top, "define", self._definition)
         self.space = self._named(top, "space", self._direction)
         self.tables = self._named(top, "tables", self._data)
@@ -118,11 +129,11 @@ class Vocabulary:
 
     @staticmethod
     def _definition(table: Table, name: str) -> Entry | None:
-        return table.number(name, number=entry)
+        return table.number(name, reader=ENTRY)
 
     @staticmethod
     def _direction(table: Table, name: str) -> Entries | None:
-        return table.vector(name, number=entry)
+        return table.vector(name, reader=ENTRY)
 
     def _data(self, table: Table, name: str) -> Data | None:
         inner = table.table(name)
@@ -173,8 +184,8 @@ def _rises(table: Table, times: Vector) -> bool:
 
 def rigid_loads(table: Table) -> Loads | None:
     """Return what acts on a rigid body, numbers and texts alike; None after a fault."""
-    moment = table.vector("moment", default=ZERO_VECTOR, number=entry)
-    rotor = table.vector("rotor", default=ZERO_VECTOR, number=entry)
+    moment = table.vector("moment", default=ZERO_VECTOR, reader=ENTRY)
+    rotor = table.vector("rotor", default=ZERO_VECTOR, reader=ENTRY)
     hung = _hanging(table)
     if moment is None or rotor is None or hung is None:
         return None
@@ -183,8 +194,8 @@ def rigid_loads(table: Table) -> Loads | None:
 
 def immersed_loads(table: Table) -> Loads | None:
     """Return what acts on a solid in a fluid, numbers and texts alike; None after a fault."""
-    force = table.vector("force", default=ZERO_VECTOR, number=entry)
-    couple = table.vector("couple", default=ZERO_VECTOR, number=entry)
+    force = table.vector("force", default=ZERO_VECTOR, reader=ENTRY)
+    couple = table.vector("couple", default=ZERO_VECTOR, reader=ENTRY)
     hung = _hanging(table)
     current = table.vector("current", default=ZERO_VECTOR)
     if force is None or couple is None or hung is None or current is None:
@@ -193,13 +204,19 @@ def immersed_loads(table: Table) -> Loads | None:
 
 
 def loaded(
-    body: Body | None, loads: Loads, top: Table, folder: Path | None, time: Clock | None
+    body: Body | None,
+    loads: Loads,
+    states: Sequence[State] | None,
+    top: Table,
+    folder: Path | None,
+    time: Clock | None,
 ) -> Body | None:
     """Return the body under its texts, with what these name; None after a fault.
 
-    ``loads`` are those of a body that has faults: its texts, and what no load names, are read all the same.
+    ``loads`` are those of a body that has faults: its texts, and what no load names, are read all the same,
+    if the names of all ``states`` are known.
     """
-    words = Vocabulary(top, folder, loads.states)
+    words = Vocabulary(top, folder, states)
     loads = replace(
         (body.loads if body is not None else None) or loads,
         definitions=words.definitions,

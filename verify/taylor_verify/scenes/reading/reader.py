@@ -110,7 +110,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     track = _track(top, model, own)
     body, loads, initial = _posed(top, model, states or ()) if model else _unread(top)
     time = _part(top, "time", clock)
-    body = loaded(body, loads, top, folder, time)
+    body = loaded(body, loads, states, top, folder, time)
     top.close(hints(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, cast
 
+from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import shown
 from taylor_verify.records.quantities import RESERVED
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 from taylor_verify.scenes.reading.hints import hints
-from taylor_verify.scenes.reading.loads import entry, is_name
-from taylor_verify.scenes.reading.table import Table, complete, exact_number
+from taylor_verify.scenes.reading.loads import ENTRY, is_name
+from taylor_verify.scenes.reading.table import Number, Table, complete, exact_number
 
 MOST_COMPONENTS: Final = 100
 _ZERO: Final = Fraction(0)
+_START: Final = Number(exact_number, _ZERO)
 
 
 def own_states(top: Table) -> tuple[frozenset[str], tuple[State, ...] | None]:
@@ -40,24 +42,24 @@ def _state(table: Table, name: str) -> State | None:
 
 
 def _continuous(table: Table, name: str) -> Continuous | None:
-    rate, start = _entries(table, "rate", entry), _entries(table, "start", exact_number)
-    if rate is None or start is None or not _agree(table, start, rate):
+    rate, start = _entries(table, "rate", ENTRY), _entries(table, "start", _START)
+    if rate is None:
         return None
-    return Continuous(name, start.each, rate.each, rate.is_vector)
+    return Continuous(name, _start(table, start, rate), rate.each, rate.is_vector)
 
 
 def _sampled(table: Table, name: str) -> Held | None:
-    value = _entries(table, "value", entry)
+    value = _entries(table, "value", ENTRY)
     every = _right(table, "every", "a positive time from instant to instant", lambda n: n > 0)
     offset = _right(table, "offset", "an offset that is not negative", lambda n: n >= 0, _ZERO)
-    start = _entries(table, "start", exact_number) if table.has("start") else None
-    if value is None or every is None or offset is None:
+    has_start = table.has("start")
+    start = _entries(table, "start", _START) if has_start else None
+    if value is None:
         return None
-    if start is not None and not _agree(table, start, value):
-        return None
-    return Held(
-        name, None if start is None else start.each, value.each, every, offset, value.is_vector
-    )
+    # Where the first instant is not known, no start is missed either.
+    needs_none = not has_start and offset is not None
+    first = None if needs_none else _start(table, start, value)
+    return Held(name, first, value.each, every or Fraction(1), offset or _ZERO, value.is_vector)
 
 
 class _Entries(NamedTuple):
@@ -67,28 +69,33 @@ class _Entries(NamedTuple):
     is_vector: bool
 
 
-def _entries(table: Table, key: str, number: Any) -> _Entries | None:
+def _entries(table: Table, key: str, reader: Number) -> _Entries | None:
     """Return one entry or an array of some; None after a fault."""
     if not table.is_array(key):
-        single = table.number(key, number=number)
+        single = table.number(key, reader=reader)
         return None if single is None else _Entries((single,), is_vector=False)
     length = len(table.peek(key))
     if not 1 <= length <= MOST_COMPONENTS:
         table.take(key, "an array")
         table.fault(f"from 1 to {MOST_COMPONENTS} entries", str(length), key)
         return None
-    entries = table.vector(key, length=length, number=number)
+    entries = table.vector(key, length=length, reader=reader)
     return None if entries is None else _Entries(entries, is_vector=True)
 
 
-def _agree(table: Table, start: _Entries, entries: _Entries) -> bool:
-    """Return True if the start has the shape of the rate or value."""
-    are_alike = len(start.each) == len(entries.each) and start.is_vector is entries.is_vector
-    if not are_alike:
-        expected = f"an array of {len(entries.each)} numbers" if entries.is_vector else "one number"
-        got = shown(list(start.each) if start.is_vector else start.each[0])
-        table.fault(expected, got, "start")
-    return are_alike
+def _start(table: Table, start: _Entries | None, entries: _Entries) -> Vector:
+    """Return the start, which has the shape of the rate or value; zeros of that shape after a fault."""
+    zeros = (_ZERO,) * len(entries.each)
+    if start is None:
+        return zeros
+    if len(start.each) == len(entries.each) and start.is_vector is entries.is_vector:
+        return cast("Vector", start.each)
+    table.fault(_shape(entries), _shape(start), "start")
+    return zeros
+
+
+def _shape(entries: _Entries) -> str:
+    return f"an array of {len(entries.each)}" if entries.is_vector else "one number"
 
 
 def _right(

@@ -11,7 +11,7 @@ from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
 from types import MappingProxyType
-from typing import TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -36,8 +36,16 @@ _QUANTITY = re.compile(
 )
 
 T = TypeVar("T")
-Number = Callable[[object], Fraction]
-"""Function that reads one entry of an array, or raises ValueError with what it expects."""
+
+
+class Number(NamedTuple):
+    """A way to read one number: ``read`` raises ValueError with what it expects.
+
+    ``stand_in`` takes the place of a number that is a fault, so that what reads it is examined too.
+    """
+
+    read: Callable[[object], Any]
+    stand_in: Fraction | None = None
 
 
 def complete(values: Iterable[T | None]) -> tuple[T, ...] | None:
@@ -130,16 +138,16 @@ class Table:
         return known.intersection(word for word in value if isinstance(word, str))
 
     def number(
-        self, key: str, default: Fraction | None = None, number: Number | None = None
+        self, key: str, default: Fraction | None = None, reader: Number | None = None
     ) -> Fraction | None:
         """Return an exact number; missing is a fault, unless there is a default.
 
-        ``number`` reads it, and is `exact_number` unless given.
+        ``reader`` reads it, and is that of exact numbers unless given.
         """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, _NUMBER)
-        return None if value is None else self._exact(value, key, number)
+        return None if value is None else self._exact(value, key, reader or EXACT)
 
     def left(self) -> list[str]:
         """Return the keys that were not taken yet."""
@@ -149,7 +157,7 @@ class Table:
         """Return an array of at most ``most`` exact numbers."""
         value = self.take(key, "an array of numbers")
         if isinstance(value, list) and len(value) <= most:
-            return self._entries(value, key)
+            return self._entries(value, key, EXACT)
         if isinstance(value, list):
             self.fault(f"at most {most} numbers", str(len(value)), key)
         elif value is not None:
@@ -157,16 +165,16 @@ class Table:
         return None
 
     def vector(
-        self, key: str, default: Vector | None = None, length: int = 3, number: Number | None = None
+        self, key: str, default: Vector | None = None, length: int = 3, reader: Number | None = None
     ) -> Vector | None:
         """Return an array of ``length`` numbers; missing is a fault, unless there is a default.
 
-        ``number`` reads an entry, and is `exact_number` unless given.
+        ``reader`` reads an entry, and is that of exact numbers unless given.
         """
         if default is not None and not self.has(key):
             return default
         value = self.take(key, f"{length} numbers")
-        return None if value is None else self._row(value, key, length, number)
+        return None if value is None else self._row(value, key, length, reader or EXACT)
 
     def note(self, sentence: str) -> None:
         """Add a sentence on how numbers of this table were formed."""
@@ -211,24 +219,23 @@ class Table:
         return None
 
     def _row(
-        self, value: object, key: str, length: int, number: Number | None = None
+        self, value: object, key: str, length: int, reader: Number | None = None
     ) -> Vector | None:
         if not isinstance(value, list) or len(value) != length:
             self.fault(f"{length} numbers", shown(value), key)
             return None
-        return self._entries(value, key, number)
+        return self._entries(value, key, reader or EXACT)
 
-    def _entries(
-        self, values: list[object], key: str, number: Number | None = None
-    ) -> Vector | None:
-        return complete([self._exact(v, f"{key}[{i}]", number) for i, v in enumerate(values)])
+    def _entries(self, values: list[object], key: str, reader: Number) -> Vector | None:
+        return complete([self._exact(v, f"{key}[{i}]", reader) for i, v in enumerate(values)])
 
-    def _exact(self, value: object, key: str, number: Number | None = None) -> Fraction | None:
+    def _exact(self, value: object, key: str, reader: Number) -> Fraction | None:
         try:
-            return (number or exact_number)(value)
+            number: Fraction = reader.read(value)
         except ValueError as error:
             self.fault(str(error), shown(value), key)
-            return None
+            return reader.stand_in
+        return number
 
 
 def exact_number(value: object) -> Fraction:
@@ -247,6 +254,9 @@ def exact_number(value: object) -> Fraction:
     if isinstance(value, str):
         return _from_text(value.strip())
     raise ValueError(_NUMBER)
+
+
+EXACT: Final = Number(exact_number)
 
 
 def _from_decimal(value: Decimal) -> Fraction:

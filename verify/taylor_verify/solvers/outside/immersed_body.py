@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from free_body import Body, Matrix, Quaternion, Vector, pushed_body, to_body, to_space
+from axes import Matrix, Quaternion, Vector, to_body, to_space
+from free_body import Body, pushed_body
 from question import Row, Unsuited, floats, read, unit
 
 ORIGIN = (0.0, 0.0, 0.0)

@@ -37,6 +37,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from axes import to_body, to_space
 from free_body import (
     Engine,
     FreeBody,
@@ -47,8 +48,6 @@ from free_body import (
     pushed_in_stages,
     pushed_once,
     stepped,
-    to_body,
-    to_space,
 )
 from question import Row, unit
 

@@ -28,13 +28,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from axes import principal
 from free_body import (
     Engine,
     FreeBody,
     Settings,
     Solved,
     answer,
-    principal,
     pushed_body,
     pushed_in_stages,
     stepped,

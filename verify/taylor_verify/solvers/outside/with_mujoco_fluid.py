@@ -33,8 +33,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from axes import conjugate, to_body
 from equations import to_space
-from free_body import Engine, Settings, Solved, answer, conjugate, stepped, to_body
+from free_body import Engine, Settings, Solved, answer, stepped
 from immersed_body import ImmersedBody, immersed_body
 from question import Unsuited, unit
 from with_mujoco import require_integrator

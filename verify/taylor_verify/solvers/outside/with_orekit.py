@@ -22,7 +22,8 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from free_body import FreeBody, Settings, Solved, answer, principal, to_space
+from axes import principal, to_space
+from free_body import FreeBody, Settings, Solved, answer
 from question import twice
 
 
