@@ -28,6 +28,7 @@ NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
 FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
 PROMISED = {
     *("load", "exact", "solve", "run", "run_many", "check", "explain", "tradeoff", "recommend"),
+    *("certify", "enclose", "events"),
 }
 SCENES = ("euler/spherical", "euler/rest")
 

@@ -55,19 +55,19 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
     if until == scene.clock.start:
         return Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
     try:
-        errors, found, nodes = _settled(scene, pieces, measured, until)
+        errors, worst, nodes = _settled(scene, pieces, measured, until)
     except (Unsettled, Domain) as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
         return Certificate(
             scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance, because=because
         )
     gaps += list(_jumps(measured, nodes, errors))
-    bound = {name: each.bound for name, each in found.items()}
+    bound = {name: each.bound for name, each in worst.items()}
     return Certificate(
         scene.name,
         bound,
-        {name: each.at for name, each in found.items()},
-        {name: each.reached for name, each in found.items()},
+        {name: each.at for name, each in worst.items()},
+        {name: each.reached for name, each in worst.items()},
         {m.quantity.name: _rounding(pieces, m, errors) for m in measured},
         tuple(gaps),
         findings(measured, nodes, bound, {m.quantity.name: _scales(m, errors) for m in measured}),
@@ -84,16 +84,16 @@ def _settled(
         try:
             with ctx.workprec(bits):
                 errors = errors_of(scene, pieces, measured, until, bits)
-                found = {m.quantity.name: _largest(m, errors) for m in measured}
+                worst = {m.quantity.name: _largest(m, errors) for m in measured}
                 nodes = nodes_of(scene, pieces, measured, errors)
         except Coarse as reason:
             if bits > _MOST_BITS or (stuck and reason.stuck is not None):
                 raise Unsettled(reason.because or "the motion is lost before its end") from None
             bits, stuck = reason.bits, reason.stuck is not None
             continue
-        is_narrow = all(f.bound <= max(_NARROW * f.reached, _NOTHING) for f in found.values())
+        is_narrow = all(f.bound <= max(_NARROW * f.reached, _NOTHING) for f in worst.values())
         if is_narrow or bits > _MOST_BITS:
-            return errors, found, nodes
+            return errors, worst, nodes
         bits *= 2
 
 
@@ -110,15 +110,15 @@ def _largest(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> Largest:
     every = []
     for k, (group, scale) in enumerate(zip(of.groups, _scales(of, errors), strict=True)):
         entry = errors[of.quantity.name, k]
-        found = largest(entry.intervals)
+        worst = largest(entry.intervals)
         every.append(
             Largest(
-                _measure(group, found.bound / scale),
-                _measure(group, found.reached / scale),
-                found.at,
+                _measure(group, worst.bound / scale),
+                _measure(group, worst.reached / scale),
+                worst.at,
             )
         )
-    return max(every, key=lambda found: found.bound)
+    return max(every, key=lambda worst: worst.bound)
 
 
 def _measure(group: Sequence[str], error: float) -> float:
@@ -131,7 +131,7 @@ def _measure(group: Sequence[str], error: float) -> float:
 
 
 def _scales(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> list[float]:
-    """What the errors of each group are relative to; 1 where nothing moves."""
+    """The size of each group by which its errors are counted; 1 where nothing moves."""
     measure, entries = (
         of.quantity.measure,
         [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)],

@@ -130,14 +130,14 @@ def findings(
     scales: Mapping[str, Sequence[float]],
 ) -> tuple[Finding, ...]:
     """Return the faults that the errors at the nodes show."""
-    found = []
+    faults = []
     for m in measured:
         name = m.quantity.name
         for k, scale in enumerate(scales[name]):
             each = nodes[name, k]
             if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                found.append(Finding(name, fault, _at_nodes(each) / scale, bound[name]))
-    return tuple(dict.fromkeys(found))
+                faults.append(Finding(name, fault, _at_nodes(each) / scale, bound[name]))
+    return tuple(dict.fromkeys(faults))
 
 
 def _at_nodes(nodes: Sequence[Node]) -> float:

@@ -17,7 +17,7 @@ from flint import arb, arb_poly
 from taylor_verify.certify.pieces import Piece, Pieces, rational
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.along import Part
-from taylor_verify.exact.events import parts_of, system
+from taylor_verify.exact.event_times import parts_of, system
 from taylor_verify.exact.written import as_written
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
@@ -49,16 +49,16 @@ class Measured:
 def measured_of(scene: Scene, columns: Sequence[str]) -> tuple[list[Measured], list[Quantity]]:
     """Return the quantities that a scene tracks and the columns have, and those that they lack."""
     known = {name: group.columns for name, group in scene.known_groups.items()}
-    found, missing = [], []
+    measured, missing = [], []
     for quantity in scene.tracked:
         groups = [known[name] for name in quantity.groups]
         if quantity.measure is Measure.ANGLE and not set(QUATERNION) <= set(columns):
             groups = [ROTATION]
         if all(column in columns for group in groups for column in group):
-            found.append(Measured(quantity, groups))
+            measured.append(Measured(quantity, groups))
         else:
             missing.append(quantity)
-    return found, missing
+    return measured, missing
 
 
 @dataclass
@@ -194,15 +194,15 @@ def _rounded(polynomials: Sequence[arb_poly], beside: Sequence[arb]) -> tuple[Fl
     count = max(_counting(row) for row in sizes)
     rows, bounds = np.zeros((len(sizes), count)), np.zeros(len(sizes))
     for i, (row, size) in enumerate(zip(coefficients, sizes, strict=True)):
-        kept = row[:count]
-        rows[i, : len(kept)] = [float(e.mid()) for e in kept]
-        radii = sum((e.rad() for e in kept), beside[i])
+        leading = row[:count]
+        rows[i, : len(leading)] = [float(e.mid()) for e in leading]
+        radii = sum((e.rad() for e in leading), beside[i])
         bounds[i] = float(arb(radii).abs_upper()) + sum(size[count:]) + _ROUNDED * sum(size)
     return rows, bounds * (1 + _ROUNDED) + _LEAST
 
 
 def _counting(sizes: Sequence[float]) -> int:
-    """How many coefficients count."""
+    """The number of coefficients that count."""
     left, rest = len(sizes), 0.0
     while left > 1 and rest + sizes[left - 1] <= _NEGLIGIBLE * sum(sizes):
         left -= 1
