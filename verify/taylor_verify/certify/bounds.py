@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import asin, atan, pi, sqrt
+from math import asin, atan, hypot, pi, sqrt
 from typing import Final
 
 from flint import ctx
@@ -109,16 +109,9 @@ def _largest(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> Largest:
     """The largest error of a quantity, in its measure."""
     every = []
     for k, (group, scale) in enumerate(zip(of.groups, _scales(of, errors), strict=True)):
-        entry = errors[of.quantity.name, k]
-        worst = largest(entry.intervals)
-        every.append(
-            Largest(
-                _measure(group, worst.bound / scale),
-                _measure(group, worst.reached / scale),
-                worst.at,
-            )
-        )
-    return max(every, key=lambda worst: worst.bound)
+        bound, reached, at = largest(errors[of.quantity.name, k].intervals)
+        every.append(Largest(_measure(group, bound / scale), _measure(group, reached / scale), at))
+    return max(every)
 
 
 def _measure(group: Sequence[str], error: float) -> float:
@@ -132,15 +125,13 @@ def _measure(group: Sequence[str], error: float) -> float:
 
 def _scales(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> list[float]:
     """The size of each group by which its errors are counted; 1 where nothing moves."""
-    measure, entries = (
-        of.quantity.measure,
-        [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)],
-    )
-    if measure is Measure.VECTORS:
-        return [entry.largest or 1.0 for entry in entries]
-    if measure is Measure.PATH:
-        return [entry.way or 1.0 for entry in entries]
-    return [1.0 for _ in entries]
+    entries = [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)]
+    match of.quantity.measure:
+        case Measure.VECTORS:
+            return [entry.largest or 1.0 for entry in entries]
+        case Measure.PATH:
+            return [entry.way or 1.0 for entry in entries]
+    return [1.0] * len(entries)
 
 
 def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Errors]) -> float:
@@ -148,15 +139,9 @@ def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Err
     worst = 0.0
     for group, scale in zip(of.groups, _scales(of, errors), strict=True):
         for piece in pieces.each:
-            length = float(piece.end - piece.begin)
-            total = 0.0
-            for column in group:
-                p = piece.polynomials[column]
-                sizes = [
-                    abs(float(p[k].p) / float(p[k].q)) * length**k for k in range(p.degree() + 1)
-                ]
-                total += (sum((3 * k + 2) * size for k, size in enumerate(sizes)) * 2.0**-53) ** 2
-            worst = max(worst, sqrt(total) / scale)
+            columns = [enumerate(piece.sizes(column)) for column in group]
+            lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
+            worst = max(worst, hypot(*lost) * 2.0**-53 / scale)
     return worst
 
 

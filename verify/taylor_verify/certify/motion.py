@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, arb_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, rational
+from taylor_verify.certify.pieces import Piece, Pieces
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.event_times import parts_of, system
@@ -112,20 +112,25 @@ class _Part:
         measured: Sequence[Measured],
         errors: Mapping[tuple[str, int], Errors],
     ) -> None:
-        for each in measured:
-            for k, group in enumerate(each.groups):
-                self._measure(group, errors[each.quantity.name, k])
+        groups = [
+            (each, group, errors[each.quantity.name, k])
+            for each in measured
+            for k, group in enumerate(each.groups)
+        ]
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[:1])
         low, high = sorted((self._begin, self._begin + self._length))
         for piece in pieces.between(low, high):
             a, b = max(low, piece.begin), min(high, piece.end)
-            for each in measured:
-                for k, group in enumerate(each.groups):
-                    entry = errors[each.quantity.name, k]
-                    entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+            for each, group, entry in groups:
+                entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+        # What comes later in this part is no size so far of its intervals.
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[1:])
 
-    def _measure(self, group: Sequence[str], errors: Errors) -> None:
+    def _measure(self, group: Sequence[str], errors: Errors, shares: Sequence[arb]) -> None:
         """Bound how large the truth is, from below, by its values at a few times."""
-        for share in _SHARES:
+        for share in shares:
             values = [self._functions[column].over(share) for column in group]
             size = sum((v.abs_lower() ** 2 for v in values), arb(0)).sqrt().lower()
             errors.largest = max(errors.largest, float(size) * (1 - _ROUNDED))
@@ -219,8 +224,3 @@ def between(pieces: Pieces, begin: Fraction, end: Fraction) -> Iterator[tuple[Fr
         reached = max(reached, piece.end)
     if reached < end:
         yield reached, end
-
-
-def value(piece: Piece, column: str, time: Fraction) -> arb:
-    """A ball of the value of a piece."""
-    return arb(piece.polynomials[column](rational(time - piece.begin)))

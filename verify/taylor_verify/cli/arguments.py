@@ -139,10 +139,10 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
     "certify": (
         "bound the error of a dense answer for all times",
         "certify dense.json --scene euler/generic --tolerance 1e-6",
-        """file FILE  pieces {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}, or a trajectory
+        """file FILE  pieces {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}, or samples
 --scene! SCENE  the scene that the file answers
 --tolerance E  the error that is allowed, as in `check`
---interpolation linear|cubic|hermite  what the program of a trajectory makes of its samples
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples
 """,
     ),
     "explain": (

@@ -53,7 +53,7 @@ class Certified:
     ``bound`` and ``at`` are by quantity: the largest error, in the measures of the judge (relative to the
     largest size of vectors, radians for the attitude, by the length of its way for the centre, relative to
     the largest size so far for own states), and the time near which it is reached. ``largest`` are errors
-    that are proven to be reached there, and ``rounding`` bounds what the evaluation of the pieces in
+    that are reached there, to a percent, and ``rounding`` bounds what the evaluation of the pieces in
     float64 adds. ``because`` says why nothing is proven, where that is so.
     """
 
