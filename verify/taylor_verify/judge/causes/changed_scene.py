@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Final
+from typing import Any, Final, cast
 
 import numpy as np
 
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.scenes.bodies import Body, RigidBody
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
@@ -63,9 +63,9 @@ def changed_body(body: Body, right: Equations, changes: Changes) -> Body | None:
     other, loads = right.changed(changes), body.loads
     if loads is None or {"rotor", *_NO_SCENE} & set(changes) or not _is_written(other, changes):
         return None
-    if "mass" in changes and isinstance(body, RigidBody):
+    if "mass" in changes and body.MODEL == "euler":
         inertia = tuple(tuple(map(Fraction, row)) for row in _symmetric(other.mass).tolist())
-        body = replace(body, inertia=inertia)
+        body = replace(cast("Any", body), inertia=inertia)
     elif "mass" in changes:
         return None
     texts = load_texts(other)
