@@ -45,12 +45,11 @@ site: $(INSTALLED)  ## Make one site of docs and of all that is published, into 
 	@$(BIN)/taylor-verify publish --site reports/site > /dev/null
 	@echo 'reports/site/index.html'
 
-# The small site of other tests is built here too. A test that could not be run is a test that failed: without a browser this ends in an error.
+# Beside the browser the small site of other tests is built, on the other core. A test that could not be run is a test that failed: without a browser this ends in an error.
 test-site: site  ## Look at those pages in a browser without a window (Debian: installs chromium)
 	@command -v chromium > /dev/null && command -v chromedriver > /dev/null || \
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
-	@$(BIN)/python -m pytest -n 2 -m browser tests/site
-	@$(BIN)/python -m pytest tests/studies/test_site.py
+	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'browser or slow' tests/site tests/studies/test_site.py
 
 # Five minutes of one core at most; with AGAINST some ten on two.
 bench: $(INSTALLED)  ## Take the costs in ratios: targets missed, changes since the last (KEEP=1 keeps them)

@@ -20,7 +20,7 @@ from taylor_verify.batch.selection import select
 from taylor_verify.batch.store import unfinished
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.run import run
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.callback import Callback
 
 SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +19,12 @@ import pytest
 from builders.processes import PATIENCE, interruptible, wait_until
 from builders.programs import is_alive
 from builders.scenes import LISTED_INSTANTS, scene_file
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
+from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -68,10 +71,12 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
         "formats": list(FORMATS),
+        "plugins": {kind: {p.name: p.package for p in plugins(kind)} for kind in KINDS},
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out
-    assert all(name in text for names in document.values() for name in names)
+    brought = document.pop("plugins").values()
+    assert all(name in text for names in [*document.values(), *brought] for name in names)
 
 
 def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) -> None:
@@ -360,13 +365,17 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
 # What is wrong.
 
 
-@pytest.mark.parametrize("file", REFUSED, ids=lambda file: file.stem)
-@pytest.mark.parametrize("verb", [["run"], ["exact", "--at", "1"], ["explain"]], ids=lambda v: v[0])
+@pytest.mark.parametrize(
+    ("verb", "file"),
+    by_turns(product(("run", "exact --at 1", "explain"), REFUSED), 3, lambda verb, file: verb),
+    ids=lambda case: getattr(case, "stem", None),
+)
 def test_a_scene_that_is_refused_ends_with_2_and_a_message(
-    capsys: Captured, verb: list[str], file: Path
+    capsys: Captured, verb: str, file: Path
 ) -> None:
     """Every fault is named on stderr; stdout stays empty."""
-    assert main([verb[0], str(file), *verb[1:], "--json"]) == 2
+    verb, *options = verb.split()
+    assert main([verb, str(file), *options, "--json"]) == 2
     out, error = capsys.readouterr()
     assert out == ""
     assert error.startswith("taylor-verify: expected ")

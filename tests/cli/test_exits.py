@@ -14,7 +14,8 @@ import taylor_verify
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.status import Status
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 pytest_plugins = ["pytester"]

@@ -30,8 +30,12 @@ def refusal(capsys: Captured, *arguments: str) -> str:
     return error
 
 
-def test_a_call_without_a_verb_greets_with_three_commands(capsys: Captured) -> None:
-    """Each of the three can be typed, and is of a use that the README has too."""
+def test_a_call_without_a_verb_greets_with_three_commands(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a terminal; each of the three can be typed, and is of a use that the README has too."""
+    monkeypatch.delenv("CI", raising=False)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     assert main([]) == 0
     out, error = capsys.readouterr()
     commands = [line.strip() for line in out.splitlines() if line.startswith("    taylor-verify ")]
@@ -43,6 +47,26 @@ def test_a_call_without_a_verb_greets_with_three_commands(capsys: Captured) -> N
     assert all(f"\ntaylor-verify {verb} " in readme for verb in verbs)
     assert __version__ in out
     assert error == ""
+
+
+def test_a_call_without_a_verb_in_a_pipe_is_an_error_of_usage(capsys: Captured) -> None:
+    """A forgotten verb in a script or a CI is no success; the verbs are named."""
+    assert "expected a verb, got none (list, scene, question, run" in refusal(capsys)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("check a.csv", "expected --scene, got none"),
+        ("run --jobs x", "expected a whole number, got 'x' @ --jobs"),
+        ("run --color red", "expected 'auto', 'always', 'never', got 'red' @ --color"),
+        ("exact euler/rest --at", "expected a value, got none @ --at"),
+        ("run --resume=3", "expected no value, got '3' @ --resume"),
+    ],
+)
+def test_a_wrong_option_says_what_was_expected(words: str, sentence: str, capsys: Captured) -> None:
+    """The sentences of argparse are written as all others are."""
+    assert refusal(capsys, *words.split()).rstrip().endswith(sentence)
 
 
 def test_the_version_is_printed(capsys: Captured) -> None:
@@ -72,12 +96,12 @@ def test_a_wrong_verb_suggests_the_near_one(capsys: Captured, word: str, meant: 
         ),
         (["list", "--zzz"], "got --zzz (there is none like it)"),
         (["exact", "euler/rest", "euler/apollo", "--at", "1"], "got euler/apollo"),
-        (["run", "euler/rest", "--jobs", "x"], "--jobs: expected a whole number, got 'x'"),
-        (["run", "euler/rest", "--gate", "x"], "--gate: invalid choice: 'x'"),
+        (["run", "euler/rest", "--jobs", "x"], "expected a whole number, got 'x' @ --jobs"),
+        (["run", "euler/rest", "--gate", "x"], "got 'x' @ --gate"),
         (["exact", "euler/rest", "--at=--"], "expected a value, got -- @ --at"),
         (["run", "euler/rest", "--tolerance=--"], "expected a value, got -- @ --tolerance"),
-        (["check", "mine.csv"], "required: --scene"),
-        (["draw"], "required: SCENE"),
+        (["check", "mine.csv"], "expected --scene, got none"),
+        (["draw"], "expected SCENE, got none"),
     ],
 )
 def test_an_error_of_an_option_shows_the_usage_of_its_verb(

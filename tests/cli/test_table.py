@@ -24,16 +24,14 @@ def lines(width: int) -> list[str]:
     return captured.get().splitlines()
 
 
-@pytest.mark.parametrize("width", range(40, 201))
-def test_no_character_of_a_number_is_lost(width: int) -> None:
+def test_no_character_of_a_number_is_lost() -> None:
     """Every cell but a long key stands whole in one line, none is beyond the width, none is cut."""
-    shown = lines(width)
-    assert all(len(line) <= width for line in shown)
-    assert "…" not in "".join(shown)
-    for row in CELLS:
-        for cell in row[1:]:
-            text = cell.plain if isinstance(cell, Text) else cell
-            assert any(text in line for line in shown), text
+    cells = [str(cell) for row in CELLS for cell in row[1:]]
+    for width in range(40, 201):
+        shown = lines(width)
+        assert all(len(line) <= width for line in shown), width
+        assert "…" not in "".join(shown)
+        assert [cell for cell in cells if not any(cell in line for line in shown)] == [], width
 
 
 @pytest.mark.parametrize("width", [40, 80, 200])

@@ -226,12 +226,12 @@ def test_growth_whose_cube_is_beyond_float64_is_known() -> None:
     assert 1e149 < condition.growth.max() < 1e151
 
 
-def test_two_sizes_of_differences_that_agree_are_enough() -> None:
-    """Errors grow by 1e41 in proportion to time; differences of 10^-100 give what those of 10^-250 give."""
+def test_the_first_differences_tell_how_small_the_next_must_be() -> None:
+    """Errors grow by 1e41 in proportion to time; the differences chosen give what those of 10^-250 give."""
     start = load("extremes/kirchhoff-linear-1e20")
     condition = path(start)
     smallest_differences = sharp(start, condition.flow, condition.elapsed, least=250)
-    assert (condition.exponent, smallest_differences.exponent) == (100, 250)
+    assert 82 < condition.exponent < smallest_differences.exponent == 250
     for name in ("linear_impulse", "angular_impulse"):
         for into in ("linear_impulse", "angular_impulse"):
             norms = condition.norms(name, into)

@@ -47,7 +47,7 @@ def test_motions_from_a_box_of_starts_stay_in_its_balls(name: str, size: Fractio
     assert is_contained(name, size=size)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", by_turns(CASES, 2))
 def test_the_balls_of_a_box_are_not_much_wider_than_its_motions(name: str) -> None:
     """The corners are apart by more than a thirtieth of the width that is given for them."""
     asked, end = CASES[name]
@@ -245,6 +245,7 @@ def test_instants_within_a_step_cost_no_step(monkeypatch: pytest.MonkeyPatch) ->
     assert counts[0] == counts[1]
 
 
+@pytest.mark.slow
 def test_an_axis_for_each_error_keeps_what_a_frame_wraps_away(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -6,7 +6,6 @@ Bodies drawn at random are compared in test_two_routes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, spinning, turned
 from builders.scenes import vector
+from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
@@ -166,7 +166,7 @@ def test_extremes_agree_with_mpmath(name: str) -> None:
     agrees_with_mpmath(EXTREMES[name], times("7/3", -LONG))
 
 
-@pytest.mark.parametrize("name", SPINS)
+@pytest.mark.parametrize("name", by_turns(SPINS))
 def test_agrees_with_taylor(name: str) -> None:
     """The Taylor route, which knows no elliptic function, finds the same motion."""
     at = times("7/3", "-5/2", 11)
@@ -343,19 +343,3 @@ def test_exact_zeros_survive() -> None:
     ):
         enclosure = free_rotation(spinning(moments, omega), IDENTITY).enclose([Fraction(0)], 100)
         assert [w.is_zero() for w in enclosure["omega"][0]] == [w == 0 for w in omega]
-
-
-# The scene
-
-
-def test_route_and_regime_are_named() -> None:
-    """The route is arb, and the word of the regime is the one the other route prints."""
-    for name, spin in SPINS.items():
-        exact = enclosed(scene(spin))
-        assert (exact.route, exact.regime) == ("arb", name.split(",")[0])
-
-
-def test_only_what_is_tracked_is_answered() -> None:
-    """A scene that does not track its attitude gets omega alone."""
-    untracked = replace(scene(SPINS["max-axis"]), track=frozenset())
-    assert set(enclosed(untracked).motion([Fraction(1)], 20).quantities) == {"omega"}

@@ -59,9 +59,8 @@ TILTED = vector(2, -1, 1, 3)  # not of unit length
 ASIDE = vector(1, -2, "1/2")
 
 
-by_motion = pytest.mark.parametrize("name", MOTIONS)
 of_each_regime = pytest.mark.parametrize(
-    "name", by_turns(MOTIONS, 4, lambda name: MOTIONS[name][2])
+    "name", by_turns(MOTIONS, 12, lambda name: MOTIONS[name][2])
 )
 
 
@@ -118,7 +117,7 @@ def is_taylors(asked: Scene, route: str, times: Sequence[Fraction]) -> bool:
         return False
 
 
-@by_motion
+@pytest.mark.parametrize("name", by_turns(MOTIONS, 3, lambda name: MOTIONS[name][2]))
 def test_begins_as_it_is_told(name: str) -> None:
     """The regime is named, and at time zero all is as stated; a centre at the origin included."""
     asked = scene(name)

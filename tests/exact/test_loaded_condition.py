@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from builders.written_loads import euler, kirchhoff
 from mpmath import mp
 
@@ -61,7 +62,7 @@ def end(scene: Scene, motion: Any) -> Any:
     return momentum[-1], motion["attitude"][-1], centre
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", by_turns(SCENES))
 def test_the_derivative_is_that_of_differences(name: str) -> None:
     """Momentum, turn and centre move as motions from starts beside this one, to six digits."""
     scene = SCENES[name]

@@ -35,8 +35,9 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
 

@@ -25,7 +25,8 @@ from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.straight_line import straight_line
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory

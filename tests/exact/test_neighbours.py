@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,10 +45,14 @@ SCENES = (
 )
 
 
+@cache
+def exact_motion(scene: Scene, times: tuple[Fraction, ...]) -> Motion:
+    return solution(scene).motion(times, DIGITS)
+
+
 def beside(scene: Scene, size: Fraction) -> list[State]:
     """Exact states near the motion at TIMES: every component is off by some parts of ``size``."""
-    motion = solution(scene).motion(TIMES, DIGITS)
-    states = []
+    motion, states = exact_motion(scene, TIMES), []
     for k in range(len(TIMES)):
         parts = {}
         for name in scene.initial.MOVING:
@@ -76,7 +80,7 @@ def quaternion(R: np.ndarray) -> list[mpf]:
 
 def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     """Where the states come to by their difference from the exact motion, in numbers of mpmath."""
-    exact = tuple(in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, ENDS))
+    exact = tuple(in_mpfr(exact_motion(scene, at)) for at in (TIMES, ENDS))
     here = arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES)
     with precision():
         derivatives = led(scene)
@@ -88,6 +92,7 @@ def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     return Motion({name: to_mpf(rows) for name, rows in motion.quantities.items()}, motion.radius)
 
 
+@cache
 def led(scene: Scene) -> Floats | None:
     """The derivatives of the motion over the arcs, under written loads."""
     if scene.body.loads is None:

@@ -225,7 +225,7 @@ def test_a_tiny_entry_of_the_attitude_is_right_or_zero(route: str) -> None:
 
 @pytest.mark.parametrize("digits", [4, 20])
 @pytest.mark.parametrize("route", CLOSED_ROUTES)
-@pytest.mark.parametrize("name", by_turns([TINY, *SHIPPED], of=2))
+@pytest.mark.parametrize("name", by_turns([TINY, *SHIPPED]))
 def test_every_printed_digit_is_right(name: str, route: str, digits: int) -> None:
     """The digits are those of three times as many, in every component, however small it is."""
     shipped = load(name)

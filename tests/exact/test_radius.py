@@ -13,10 +13,9 @@ from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact import balls, taylor
+from taylor_verify.exact import balls, proving
 from taylor_verify.exact.printed import _printed, document
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import _distance
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 
@@ -70,23 +69,6 @@ def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits:
                 assert max(errors(row, sharp[other][k]).values()) <= room**2
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_routes_overlap_within_the_sum_of_their_radii(scene: str) -> None:
-    """Vector by vector and to the last bit held: no rounding of a print lies between."""
-    asked = load(scene)
-    elapsed = [Fraction(text) for text in TIMES]
-    motions = [solution(asked, route).motion(elapsed, 25) for route in ROUTES]
-    with mp.workdps(80):
-        for one in motions:
-            for other in motions:
-                for name in one.quantities:
-                    apart = [_distance(*pair) for pair in zip(one[name], other[name], strict=True)]
-                    sums = one.radius_of(name) + other.radius_of(name)
-                    # A radius is by the norm of the truth, which is within a radius of either norm.
-                    assert all(a <= s * (1 + s) for a, s in zip(apart, sums, strict=True))
-                    assert all(one.radius >= one.radius_of(name))
-
-
 def test_both_routes_in_balls_measure_alike() -> None:
     """The norm of the radii by the least norm that the balls allow, for vectors and for matrices."""
     with ctx.workprec(100):
@@ -94,13 +76,13 @@ def test_both_routes_in_balls_measure_alike() -> None:
         matrix = [*vector, *vector, *vector]
         for entries in (vector, matrix):
             width = balls.width(entries)
-            assert taylor._Size(0.0).radius(entries, 60) == (width, int(mp.mag(width)) + 60)
+            assert proving.Size(0.0).radius(entries, 60) == (width, int(mp.mag(width)) + 60)
             assert mpf("2e-21") <= width <= mpf("2.0001e-21")
     # Of a vector from which zero is not excluded no digit is known; far below its own size it is told.
     small = [arb(0, 1e-90), arb(0)]
     assert balls.width(small) == mp.inf
-    assert taylor._Size(0.0).radius(small, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
-    assert taylor._Size(0.0).radius([arb(0, 1e-30)], 60)[1] > 0
+    assert proving.Size(0.0).radius(small, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
+    assert proving.Size(0.0).radius([arb(0, 1e-30)], 60)[1] > 0
 
 
 @pytest.mark.parametrize("error", [0, mpf("1e-22"), mpf("1e-3")])

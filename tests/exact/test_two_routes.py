@@ -78,7 +78,7 @@ def closed_forms() -> list[str]:
     return scenes
 
 
-@pytest.mark.parametrize("name", closed_forms())
+@pytest.mark.parametrize("name", by_turns(closed_forms()))
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
     scene = load(name)

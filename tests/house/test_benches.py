@@ -27,7 +27,6 @@ from taylor_verify.scenes.library import find
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Postponed
-from taylor_verify.tradeoff.timing import LEAST_SECONDS
 
 PROCESSOR, COMMIT = "some processor", "1234567"
 ENOUGH = Target(2.5, "half as much again may be added")
@@ -76,25 +75,6 @@ def printed(measured: list[Measured], before: dict[str, Row]) -> str:
 
 
 # Taking
-
-
-def test_a_short_call_is_repeated_until_the_clock_can_tell() -> None:
-    """The cost is that of one unit, whatever the number of calls; what is given is not timed."""
-    time = Time()
-
-    def given() -> float:
-        time.now += 5
-        return LEAST_SECONDS / 40
-
-    def run(seconds: float) -> None:
-        time.now += seconds
-        time.order += "r"
-
-    action = Action(run, given, units=3, clock=time)
-    assert action.cost() == pytest.approx(LEAST_SECONDS / 120)
-    before = len(time.order)
-    assert action.cost() == pytest.approx(LEAST_SECONDS / 120)
-    assert len(time.order) - before >= 40
 
 
 def test_both_sides_have_a_turn_in_each_round() -> None:
@@ -197,24 +177,6 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
     assert not shipped.exists()
     assert bench.main(["--strict", "--keep"]) == 1
     assert last(shipped, processor())["invented/twice"].ratio == 3.0
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["nonsense"], "expected the beginning of a ratio's name (invented), got nonsense"),
-        (["--against", "/nowhere"], "expected a checkout of this project, got /nowhere"),
-        (["--processes", "0"], "expected a positive number, got 0"),
-    ],
-)
-def test_a_wrong_call_is_refused(
-    shipped: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
-) -> None:
-    """In one sentence, before anything is measured."""
-    with pytest.raises(SystemExit, match="2"):
-        bench.main(words)
-    assert message in capsys.readouterr().err
-    assert not shipped.exists()
 
 
 def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ OTHERS = {
     "solvers/engines/node.py": "scripts and locks of engines",
     "solvers/engines/script.py": "scripts of engines",
     "solvers/files/formats/binary.py": "members of an archive that is open",
+    "solvers/files/columns/programs.py": "a table of this package",
     "solvers/fmu/runner.py": "a pipe of its own process",
     "solvers/process/supervisor.py": "processes, by Linux",
     "solvers/taylor/cache.py": "files of the user's cache, whose kind and owner it checks by itself",

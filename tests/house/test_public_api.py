@@ -7,7 +7,7 @@ import pickle
 import subprocess
 import sys
 from types import FunctionType
-from typing import Any
+from typing import Any, get_type_hints
 
 import pytest
 from builders.turns import by_turns
@@ -24,10 +24,13 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.recommendation import recommend
 from taylor_verify_reports.claims.claim import Finding
 
-NAMES = [name for name in taylor_verify.__all__ if name != "__version__"]
+TYPES = [name for name in taylor_verify.__all__ if name[0].isupper()]
+NAMES = [name for name in taylor_verify.__all__ if name not in ("__version__", *TYPES)]
 FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
 PROMISED = {
     *("load", "exact", "solve", "run", "run_many", "check", "explain", "tradeoff", "recommend"),
+    *("certify", "enclose", "events"),
+    "sweep",
 }
 SCENES = ("euler/spherical", "euler/rest")
 
@@ -53,7 +56,7 @@ import importlib, pkgutil, types, taylor_verify
 for module in pkgutil.walk_packages(taylor_verify.__path__, "taylor_verify."):
     if not module.name.endswith("__main__") and ".outside" not in module.name:
         importlib.import_module(module.name)
-names = set(taylor_verify.__all__) - {"__version__"}
+names = {n for n in taylor_verify.__all__ if n[0].islower()}
 print(*sorted(n for n in names if type(getattr(taylor_verify, n)) is not types.FunctionType))
 """
 
@@ -86,10 +89,24 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
     loaded = set(program("import sys, taylor_verify; print(*sys.modules)").split())
     slow = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich", "dataclasses", "multiprocessing"}
     assert loaded.isdisjoint(slow)
-    beside = {"records", "records.version", "numbers", "numbers.working_precision"}
+    beside = {"records", "records.version", "numbers", "numbers.working_precision", "types"}
     assert {name for name in loaded if name.startswith("taylor_verify.")} == {
         function.__module__ for function in FUNCTIONS
     } | {f"taylor_verify.{name}" for name in beside}
+
+
+@pytest.mark.parametrize("name", TYPES)
+def test_a_type_is_exported_by_its_name(name: str) -> None:
+    """It is the class itself, and no module has another of this name."""
+    assert getattr(taylor_verify, name).__name__ == name
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
+def test_the_hints_of_a_function_are_types(function: FunctionType) -> None:
+    """`typing.get_type_hints` finds every name, as checkers of types at run time do."""
+    hints = get_type_hints(function)
+    assert hints.keys() == {*inspect.signature(function).parameters, "return"}
+    assert not any(isinstance(hint, str) for hint in hints.values())
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)

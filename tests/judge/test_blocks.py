@@ -21,7 +21,7 @@ from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors import measured
 from taylor_verify.judge.errors.state import Series
-from taylor_verify.records.doubles import Doubles, four_digits
+from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock
@@ -217,13 +217,6 @@ def numbers() -> Iterator[float]:
     yield from (1.0005, 1000.5, 1.2345, 9999.5, 99995.0, 0.00012345, 2.0**-53, 10.0, 1e22, 1e23)
     yield from (draw.randrange(10**5) / 10 ** draw.randrange(12) for _ in range(2000))
     yield from (math.ldexp(draw.random(), draw.randrange(-1070, 1020)) for _ in range(2000))
-
-
-def test_four_digits_are_those_that_are_written() -> None:
-    """Rounding many doubles at once gives what writing each of them gives."""
-    values = [sign * value for value in numbers() for sign in (1.0, -1.0)]
-    wanted = [float(f"{value:.4g}") for value in values]
-    np.testing.assert_array_equal(np.array(four_digits(values)), np.array(wanted))
 
 
 def test_doubles_are_like_a_tuple() -> None:

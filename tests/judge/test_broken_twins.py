@@ -10,9 +10,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import product
 from typing import Any
 
 import pytest
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact import rotation
@@ -40,7 +42,6 @@ GROSS = mpf(10) ** -3
 
 Patch = pytest.MonkeyPatch
 Twin = Callable[[Patch], None]
-both_routes = pytest.mark.parametrize("route", ["arb", "mpmath"])
 
 
 # One shipped scene of every regime in which something moves, everything tracked.
@@ -160,8 +161,7 @@ def _backward_floats(patch: Patch) -> None:
     patch.setattr(fixed_axis, "turn", lambda axis, angle: turn(axis, -angle))
 
 
-@both_routes
-@pytest.mark.parametrize("regime", REGIMES)
+@pytest.mark.parametrize(("regime", "route"), by_turns(product(REGIMES, ["arb", "mpmath"])))
 def test_the_sign_of_the_phase_is_seen_in_every_regime(
     regime: str, route: str, monkeypatch: Patch
 ) -> None:

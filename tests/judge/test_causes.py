@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -125,7 +126,7 @@ def uncoupled(n: Numbers) -> None:
             (LOADED, unloaded, "loads left out"),
             (LOADED, otherwise_loaded, "loads with the other sign"),
         ],
-        2,
+        3,
         lambda scene, change, name: scene,
     ),
 )
@@ -174,6 +175,17 @@ def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
     return -0.05 * w
 
 
+def single(i: int, j: int, k: int, power: int = 0) -> Rate:
+    """Kirchhoff's equations with one product of velocities more, or a power that no Coriolis term has."""
+
+    def rate(z: Array, q: Array, n: Numbers) -> Array:
+        nu = n.tensor @ z
+        term = 0.2 * nu[j] * nu[k] * np.abs(nu[k]) ** power
+        return weighted()(z, q, n) + term * np.eye(6)[i]
+
+    return rate
+
+
 @pytest.mark.parametrize(
     ("scene", "rate", "name"),
     by_turns(
@@ -189,13 +201,17 @@ def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
             (FLUID, weighted(gyroscopic=0), "no term y x W"),
             (FLUID, weighted(-1, -1, -1), "Coriolis terms with the other sign"),
             (FLUID, weighted(damping=0.02), "damping"),
+            (FLUID, single(0, 1, 5), "u2*w3 in force 1 (C_16)"),
+            (FLUID, single(3, 1, 2), "u2*u3 in couple 1 (C_42 or C_43)"),
+            (FLUID, single(4, 3, 5), "w1*w3 in couple 2 (C_54 or C_56)"),
+            (FLUID, single(0, 1, 5, power=1), None),
         ],
-        2,
+        4,
     ),
 )
-def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str) -> None:
-    """A term left out, of the other sign, or one too many has its name, and no other."""
-    assert set(causes(load(scene), simulated(load(scene), rate))) == {name}
+def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str | None) -> None:
+    """A term left out, of the other sign, or one too many has its name, and a near miss has none."""
+    assert set(causes(load(scene), simulated(load(scene), rate))) == {name} - {None}
 
 
 def test_the_sentence_has_the_number() -> None:
@@ -262,7 +278,8 @@ def test_wrong_kinematics_are_named(turn: Turn, name: str, rate: Rate) -> None:
                 {"omega is in space axes", "attitude is transposed"},
             ),
             (lambda c: scalar_last(conjugate(c)), {"attitude is scalar last and transposed"}),
-        ]
+        ],
+        5,
     ),
 )
 def test_conventions_are_named_beside_wrong_dynamics(
@@ -334,7 +351,7 @@ def one_down(sound: Columns) -> Columns:
     return {k: v if k == "t" else [v[0], *v[:-1]] for k, v in sound.items()}
 
 
-@pytest.mark.parametrize(("spoil", "row"), [(one_up, "k+1"), (one_down, "k-1")])
+@pytest.mark.parametrize(("spoil", "row"), by_turns([(one_up, "k+1"), (one_down, "k-1")], 2))
 def test_one_row_off_is_named(
     spoil: Callable[[Columns], Columns], row: str, tmp_path: Path
 ) -> None:
@@ -345,8 +362,12 @@ def test_one_row_off_is_named(
     assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
 
 
-@pytest.mark.parametrize(("count", "shift"), [(1601, 2), (1601, 4), (401, 1)])
-@pytest.mark.parametrize("sign", by_turns([1, -1], 2))
+@pytest.mark.parametrize(
+    ("sign", "count", "shift"),
+    by_turns(
+        [(1, 1601, 2), (-1, 1601, 2), (1, 1601, 4), (-1, 1601, 4), (-1, 401, 1), (1, 401, 1)], 4
+    ),
+)
 def test_rows_are_counted_in_the_file(sign: int, count: int, shift: int, tmp_path: Path) -> None:
     """A file of which every second row is examined, or that ends at its start, is off by its own rows."""
     every = [sign * Fraction(k, 200) for k in range(count + shift)]
@@ -417,15 +438,19 @@ def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
             assert not false_words(causes(other, runge_kutta(other, h, every)))
 
 
-@pytest.mark.parametrize("scene", [FLUID, LOADED, "kirchhoff/whole-motion"])
-@pytest.mark.parametrize(("method", "tolerance"), by_turns(SOUND, 2))
-def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, method: str, tolerance: float) -> None:
+@pytest.mark.parametrize(
+    ("scene", "sound"), by_turns(product([FLUID, LOADED, "kirchhoff/whole-motion"], SOUND), 5)
+)
+def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, sound: tuple[str, float]) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""
+    method, tolerance = sound
     columns = simulated(load(scene), method=method, tolerance=tolerance)
     assert not false_words(causes(load(scene), columns))
 
 
-@pytest.mark.parametrize("name", ["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
+@pytest.mark.parametrize(
+    "name", by_turns(["moser-veselov", "splitting", "implicit-midpoint", "lie-rk4"])
+)
 def test_a_geometric_method_has_no_cause(name: str) -> None:
     """A method that conserves much, and whose error is all along the orbit, is given no other body."""
     judgement = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")

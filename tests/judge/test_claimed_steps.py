@@ -28,8 +28,9 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.process import protocol
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Trajectory
 

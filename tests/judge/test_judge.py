@@ -26,7 +26,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
 
 

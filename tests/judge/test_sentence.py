@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
@@ -332,22 +331,3 @@ def test_of_many_runs_an_overview_follows_the_first_sentence(capsys: Captured) -
     rows = [line for line in text.splitlines() if line.startswith("fail  euler/")]
     assert rows
     assert all(re.match(r"fail  euler/\S+ f64 (omega|T|H2): ", line) for line in rows)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("width", [40, 60, 80, 100, 120])
-def test_no_number_is_cut_on_a_terminal(
-    width: int, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Every number of the piped table stands in that of a terminal, which has no ellipsis."""
-    file = write_csv(tmp_path / "rk4.csv", runge_kutta_4())
-    call = ["check", file, "--scene", SCENE]
-    main(call)
-    numbers = re.findall(r"\d[\d.e+-]*", capsys.readouterr().out.partition("quantity")[2])
-    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
-    monkeypatch.setenv("COLUMNS", str(width))
-    monkeypatch.setenv("TERM", "xterm")
-    main(call)
-    shown = re.sub(r"\x1b\[[0-9;]*[mK]", "", capsys.readouterr().out)
-    assert "…" not in shown
-    assert set(numbers) <= set(re.findall(r"\d[\d.e+-]*", shown))

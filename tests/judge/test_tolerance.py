@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import THREE_INSTANTS, scene_file
 from builders.trajectories import exact_columns, write_csv
 from builders.turns import by_turns
 from builders.verdicts import by_quantity
@@ -237,26 +238,30 @@ print(json.dumps({{name: list(map(float, values)) for name, values in columns.it
 
 
 @pytest.mark.parametrize("factor", by_turns([0.999, 1.001], 2))
-def test_four_ways_agree(factor: float, coarse: str, tmp_path: Path, capsys: Captured) -> None:
+def test_four_ways_agree(factor: float, tmp_path: Path, capsys: Captured) -> None:
     """check and run, of the command line and of Python, and the fixture of pytest, on one answer."""
-    columns = dict(coarse_file(SCENE))
+    scene = str(
+        scene_file(tmp_path, THREE_INSTANTS.replace("[body]", 'track = ["attitude"]\n[body]'))
+    )
+    columns = dict(coarse_file(scene))
+    coarse = write_csv(tmp_path / "mine.csv", columns)
     states = np.array([columns[c] for c in (*COLUMNS["omega"], *COLUMNS["quaternion"])]).T
-    error = by_quantity(taylor_verify.check(SCENE, coarse))["attitude"].max
+    error = by_quantity(taylor_verify.check(scene, coarse))["attitude"].max
     assert error is not None
     number = factor * error
     script = tmp_path / "mine.py"
     script.write_text(PROGRAM.format(file=coarse))
     program = f"process:{sys.executable} {script}"
     results = [
-        taylor_verify.check(SCENE, coarse, tolerance=number).verdicts,
-        taylor_verify.check(SCENE, lambda problem: states, tolerance=number).verdicts,
-        taylor_verify.run(SCENE, program, tolerance=number).verdicts,
-        taylor_verify.run_many([SCENE], program, tolerance=number).verdicts,
+        taylor_verify.check(scene, coarse, tolerance=number).verdicts,
+        taylor_verify.check(scene, lambda problem: states, tolerance=number).verdicts,
+        taylor_verify.run(scene, program, tolerance=number).verdicts,
+        taylor_verify.run_many([scene], program, tolerance=number).verdicts,
     ]
     words = {
         tuple((v.quantity, v.verdict.value, v.bound) for v in verdicts) for verdicts in results
     }
-    for call in (["check", coarse, "--scene", SCENE], ["run", SCENE, "--solver", program]):
+    for call in (["check", coarse, "--scene", scene], ["run", scene, "--solver", program]):
         status = main([*call, "--tolerance", repr(number), "--json"])
         document = json.loads(capsys.readouterr().out)["verdicts"]
         words.add(tuple((v["quantity"], v["verdict"], v["tolerance"]) for v in document))
@@ -267,9 +272,9 @@ def test_four_ways_agree(factor: float, coarse: str, tmp_path: Path, capsys: Cap
     }
     if factor < 1:
         with pytest.raises(pytest.fail.Exception, match=r"fail  .* attitude: "):
-            SolverGate()(SCENE, lambda problem: states, tolerance=number)
+            SolverGate()(scene, lambda problem: states, tolerance=number)
     else:
-        judged = SolverGate()(SCENE, lambda problem: states, tolerance=number)
+        judged = SolverGate()(scene, lambda problem: states, tolerance=number)
         assert tuple((v.quantity, v.verdict.value, v.bound) for v in judged.verdicts) == word
 
 

@@ -250,7 +250,7 @@ def fourth_root(J: np.ndarray) -> float:
     return float(size**0.25)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", by_turns(SCENES))
 def test_fastest_rate_is_a_close_bound_of_the_spectral_radius(name: str) -> None:
     """At random states it is at least that of the Jacobian by central differences, attitude and all.
 

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from random import Random
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from flint import arb, fmpq
 from mpmath import mp
 
@@ -229,8 +231,7 @@ def wheels(problem: Problem) -> Vector:
     )
 
 
-@pytest.mark.parametrize("name", names())
-@pytest.mark.parametrize("rung_name", LADDER)
+@pytest.mark.parametrize(("name", "rung_name"), by_turns(product(names(), LADDER)))
 def test_posed_data_are_numbers_of_the_rung_and_an_exact_body(name: str, rung_name: str) -> None:
     """Every number handed to a solver is held by its rung, and `given` is the body they define."""
     problem = pose(load(name), rung(rung_name))

@@ -1,4 +1,4 @@
-"""Pictures: every solver is told from the others, nothing false is joined, no name hides another."""
+"""Pictures: every solver is told from the others, nothing false is joined, every line has a name."""
 
 import subprocess
 import sys
@@ -13,12 +13,11 @@ from xml.etree import ElementTree
 
 import matplotlib
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from taylor_verify.plotting.palette import INK, QUIET, contrast, for_text, lightness
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture, plotting, save
 from taylor_verify.plotting.style import (
     KINDS,
@@ -129,26 +128,25 @@ def test_every_family_has_its_own_colour_and_marker() -> None:
     assert len(pairs) == len(styles) >= 24
 
 
+def luminance(colour: str) -> float:
+    """The relative luminance of WCAG 2, 0 black to 1 white."""
+    parts = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    linear = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(colour: str) -> float:
+    """The contrast of WCAG 2 with paper, from 1 to 21."""
+    return (luminance(PAPER) + 0.05) / (luminance(colour) + 0.05)
+
+
 def test_lines_and_text_stand_out_from_paper() -> None:
     """Lines have the contrast of 3 and text that of 4.5, which WCAG 2.1 asks for (1.4.11, 1.4.3)."""
     names = [*OTHERS, *(f"unknown {i}" for i in range(50))]
     colours = {look_of(name, "f64").colour for name in names}
     colours |= {look_of_rung(rung).colour for rung in RUNGS}
     assert all(contrast(colour) >= 3 for colour in colours)
-    assert all(contrast(for_text(colour)) >= 4.5 for colour in colours)
     assert min(contrast(INK), contrast(QUIET)) >= 4.5
-
-
-@pytest.mark.parametrize(
-    ("colour", "light", "against_white"),
-    [("#FFFFFF", 100, 1), ("#000000", 0, 21), ("#777777", 50.0, 4.48), ("#FF0000", 53.2, 4.0)],
-)
-def test_lightness_and_contrast_are_those_of_the_standards(
-    colour: str, light: float, against_white: float
-) -> None:
-    """L of CIE 1976 and the contrast of WCAG 2, at values that are published to so many decimals."""
-    assert lightness(colour) == pytest.approx(light, abs=0.05)
-    assert contrast(colour) == pytest.approx(against_white, abs=0.005)
 
 
 @pytest.mark.parametrize(
@@ -304,52 +302,24 @@ def plain_picture() -> Picture:
     return trade.pictures(document(family("taylor f64", "f64", 0.01, 9.0)))[0]
 
 
-def boxes(figure: Figure) -> list[tuple[Any, Any]]:
-    renderer = FigureCanvasAgg(figure).get_renderer()
-    return [
-        (axes, text.get_window_extent(renderer))
-        for axes in figure.axes
-        for text in axes.texts
-        if text.get_gid() == "name"
-    ]
-
-
-def assert_names_are_apart(figure: Figure) -> None:
-    placed = boxes(figure)
-    for axes, box in placed:
-        frame = axes.get_window_extent()
-        assert frame.x0 <= box.x0 <= box.x1 <= frame.x1
-        assert frame.y0 <= box.y0 <= box.y1 <= frame.y1
-    for (axes, one), (other_axes, other) in combinations(placed, 2):
-        assert axes is not other_axes or not one.overlaps(other)
+def names_in(axes: Axes) -> set[str]:
+    """Return the names in the legend of a panel, or in a strip above one."""
+    legend = axes.get_legend()
+    return {text.get_text() for text in (*axes.texts, *(legend.get_texts() if legend else ()))}
 
 
 @pytest.mark.parametrize("name", ["time", "evaluations"])
-def test_no_name_overlaps_another(crowded: dict, name: str) -> None:
-    """All solvers have names in their panels, and no two names touch."""
-    assert_names_are_apart(crowded[name])
-    written = {text.get_text() for axes in crowded[name].axes for text in axes.texts}
+def test_every_line_is_named(crowded: dict, name: str) -> None:
+    """All solvers have names in their panels."""
+    written = {text for axes in crowded[name].axes for text in names_in(axes)}
     for series in series_of(many(), "seconds"):
         assert {series.family, series.label} & written
-
-
-@given(st.lists(st.tuples(st.floats(1, 12), st.floats(0, 4)), min_size=2, max_size=12))
-@settings(max_examples=8, deadline=None)
-def test_names_keep_apart_wherever_the_points_are(places: list[tuple[float, float]]) -> None:
-    """Twelve solvers of one point each, however close, have names that do not touch."""
-    rows = [
-        row(f"solver {i}", "f64", 1e-6, 10**-digits, seconds=10**-time)
-        for i, (digits, time) in enumerate(places)
-    ]
-    assert_names_are_apart(
-        next(figure for name, figure in figures(document(rows)) if name == "time")
-    )
 
 
 @pytest.mark.parametrize(
     ("kinds", "panels"),
     [
-        (["scipy"], 1),
+        pytest.param(["scipy"], 1, marks=pytest.mark.slow),
         pytest.param(["taylor", "scipy"], 2, marks=pytest.mark.slow),
         (["taylor", "scipy", "geometric"], 3),
     ],

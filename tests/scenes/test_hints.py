@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from taylor_verify.records.faults import Refused
@@ -62,7 +64,7 @@ TRIED = [
     *(("kirchhoff", "body", key, "write `weight = {") for key in ("gravity", "cob")),
     ("kirchhoff", "body", "drag", '"-20*u1 - 130*abs(u1)*u1"'),
     ("kirchhoff", "body", "thrust", "text in t and the state"),
-    ("kirchhoff", "body", "flow", "write `current`"),
+    ("kirchhoff", "body", "flow", "write `current = ["),
     ("kirchhoff", "body", "torque", "`couple`"),
     ("kirchhoff", "body", "linear_damping", "write `damping`"),
     ("kirchhoff", "initial", "velocity", "`linear_velocity`"),
@@ -86,13 +88,24 @@ TRIED = [
     ("euler", "time", "dt", "`samples`"),
     ("euler", "", "gravity", "`weight`"),
     ("euler", "", "tolerance", "holds no tolerance"),
+    *(("kirchhoff", "body", key, "buoyancy = {") for key in ("W", "B", "cg", "cb")),
+    *(("kirchhoff", part, "wind", "write `current = [") for part in ("", "body")),
+    *(("euler", part, "magnetic", "m2*b3 - m3*b2") for part in ("", "body")),
+    *(("euler", part, "gravity_gradient", "(I33 - I22)*o2*o3") for part in ("", "body")),
+    ("euler", "", "drag", "-0.1*abs(w1)*w1"),
+    ("euler", "", "inertia", "write `inertia` in [body]"),
+    ("euler", "body", "omega", "it stands in [initial]"),
+    ("euler", "body", "samples", "write `samples` in [time]"),
+    ("kirchhoff", "time", "couple", "write `couple` in [body]"),
+    ("kirchhoff", "initial", "track", "write `track` at the top"),
 ]
 
 
 @pytest.mark.parametrize(("model", "part", "key", "fragment"), TRIED)
 def test_a_key_that_people_try_is_answered(model: str, part: str, key: str, fragment: str) -> None:
     """The key is refused at its place, in whatever letters, and the sentence in brackets helps."""
-    for spelling in (key, key.upper()):
+    in_place = f"write `{key}`" in fragment
+    for spelling in (key,) if in_place else (key, key.upper()):
         line = refusal(model, part, spelling)
         place = f"{part}.{spelling}" if part else spelling
         assert line.startswith(f"expected a known key, got `{spelling}` @ {place} (")
@@ -111,3 +124,44 @@ def test_no_sentence_is_for_a_key_that_is_read(part: str, model: str) -> None:
     assert keys
     assert not KNOWN[part, model].intersection(keys)
     assert all(key == key.lower() for key in keys)
+
+
+WRITTEN = [
+    *(("kirchhoff", key) for key in ("W", "magnetic", "drag", "wind")),
+    *(("euler", key) for key in ("W", "magnetic", "drag", "gravity_gradient")),
+]
+
+
+@pytest.mark.parametrize(("model", "key"), WRITTEN)
+def test_the_lines_of_a_sentence_are_read(model: str, key: str) -> None:
+    """What a sentence says to write is a part of a scene, with names from the tables that it says."""
+    lines = [line for line in re.findall("`([^`]+)`", refusal(model, "body", key)) if " = " in line]
+    space = [line for line in lines if line[0] in "ob" and line[1] == " "]
+    body = [line for line in lines if line not in space and not line.startswith("model")]
+    assert body
+    text = "\n".join(
+        [
+            *('title = "x"', f'model = "{model}"', "[body]", BODIES[model], *body),
+            *("[define]", "n = 1", "m1 = 1", "m2 = 2", "m3 = 3", "[space]", *space),
+            *("[initial]", STARTS[model], "[time]", "end = 1", "samples = 2"),
+        ]
+    )
+    assert read(text, "a test").body.loads is not None or "current" in body[0]
+
+
+def test_a_quaternion_with_its_scalar_last_is_written_the_other_way_round() -> None:
+    """The sentence has the four numbers in the order of a scene."""
+    text = (
+        f'title = "x"\nmodel = "euler"\n[body]\n{BODIES["euler"]}\n[initial]\n{STARTS["euler"]}\n'
+    )
+    text += "quaternion = [0.1, 0.2, 0.3, 0.9]\n[time]\nend = 1\nsamples = 2\n"
+    with pytest.raises(Refused, match=r"`attitude = \[0\.9, 0\.1, 0\.2, 0\.3\]`"):
+        read(text, "a test")
+
+
+def test_a_unit_is_refused_with_the_number_to_write() -> None:
+    """Units are read for angular velocities alone."""
+    text = 'title = "x"\nmodel = "euler"\n[body]\ninertia = ["1 kg m^2", 2, 3]\n'
+    text += f"[initial]\n{STARTS['euler']}\n"
+    with pytest.raises(Refused, match=r"write 1, if kg m\^2 is its unit"):
+        read(text + "[time]\nend = 1\nsamples = 2\n", "a test")

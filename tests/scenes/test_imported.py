@@ -511,6 +511,164 @@ def test_a_pipe_is_never_opened(tmp_path: Path) -> None:
         import_scene(tmp_path / "pipe.urdf")
 
 
+# Plugins: what acts on a link beside its inertia
+
+
+def plugged(link: str = "", model: str = "", world: str = "") -> str:
+    """An SDF with a hull whose axes are turned and moved in the model, and a propeller behind it."""
+    return f"""<sdf version="1.9"><world name="w">{world}<model name="auv">
+  <link name="hull"><pose>0 0 1 0 0 0</pose><inertial><mass>4</mass><pose>0 0 -0.5 0 0 0</pose>
+    <inertia><ixx>1</ixx><iyy>2</iyy><izz>2.5</izz></inertia>{link}</inertial>
+    <collision name="c"><pose>0 0 0.25 0 0 0</pose>
+      <geometry><box><size>1 0.5 0.25</size></box></geometry></collision></link>
+  <link name="prop"><pose degrees="false">-1 0.5 1 0 0 0</pose></link>
+  <joint name="shaft" type="revolute"><parent>hull</parent><child>prop</child>
+    <axis><xyz>0 0 2</xyz></axis></joint>{model}</model></world></sdf>"""
+
+
+def hydrodynamics(content: str) -> str:
+    name = 'name="gz::sim::systems::Hydrodynamics" filename="gz-sim-hydrodynamics-system"'
+    return f"<plugin {name}><link_name>hull</link_name>{content}</plugin>"
+
+
+def underwater(content: str, end: str = "<volume>0.004</volume>") -> str:
+    return f"""<robot name="r"><link name="r/base"><inertial>{UNIT}</inertial></link><gazebo><plugin
+name="u" filename="libuuv_underwater_object_ros_plugin.so"><fluid_density>1000</fluid_density>
+<link name="r/base">{end}<center_of_buoyancy>0 0 0.1</center_of_buoyancy>
+<hydrodynamic_model><type>fossen</type>{content}</hydrodynamic_model></link></plugin></gazebo></robot>"""
+
+
+UUV_MASS = (
+    "<added_mass>1 0 0 0 .5 0 "
+    "0 2 0 .25 0 0 0 0 3 0 0 0 0 .25 0 1 0 0 .5 0 0 0 1 0 0 0 0 0 0 1</added_mass>"
+)
+BUOYANCY = (
+    '<plugin name="gz::sim::systems::Buoyancy">'
+    "<uniform_fluid_density>1000</uniform_fluid_density></plugin>"
+)
+THRUSTER = '<plugin name="gz::sim::systems::Thruster"><joint_name>shaft</joint_name></plugin>'
+# What a file has, and the line of the scene that says it.
+ACTING = {
+    "added mass is minus a derivative": (
+        plugged(model=hydrodynamics("<xDotU>-5</xDotU>")),
+        "  [9, 0, 0, 0, -2, 0],",
+    ),
+    "drag along": (
+        plugged(model=hydrodynamics("<xUabsU>-6.5</xUabsU><xU>2</xU><xVW>-1</xVW>")),
+        'force = ["-6.5*abs(u1)*u1 + 2*u1 - u3*u2", "0", "0"]',
+    ),
+    "drag about": (
+        plugged(model=hydrodynamics("<nRabsQ>-3</nRabsQ>")),
+        'couple = ["0", "0", "-3*abs(w2)*w3"]',
+    ),
+    "a current": (
+        plugged(model=hydrodynamics("<default_current>1 0 -2</default_current>")),
+        "current = [1, 0, -2]",
+    ),
+    "a weight": (plugged(world=BUOYANCY), "weight = { force = [0, 0, -39.2], at = [0, 0, -0.5] }"),
+    "a gravity of the world": (
+        plugged(world=f"<gravity>0 0 -2</gravity>{BUOYANCY}"),
+        "weight = { force = [0, 0, -8], at = [0, 0, -0.5] }",
+    ),
+    "a volume": (plugged(world=BUOYANCY), "buoyancy = { force = [0, 0, 1225], at = [0, 0, 0.25] }"),
+    "a thruster": (plugged(model=THRUSTER), 'force = ["0", "0", "thrust1"]'),
+    "its arm": (plugged(model=THRUSTER), 'couple = ["0.5*thrust1", "thrust1", "0"]'),
+    "uuv, x with pitch": (underwater(UUV_MASS), "  [2, 0, 0, 0, -0.5, 0],"),
+    "uuv, y with roll": (underwater(UUV_MASS), "  [0, 3, 0, -0.25, 0, 0],"),
+    "uuv, damping": (
+        underwater(
+            "<linear_damping>-1 -2 0 0 0 0</linear_damping>"
+            "<quadratic_damping>-3 0 0 0 0 0</quadratic_damping>"
+        ),
+        'force = ["-u1 - 3*abs(u1)*u1", "-2*u2", "0"]',
+    ),
+    "uuv, buoyancy": (
+        underwater(UUV_MASS),
+        "buoyancy = { force = [0, 0, 39.24], at = [0, 0, 0.1] }",
+    ),
+    "uuv, neutral": (
+        underwater(UUV_MASS, "<neutrally_buoyant>1</neutrally_buoyant>"),
+        "buoyancy = { force = [0, 0, 9.81], at = [0, 0, 0.1] }",
+    ),
+}
+
+
+@pytest.mark.parametrize(("content", "line"), ACTING.values(), ids=ACTING)
+def test_what_acts_on_a_link_stands_in_its_scene(content: str, line: str, tmp_path: Path) -> None:
+    """Each number of a plugin has its sign and its place in a scene that is read without a fault."""
+    (tmp_path / "auv.sdf").write_text(content)
+    link = "hull" if "hull" in content else None
+    written = import_scene(tmp_path / "auv.sdf", link)
+    assert line in written.text.splitlines()
+    assert read(written.text, "imported").model == "kirchhoff"
+    assert not written.warnings
+
+
+DRY = {
+    "two added masses": (
+        plugged(
+            "<fluid_added_mass><xx>5</xx></fluid_added_mass>", hydrodynamics("<xDotU>-5</xDotU>")
+        ),
+        "counts it twice",
+    ),
+    "one that is switched off": (
+        plugged(model=hydrodynamics("<xDotU>-5</xDotU><disable_added_mass>1</disable_added_mass>")),
+        "the added mass is not in the scene",
+    ),
+    "one of another link": (
+        plugged(model=hydrodynamics("<xDotU>-5</xDotU>").replace("hull", "prop")),
+        "about another link than auv::hull",
+    ),
+    "one of another plugin": (
+        plugged(model='<plugin name="vrx::SimpleHydrodynamics"><xDotU>5</xDotU></plugin>'),
+        "vrx::SimpleHydrodynamics of line 8 acts on bodies and is left out (it has xDotU)",
+    ),
+    "a mesh that floats": (
+        plugged(world=BUOYANCY).replace("<box><size>1 0.5 0.25</size></box>", "<mesh/>"),
+        "weight and buoyancy are left out",
+    ),
+    "a thruster of no joint": (
+        plugged(model=THRUSTER.replace("shaft", "rudder")),
+        "write its thrust as text in `force`",
+    ),
+    "a type of its own": (
+        underwater(UUV_MASS).replace("fossen", "sphere"),
+        "the type sphere itself: they are left out",
+    ),
+    **{
+        f"MuJoCo's {key}": (
+            mjcf(full(I)).replace("<worldbody>", f'<option {key}="{value}"/><worldbody>'),
+            f"MuJoCo's {key} = ",
+        )
+        for key, value in {"density": "1.2", "viscosity": "2e-5", "wind": "0 1 0"}.items()
+    },
+    "MuJoCo's shapes": (
+        mjcf(full(I)).replace("<geom type", '<geom fluidshape="ellipsoid" type'),
+        "MuJoCo's fluidshape",
+    ),
+}
+
+
+@pytest.mark.parametrize(("content", "sentence"), DRY.values(), ids=DRY)
+def test_what_is_left_out_is_warned_of(
+    content: str, sentence: str, tmp_path: Path, capsys: Captured
+) -> None:
+    """The warning is printed with status 0, and stands in the scene and in `--json`."""
+    (tmp_path / "auv.sdf").write_text(content)
+    link = ["--link", "hull"] if "hull" in content else []
+    assert main(["scene", "from", str(tmp_path / "auv.sdf"), *link]) == 0
+    out, error = capsys.readouterr()
+    assert "warning: " in error
+    assert sentence in error
+    assert sentence in " ".join(out.replace("\n# ", " ").split())
+
+
+def test_an_added_mass_that_is_not_symmetric_is_refused(tmp_path: Path) -> None:
+    """No energy of a fluid has such a matrix."""
+    content = plugged(model=hydrodynamics("<xDotV>-1</xDotV>"))
+    assert "a symmetric added mass" in str(refusal(tmp_path, content, "hull"))
+
+
 # The verb
 
 

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
+from itertools import product
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 
 import taylor_verify
-from taylor_verify.batch.differences import Direction, compare
-from taylor_verify.cli import main
-from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
 
 SCENES = ["euler/generic", "euler/later-start", "euler/full-tensor", "kirchhoff/whole-motion"]
@@ -51,8 +48,7 @@ def last_moved(rows: Rows) -> Rows:
     return moved
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("on", ["f32", "f64", "mp237"])
+@pytest.mark.parametrize(("scene", "on"), by_turns(product(SCENES, ["f32", "f64", "mp237"]), 5))
 def test_a_sound_run_starts_where_it_was_told(scene: str, on: str) -> None:
     """The first row of every run is that of the start, and passes."""
     first, *others = run(scene, "taylor", on).verdicts
@@ -94,37 +90,6 @@ def test_a_run_that_is_not_asked_at_its_start_has_no_such_row() -> None:
     scene = load("euler/generic")
     late = replace(scene, clock=Clock(scene.clock.start, scene.clock.instants[1:]))
     assert INITIAL not in {verdict.quantity for verdict in run(late).verdicts}
-
-
-def rows(judgement: Judgement) -> list[Verdict]:
-    return list(judgement.verdicts)
-
-
-def test_older_rows_without_it_are_compared_in_an_orderly_way() -> None:
-    """The row is a new one, which is no regression; published rows have to be made anew."""
-    now = rows(run("euler/generic"))
-    before = now[1:]
-    compared = compare(before, now)
-    (new,) = compared.all
-    assert (new.quantity, new.direction) == (INITIAL, Direction.CHANGED)
-    assert compared.compared == len(before)
-
-
-def test_a_start_that_got_worse_is_a_regression() -> None:
-    """With the row in the baseline a start that is wrong now has regressed."""
-    before = rows(taylor_verify.check("euler/generic", answered(lambda motion: motion)))
-    now = rows(taylor_verify.check("euler/generic", answered(first_moved)))
-    assert INITIAL in {worse.quantity for worse in compare(before, now).towards(Direction.WORSE)}
-
-
-@pytest.mark.heyoka
-def test_it_is_published(tmp_path: Path) -> None:
-    """What `run --out` writes has the row, and can be held against itself."""
-    out = str(tmp_path / "out")
-    call = ["run", "euler/generic", "kirchhoff/screw", "--rung", "f64"]
-    assert main([*call, "--out", out]) == 0
-    assert main([*call, "--against", out]) == 0
-    assert INITIAL in (tmp_path / "out" / "data" / "verdicts.json").read_text()
 
 
 def test_a_callback_of_the_exact_start_passes_with_no_error() -> None:

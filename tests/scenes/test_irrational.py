@@ -94,7 +94,7 @@ OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(NUMBER, NUMBER | COEFFICIENT | st.integers(-9, 9))
 def test_arithmetic_is_that_of_mpmath(operation: Callable[..., Any], a: Any, b: Any) -> None:
     """Results agree to 60 digits of the larger operand, with rationals on either side too."""

@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.exact.balls import ball
-from taylor_verify.explain.explanation import explanation
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -151,16 +150,15 @@ def test_the_vehicle_that_is_shipped_is_the_remus_with_its_centre_of_mass_below(
     assert v == tuple(map(Fraction, ("1.5", "-0.1", "0", "0", "0", "0.2")))
 
 
-def test_explain_shows_the_inverse_and_says_that_it_is_exact() -> None:
+def test_the_inverse_is_noted_and_said_to_be_exact() -> None:
     """The body of a mass matrix is told with the six rows of its inverse, and how the start was formed."""
     scene = load("kirchhoff/auv-turn")
-    body = explanation(scene, "f64")["body"]
-    assert "its inverse" in body[0]
-    assert "exactly, in rationals" in body[0]
+    assert "its inverse" in scene.notes[0]
+    assert "exactly, in rationals" in scene.notes[0]
     rows = solid(scene).energy_matrix
     for i, row in enumerate(rows, 1):
-        assert f"Row {i} of the inverse: {', '.join(map(float_text, row))}." in body
-    assert "(x, y) = M (U, Omega) are formed exactly" in body[-1]
+        assert f"Row {i} of the inverse: {', '.join(map(float_text, row))}." in scene.notes
+    assert "(x, y) = M (U, Omega) are formed exactly" in scene.notes[-1]
 
 
 def test_a_body_by_its_coefficients_has_nothing_to_note() -> None:

@@ -21,8 +21,8 @@ _OPTIONS = (
 
 
 def pytest_ignore_collect(config: pytest.Config) -> bool | None:
-    """Collect these tests only with `-m browser`."""
-    return None if config.getoption("-m") == "browser" else True
+    """Collect these tests only where `-m` names them."""
+    return None if "browser" in config.getoption("-m") else True
 
 
 @pytest.fixture(scope="session")

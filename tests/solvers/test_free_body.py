@@ -15,8 +15,8 @@ from builders.oblique import BACKWARDS, oblique
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.process import protocol
-from taylor_verify.solvers.solver import Callback
 from taylor_verify.tradeoff.accuracy import Truth
 
 

@@ -30,9 +30,9 @@ from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.process.process import named
-from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.trajectory import Outcome
 
 NAMES = library.names("manufactured")

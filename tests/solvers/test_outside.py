@@ -213,7 +213,7 @@ def test_a_question_beyond_the_equations_is_refused_in_a_sentence(
 
 
 def error(asked: Problem, answer: protocol.Answer) -> float:
-    from taylor_verify.solvers.solver import Callback
+    from taylor_verify.solvers.callback import Callback
 
     return Truth(asked).accuracy(Callback(lambda _: answer.states).solve(asked)).worst
 

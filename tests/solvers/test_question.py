@@ -120,7 +120,7 @@ def test_the_template_filled_in_passes(
     """`question --csv` with the exact motion in its cells is a file that `check` takes as it is."""
     assert main(["question", name, "--csv"]) == 0
     out, stderr = capsys.readouterr()
-    assert f"taylor-verify check FILE --scene {name}" in stderr
+    assert stderr == ""
     header, *rows = list(csv.reader(io.StringIO(out)))
     scene = load(name)
     instants = pose(scene, rung("f64")).given.clock.instants

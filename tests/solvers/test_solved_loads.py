@@ -5,10 +5,12 @@ from __future__ import annotations
 import pickle
 from collections.abc import Mapping
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.turns import by_turns
 from builders.written_loads import euler, kirchhoff
 from mpmath import mp, mpf
 
@@ -17,10 +19,10 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.engines.engine import Outside
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify.solvers.registry import solver_named, solver_names
-from taylor_verify.solvers.solver import Callback
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 SPACE = """
@@ -87,8 +89,9 @@ def test_taylor_loses_a_few_roundings(name: str) -> None:
     assert error(SMOOTH[name], "taylor", "f64") < 1e-14
 
 
-@pytest.mark.parametrize("name", ["f32", "f80", "f128", "mp237"])
-@pytest.mark.parametrize("scene", ["thrusters", "orbit"])
+@pytest.mark.parametrize(
+    ("scene", "name"), by_turns(product(["thrusters", "orbit"], ["f32", "f80", "f128", "mp237"]))
+)
 def test_every_rung_has_its_own_digits(scene: str, name: str) -> None:
     """One compiled form serves all bodies: numbers are parameters of the rung's own type."""
     if missing := solver_named("taylor").unavailable(rung(name)):
@@ -96,8 +99,9 @@ def test_every_rung_has_its_own_digits(scene: str, name: str) -> None:
     assert error(SMOOTH[scene], "taylor", name) < 50 * mpf(2) ** -rung(name).bits
 
 
-@pytest.mark.parametrize("name", ["f64", "mp237"])
-@pytest.mark.parametrize("scene", KINKED)
+@pytest.mark.parametrize(
+    ("scene", "name"), by_turns(product(KINKED, ["f64", "mp237"]), 3, lambda scene, name: scene)
+)
 def test_kinks_are_crossed_at_full_precision(scene: str, name: str) -> None:
     """Forwards and backwards, and from a start that lies on the kink."""
     assert error(KINKED[scene], "taylor", name) < 50 * mpf(2) ** -rung(name).bits
@@ -157,8 +161,7 @@ def swing(moment: str) -> Problem:
     return pose(read(SWING.replace("MOMENT", moment), "swing"), rung("f64"))
 
 
-@pytest.mark.parametrize("rung_name", ["f64", "mp237"])
-@pytest.mark.parametrize("name", LENGTHS)
+@pytest.mark.parametrize(("name", "rung_name"), by_turns(product(LENGTHS, ["f64", "mp237"]), 3))
 def test_a_length_with_one_part_is_a_kink(name: str, rung_name: str) -> None:
     """As a root its series would be wrong by 2e-8 on the other side, without any sign."""
     assert error(LENGTHS[name], "taylor", rung_name) < 50 * mpf(2) ** -rung(rung_name).bits

@@ -17,8 +17,9 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import natural_units
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.solver import Callback, columns
+from taylor_verify.solvers.solver import columns
 from taylor_verify.solvers.trajectory import Outcome
 
 WHEELS = """

@@ -30,7 +30,7 @@ from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback
+from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor import driver, way
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.numbers import arithmetic

@@ -9,7 +9,7 @@ from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
 from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
 
 
-@pytest.mark.parametrize("kind", by_turns([*KINDS], 7), ids=lambda kind: kind.name)
+@pytest.mark.parametrize("kind", by_turns([*KINDS], 14), ids=lambda kind: kind.name)
 def test_no_word_is_false(kind: Kind) -> None:
     """No sentence on an answer with a known fault names another fault."""
     (named,) = measured(seed=20, count=1, kinds=[kind])

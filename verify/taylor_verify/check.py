@@ -2,72 +2,86 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
+from taylor_verify import types
 from taylor_verify.numbers.working_precision import in_turn
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.series.files import FilesJudgement
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
-    from taylor_verify.models.problem import Problem
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
-
 
 @overload
 def check(
-    scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
-    rung: Rung | str = "f64",
+    scene: types.Scene | str | PathLike[str],
+    solve_or_file: Callable[[types.Problem], Any] | str | PathLike[str] | Any,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
-) -> Judgement: ...
+) -> types.Judgement: ...
 @overload
 def check(
-    scene: Scene | str | PathLike[str],
-    solve_or_file: list[Any] | tuple[Any, ...],
-    rung: Rung | str = "f64",
+    scene: types.Scene | str | PathLike[str],
+    solve_or_file: Any,
+    rung: types.Rung | str = "f64",
+    *,
+    tolerance: types.Tolerances | types.Tolerance = None,
+    event: str,
+) -> types.EventsJudgement: ...
+@overload
+def check(
+    scene: list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[types.Problem], Any] | types.Solver | str,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
+    columns: Mapping[str, str] | None = None,
+) -> types.Judgements: ...
+@overload
+def check(
+    scene: types.Scene | str | PathLike[str],
+    solve_or_file: list[Any] | tuple[Any, ...],
+    rung: types.Rung | str = "f64",
+    accept_conventions: bool = False,
+    partial: bool = False,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
     knob: str = "",
-) -> FilesJudgement: ...
+) -> types.FilesJudgement: ...
 @in_turn
 def check(
-    scene: Scene | str | PathLike[str],
-    solve_or_file: Callable[[Problem], Any] | str | PathLike[str] | Any,
-    rung: Rung | str = "f64",
+    scene: types.Scene | str | PathLike[str] | list[Any] | tuple[Any, ...],
+    solve_or_file: Callable[[types.Problem], Any] | types.Solver | str | PathLike[str] | Any,
+    rung: types.Rung | str = "f64",
     accept_conventions: bool = False,
     partial: bool = False,
-    tolerance: Tolerances | Tolerance = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
     columns: Mapping[str, str] | None = None,
     *,
     steps: Sequence[float] | None = None,
     knob: str = "",
-) -> Judgement:
+    event: str | None = None,
+) -> types.Judgement | types.Judgements | types.EventsJudgement:
     """Judge your own solver, a trajectory file, or a trajectory in memory, on a scene.
 
     Parameters
     ----------
     scene
-        A Scene, a path, or the name of a shipped scene.
+        A Scene, a path, or the name of a shipped scene; or a list of these for a callable, which is then
+        judged on all cores as by `run_many`.
     solve_or_file
-        A callable ``solve(problem) -> states``, the path of a trajectory file, a trajectory in memory, or a
-        list of these: answers of one solver at several steps. States have the shape (samples, n): row k is
-        the state at ``problem.given.clock.instants[k]``. Its columns are omega, q0..q3 or x, y, q0..q3,
-        centre, untracked groups absent, in the scene's own units; ``problem.given`` holds the exact body,
-        start and instants. A file is CSV, NPZ, Parquet, JSON or another of
-        solvers.files.formats.reading. In memory it is a pandas or polars DataFrame, an
-        xarray Dataset, a dict of arrays such as
+        A callable ``solve(problem)``, ``python:package.module:function``, the path of a trajectory file, a
+        trajectory in memory, or a list of these: answers of one solver at several steps. A callable returns
+        states of the shape (samples, n): row k is the state at ``problem.given.clock.instants[k]``. Its
+        columns are omega, q0..q3 or x, y, q0..q3, centre, untracked groups absent, in the scene's own
+        units; ``problem.given`` holds the exact body, start and instants. It may also return (t, y),
+        SciPy's OdeResult, a dense output, which is sampled, or a trajectory in memory. A file is CSV,
+        NPZ, Parquet, JSON or another of solvers.files.formats.reading. In memory it is a pandas or polars
+        DataFrame, an xarray Dataset, a dict of arrays such as
         ``{"t": t, "omega": (n, 3), "attitude": (n, 3, 3), (n, 4) or a scipy Rotation}``, or SciPy's
         OdeResult, whose states are in the order above (solvers.files.objects). Numbers are taken exactly.
     rung
@@ -89,13 +103,18 @@ def check(
     knob
         What differs between the answers of a list in place of the step, such as ``"rtol"``: its number is
         read in the names of the files (``run_rtol1e-6.csv``).
+    event
+        Judge the times of this event in place of the states: ``"w2 = 0"``, as in `events`. The answer is
+        then a list of times, an OdeResult with the ``t_events`` of one event, or a file with a column or
+        list ``events``.
 
     Returns
     -------
     judge.judgement.Judgement
         The verdicts and their record. That of a file is a judge.files.judgement.FileJudgement, which has
         the conventions of the file that are not the scene's; that of a list a
-        judge.series.files.FilesJudgement, which has the order of convergence of each quantity.
+        judge.series.files.FilesJudgement, which has the order of convergence of each quantity. With
+        ``event`` it is a judge.events.EventsJudgement: answered, missed and invented times.
 
     Raises
     ------
@@ -105,32 +124,65 @@ def check(
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
         `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
-    if callable(solve_or_file):
+    answer: Any = solve_or_file
+    if event is not None:
+        return _of_events(scene, answer, event, rung, tolerance)
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.solvers.registry import PYTHON
+    from taylor_verify.solvers.solver import Solver
+
+    is_named = isinstance(answer, str) and answer.startswith(PYTHON)
+    if callable(answer) or is_named or isinstance(answer, Solver):
         if columns:
             raise ValueError("expected `columns` with a trajectory, got them with a callable")
-        from taylor_verify.run import run
-        from taylor_verify.solvers.solver import Callback
+        if isinstance(scene, list | tuple):
+            from taylor_verify.run_many import run_many
 
-        return run(scene, Callback(solve_or_file), rung, tolerance)
+            return run_many(scene, answer, [rung_named(rung).name], tolerance=tolerance)
+        from taylor_verify.run import run
+
+        return run(scene, answer, rung, tolerance)
+    if isinstance(scene, list | tuple):
+        raise ValueError(
+            "expected a callable with several scenes, got a trajectory @ solve_or_file"
+        )
     from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.series.files import judge_files
     from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.files.file import read
     from taylor_verify.solvers.files.objects import pairs, trajectory
 
     scene = as_scene(scene)
-    if isinstance(solve_or_file, list | tuple):
+    if isinstance(answer, list | tuple):
         options = (rung, accept_conventions, partial, tolerance, columns)
-        return judge_files(solve_or_file, steps, lambda file: check(scene, file, *options), knob)
+        return judge_files(answer, steps, lambda file: check(scene, file, *options), knob)
     if steps is not None or knob:
         given = "steps" if steps is not None else "knob"
         raise ValueError(f"expected a list of files with {given}, got one answer @ {given}")
     wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
-    is_path = isinstance(solve_or_file, str | PathLike)
-    file = (
-        read(solve_or_file, wanted, scene) if is_path else trajectory(solve_or_file, scene, wanted)
-    )
+    is_path = isinstance(answer, str | PathLike)
+    file = read(answer, wanted, scene) if is_path else trajectory(answer, scene, wanted)
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
+
+
+def _of_events(
+    scene: Any,
+    answer: Any,
+    event: str,
+    rung: types.Rung | str,
+    tolerance: types.Tolerances | types.Tolerance,
+) -> types.EventsJudgement:
+    from taylor_verify.exact.request import exact_times
+    from taylor_verify.judge.events import given_times, judge_events
+    from taylor_verify.judge.tolerances import tolerances
+    from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.files.events import read_events
+
+    scene = as_scene(scene)
+    is_path = isinstance(answer, str | PathLike)
+    times = read_events(answer) if is_path else exact_times(given_times(answer))
+    asked = tolerances(tolerance, [scene]).every
+    return judge_events(scene, event, times, rung_named(rung), asked)

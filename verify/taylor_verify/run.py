@@ -2,32 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from os import PathLike
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from taylor_verify import types
 from taylor_verify.numbers.working_precision import in_turn
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
+    from taylor_verify.judge.tolerances import Tolerances
     from taylor_verify.models.problem import Problem
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.files.file import TrajectoryFile
     from taylor_verify.solvers.solver import Solver
     from taylor_verify.solvers.trajectory import Trajectory
 
 
 @in_turn
 def run(
-    scene: Scene | str | PathLike[str],
-    solver: Solver | str = "taylor",
-    rung: Rung | str = "f64",
-    tolerance: Tolerances | Tolerance = None,
+    scene: types.Scene | str | PathLike[str],
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
+    rung: types.Rung | str = "f64",
+    tolerance: types.Tolerances | types.Tolerance = None,
     *,
     causes: bool = True,
-) -> Judgement:
+) -> types.Judgement:
     """Solve one scene on one rung and judge the answer.
 
     Parameters
@@ -35,7 +37,8 @@ def run(
     scene
         A Scene, a path, or the name of a shipped scene.
     solver
-        A Solver, or a name such as ``taylor?tol=1e-9`` or ``process:./mine``.
+        A Solver, a name such as ``taylor?tol=1e-9``, ``process:./mine`` or ``python:package.module:f``, or
+        a callable ``solve(problem)``, as `check` takes it.
     rung
         A Rung or ``f32 f64 f80 f128 mpN``.
     tolerance
@@ -68,6 +71,7 @@ def run(
     from taylor_verify.judge.judgement import judgement, unjudged
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.records.faults import Refused
     from taylor_verify.records.reason import Cause
     from taylor_verify.records.status import Status
     from taylor_verify.scenes.reading.reader import as_scene
@@ -88,6 +92,11 @@ def run(
     with costs.of(SOLVING):
         trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
+    if trajectory.file is not None:
+        try:
+            return _judged_as_file(scene, solver, rung, trajectory.file, asked)
+        except Refused as fault:
+            trajectory = Trajectory(Outcome.MISSHAPEN, detail=str(fault))
     judged = judgement(problem, solver, trajectory, seconds, asked)
     if causes:
         judged = with_causes(judged, problem, trajectory)
@@ -95,10 +104,26 @@ def run(
     return replace(judged, costs=total([costs.seconds, judged.costs]))
 
 
+def _judged_as_file(
+    scene: Scene, solver: Solver, rung: Rung, file: TrajectoryFile, asked: Tolerances
+) -> Judgement:
+    """Judge the rows of a user's function at their own times, under the name of the function."""
+    from dataclasses import replace
+
+    from taylor_verify.judge.files.judgement import judge_file
+
+    judged = judge_file(file, scene, rung, tolerances=asked)
+    verdicts = (replace(v, solver=solver.name, setting=solver.setting) for v in judged.verdicts)
+    record = judged.record and replace(judged.record, solver=solver.name)
+    return replace(judged, verdicts=tuple(verdicts), record=record)
+
+
 @in_turn
 def solve(
-    scene: Scene | str | PathLike[str], solver: Solver | str = "taylor", rung: Rung | str = "f64"
-) -> Trajectory:
+    scene: types.Scene | str | PathLike[str],
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
+    rung: types.Rung | str = "f64",
+) -> types.Trajectory:
     """Solve one scene on one rung and return the trajectory, which nothing has judged.
 
     Parameters
@@ -119,6 +144,8 @@ def solve(
     ValueError
         For a name that is no solver or no rung.
     """
+    from dataclasses import replace
+
     from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import as_solver
@@ -126,7 +153,11 @@ def solve(
 
     solver = as_solver(solver)
     problem = posed(as_scene(scene), solver, rung_named(rung))
-    return problem if isinstance(problem, Trajectory) else _answer(solver, problem)
+    if isinstance(problem, Trajectory):
+        return problem
+    answered = _answer(solver, problem)
+    times = problem.given.clock.instants if answered.file is None else answered.file.times
+    return replace(answered, times=tuple(times) if answered.quantities else ())
 
 
 def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
@@ -149,9 +180,10 @@ def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
 
 def _answer(solver: Solver, problem: Problem) -> Trajectory:
     """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on."""
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.solver import raised
 
     try:
-        return solver.solve(problem)
+        return solver.answered(problem) if isinstance(solver, Callback) else solver.solve(problem)
     except SystemExit as end:
         return raised(end)

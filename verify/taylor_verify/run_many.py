@@ -2,33 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Iterator
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from taylor_verify import types
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from concurrent.futures import Executor
-    from os import PathLike
-
-    from taylor_verify.batch.judgements import Judgements
-    from taylor_verify.batch.judging import Progress
-    from taylor_verify.batch.selection import Selection
-    from taylor_verify.judge.tolerances import Tolerance, Tolerances
-    from taylor_verify.scenes.scene import Scene
+    pass
 
 
 def run_many(
     scenes: (
-        Selection | Iterable[Scene | str | PathLike[str]] | Scene | str | PathLike[str] | None
+        types.Selection
+        | Iterable[types.Scene | str | PathLike[str]]
+        | types.Scene
+        | str
+        | PathLike[str]
+        | None
     ) = None,
-    solver: str = "taylor",
+    solver: types.Solver | Callable[..., Any] | str = "taylor",
     rungs: Iterable[str] | str | None = None,
     jobs: int | None = None,
-    executor: Executor | None = None,
+    executor: types.Executor | None = None,
     resume: bool = False,
     out: str | PathLike[str] | None = None,
-    progress: Progress | None = None,
-    tolerance: Tolerances | Tolerance = None,
-) -> Judgements:
+    progress: types.Progress | None = None,
+    tolerance: types.Tolerances | types.Tolerance = None,
+) -> types.Judgements:
     """Solve many scenes on some rungs and judge the answers.
 
     Parameters
@@ -38,7 +39,8 @@ def run_many(
         scene named twice is run once. None is the standard set. A `batch.selection.Selection` says what
         will be run, what is left out, and what is doubtful, before anything runs.
     solver
-        The name of a solver, such as ``taylor`` or ``process:./mine``.
+        A solver, its name or a callable, as that of `run`. A callable is sent to the processes: one that is
+        written in a notebook, and a lambda, need cloudpickle.
     rungs
         ``f32 f64 f80 f128 mpN``, or a single one. None is f64, and all five of the ladder for the standard
         set.
@@ -86,8 +88,9 @@ def run_many(
 
     Notes
     -----
-    All errors but the last three are raised before anything runs. Every process imports the script that
-    calls this: there the call stands under ``if __name__ == "__main__":``.
+    All errors but the last three are raised before anything runs. A process imports the script that calls
+    this only for a function that is written there, and where cloudpickle is not installed: then the call
+    stands under ``if __name__ == "__main__":``.
     """
     from contextlib import nullcontext
     from pathlib import Path
@@ -99,20 +102,21 @@ def run_many(
     from taylor_verify.batch.selection import Selection, select
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.report.folder import write_report
-    from taylor_verify.solvers.registry import solver_named
+    from taylor_verify.solvers.registry import as_solver
 
     if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
         raise ValueError("\n".join(faults))
-    solver_named(solver)
+    chosen = as_solver(solver)
+    name = solver if isinstance(solver, str) else chosen.name
     if isinstance(scenes, Selection) and rungs is not None:
         raise ValueError("expected rungs within the Selection, got others besides @ rungs")
     selection = scenes if isinstance(scenes, Selection) else select(scenes, rungs)
     tolerated = tolerances(tolerance, selection.scenes)
     folder = Path(out) if out is not None else None
     with alone_in(folder) if folder is not None else nullcontext():
-        asked = selection.jobs(solver, tolerated)
+        asked = selection.jobs(solver if isinstance(solver, str) else chosen, tolerated)
         judgements = judge_all(asked, progress, jobs, executor, resume, folder)
-        results = Judgements(tuple(judgements), selection, solver)
+        results = Judgements(tuple(judgements), selection, name)
         if folder is not None:
             try:
                 write_report(folder, results)
@@ -131,10 +135,10 @@ def _faults(
     from os import PathLike
 
     from taylor_verify.records.faults import brief
+    from taylor_verify.solvers.solver import Solver
 
-    if not isinstance(solver, str):
-        mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
-        yield f"expected the name of a solver, got {brief(solver)}{mend} @ solver"
+    if not isinstance(solver, str | Solver) and not callable(solver):
+        yield f"expected a solver, the name of one or a callable, got {brief(solver)} @ solver"
     is_count = isinstance(jobs, Integral) and not isinstance(jobs, bool) and int(jobs) >= 1
     if jobs is not None and not is_count:
         yield f"expected jobs of at least 1, got {brief(jobs)} @ jobs"

@@ -67,11 +67,6 @@ def member_in_bzip2(file: Path) -> None:
     file.write_bytes(content.replace(struct.pack("<I", 10**7), struct.pack("<I", 1000)))
 
 
-def page_in_brotli(file: Path) -> None:
-    zeros = pa.array(np.zeros(ROWS))
-    parquet.write_table(pa.table({"t": zeros, "w1": zeros}), file, compression="brotli")
-
-
 def chunk_of_mcap(file: Path) -> None:
     with file.open("wb") as stream:
         writer = McapWriter(stream, 2**40, CompressionType.ZSTD)
@@ -102,7 +97,6 @@ BOMBS: dict[str, tuple[str, Callable[[Path], None]]] = {
     "chunk.h5": ("bytes in a packed part, got 67108872", large_chunk),
     "twice.h5": (r"numbers that are packed once, got the filters \[1, 32000\]", packed_twice),
     "member.npz": ("a member that is stored or deflated, got method 12", member_in_bzip2),
-    "page.parquet": ("columns packed by snappy, gzip, lz4 or zstd, got brotli", page_in_brotli),
     "chunk.mcap": ("bytes in a packed part, got 67108865", chunk_of_mcap),
     "message.mcap": (
         "at most 1048576 bytes in a message, got 1048577",

@@ -7,7 +7,7 @@ import sqlite3
 import struct
 import zlib
 from collections.abc import Callable, Mapping
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 
 import h5py
@@ -72,21 +72,6 @@ def test_anything_else_is_refused(suffix: str, content: bytes, tmp_path: Path) -
     file = tmp_path / f"run{suffix}"
     file.write_bytes(content)
     assert refusal(file)
-
-
-@pytest.mark.parametrize("name", FILES)
-@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(place=st.floats(0, 1, exclude_max=True), byte=st.integers(0, 255))
-def test_a_changed_byte_is_refused_or_read(
-    name: str, place: float, byte: int, tmp_path: Path
-) -> None:
-    """A file with any byte changed is read or refused in sentences; nothing else is raised."""
-    file = tmp_path / name
-    content = bytearray(written(name, tmp_path))
-    content[int(place * len(content))] = byte
-    file.write_bytes(content)
-    with suppress(Refused):
-        assert read(file).times
 
 
 # MATLAB.

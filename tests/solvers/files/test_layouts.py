@@ -8,6 +8,7 @@ from __future__ import annotations
 import struct
 import tomllib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -89,6 +90,16 @@ def test_degrees_of_stk_are_radians(scene: Scene, tmp_path: Path) -> None:
     first = read(written(layout, tmp_path), (), scene).groups["omega"][0]
     assert [float(w) for w in first] == [np.pi, 0, -np.pi / 2]
     assert first[0] == -2 * first[2] != Fraction(np.pi)
+
+
+def test_times_of_a_long_scene_are_no_clock(scene: Scene, tmp_path: Path) -> None:
+    """Times of 10^9 are those of a clock only where the scene ends before them."""
+    file = tmp_path / "mine.csv"
+    file.write_text("t,w1,w2,w3\n1000000000,1,2,3\n1000000001,1,2,3\n")
+    instants = tuple(k * Fraction(10**8) for k in range(21))
+    long = replace(scene, clock=replace(scene.clock, instants=instants))
+    assert read(file, (), scene).times == (0, 1)
+    assert read(file, (), long).times == (10**9, 10**9 + 1)
 
 
 # Binary formats.

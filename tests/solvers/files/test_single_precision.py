@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import exact_columns, write_csv
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.cli import main
@@ -97,11 +98,14 @@ print(json.dumps({"t": times, **columns}))
 
 @pytest.mark.parametrize(
     ("kind", "form"),
-    [
-        ("np.float32", "float"),
-        ("np.float32", "lambda v: f'{v:.9g}'"),
-        ("np.float64", "lambda v: float(f'{v:.9g}')"),
-    ],
+    by_turns(
+        [
+            ("np.float32", "float"),
+            ("np.float32", "lambda v: f'{v:.9g}'"),
+            ("np.float64", "lambda v: float(f'{v:.9g}')"),
+        ],
+        2,
+    ),
 )
 def test_a_program_in_float32_has_the_hint(
     kind: str, form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

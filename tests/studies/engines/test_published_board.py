@@ -42,10 +42,10 @@ def is_still_so(row: EngineRow) -> bool:
 
 
 def test_rows_of_some_engines_are_judged_again() -> None:
-    """The first row of every fourth engine on the shortest scene has the published errors."""
+    """The first row of every eighth engine on the shortest scene has the published errors."""
     first = {row.engine: row for row in reversed(rows()) if row.scene == "engines/oblique"}
     assert len(first) >= 3
-    assert all(is_still_so(row) for row in list(first.values())[::4])
+    assert all(is_still_so(row) for row in list(first.values())[::8])
 
 
 @pytest.mark.slow

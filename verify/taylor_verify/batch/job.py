@@ -9,18 +9,19 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.solver import Solver
 
 
 @dataclass(frozen=True)
 class Job:
     """A scene on several rungs by one solver: the rungs share the condition of the orbit.
 
-    ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory. ``tolerances``
-    take the place of bounds.
+    ``scene`` is a path, the name of a shipped scene, or a Scene that was made in memory; ``solver``
+    is a name or a Solver. ``tolerances`` take the place of bounds.
     """
 
     scene: str | Scene
-    solver: str
+    solver: Solver | str
     rungs: tuple[str, ...]
     tolerances: Tolerances = NO_TOLERANCES
 

@@ -13,22 +13,28 @@ import multiprocessing
 import os
 import pickle
 import signal
+import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from multiprocessing import resource_tracker
+from multiprocessing import resource_tracker, spawn
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext
 from queue import SimpleQueue
+from types import ModuleType
 from typing import Any, Final, TypeVar
+
+from taylor_verify.batch.pickling import dumps, needs_script
 
 Result = TypeVar("Result")
 
 # Each worker has one core: a library of linear algebra that reads these starts no threads for the others.
 _ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+# Set in a worker.
+_is_worker: Final = threading.Event()
 # Seconds that a worker has to end before it is killed.
 _GRACE: Final = 2.0
 
@@ -47,6 +53,10 @@ class LocalPool(Executor):
     """
 
     def __init__(self, workers: int) -> None:
+        if _is_worker.is_set():
+            expected = 'the call under `if __name__ == "__main__":`'
+            reason = "the script has a function that each process imports it for (or install cloudpickle)"
+            raise WorkerLost(f"expected {expected}, got it at the top of the script: {reason}")
         context = multiprocessing.get_context("spawn")
         self._threads = ThreadPoolExecutor(workers, "taylor-verify-worker")
         self._workers: list[_Worker] = []
@@ -73,12 +83,13 @@ class LocalPool(Executor):
 
     def terminate(self) -> None:
         """End the workers at once, in the middle of whatever they do; return when they have ended."""
-        self._threads.shutdown(wait=False, cancel_futures=True)
-        for worker in self._workers:
-            worker.process.terminate()
-        for worker in self._workers:
-            worker.exit_status()
-        self.shutdown()
+        with _interrupts_ignored():
+            self._threads.shutdown(wait=False, cancel_futures=True)
+            for worker in self._workers:
+                worker.process.terminate()
+            for worker in self._workers:
+                worker.exit_status()
+            self.shutdown()
 
     def _call(
         self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -97,14 +108,16 @@ class _Worker:
         self._pipe, theirs = context.Pipe()
         self._waiting = threading.Lock()
         self.process = context.Process(target=_serve, args=(theirs,))
-        self.process.start()
+        with _script_hidden():
+            self.process.start()
         # Theirs alone now: when the process ends, the pipe does.
         theirs.close()
 
     def call(
         self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
     ) -> Result:
-        request = pickle.dumps((function, args, kwargs))
+        task = dumps((function, args, kwargs))
+        request = pickle.dumps((_script() if needs_script(task) else {}, task))
         try:
             self._pipe.send_bytes(request)
             answer = self._pipe.recv_bytes()
@@ -134,10 +147,7 @@ def _ending(status: int | None) -> str:
     """Return a sentence on how a process ended: by a signal, or with a status of its own."""
     if status is not None and status < 0:
         return f"a worker process was ended by signal {-status} (short of memory?)"
-    return (
-        f"a worker process ended early, with status {status} (a script that calls this needs "
-        '`if __name__ == "__main__":`)'
-    )
+    return f"a worker process ended early, with status {status}"
 
 
 def available_cores() -> int:
@@ -153,6 +163,7 @@ def available_cores() -> int:
 def _serve(pipe: Connection) -> None:
     """Run the tasks that come through the pipe, until it is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _is_worker.set()
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _load_numpy_with_one_thread()
     with suppress(EOFError, OSError):
@@ -172,7 +183,10 @@ def _load_numpy_with_one_thread() -> None:
 def _answer(request: bytes) -> bytes:
     """Run a task; return the pickled pair of its value and its error."""
     try:
-        function, args, kwargs = pickle.loads(request)
+        script, task = pickle.loads(request)
+        if script:
+            spawn.prepare(script)
+        function, args, kwargs = pickle.loads(task)
         return pickle.dumps((function(*args, **kwargs), None))
     except BaseException as error:
         error.add_note(f"in a worker process:\n{traceback.format_exc()}")
@@ -194,6 +208,36 @@ def _end_with_parent() -> None:
     if parent is not None:
         parent.join()
         os._exit(1)
+
+
+def _script() -> dict[str, Any]:
+    """Return what a process needs to import the script of this one, as multiprocessing has it."""
+    data = spawn.get_preparation_data("")
+    return {key: value for key, value in data.items() if key.startswith("init_main")}
+
+
+@contextmanager
+def _script_hidden() -> Iterator[None]:
+    """Keep the script of this process from a new one, which would run it for nothing."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Let a second interrupt not end the end of the workers, which takes some seconds at most."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before or signal.default_int_handler)
 
 
 @contextmanager

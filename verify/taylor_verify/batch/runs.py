@@ -127,7 +127,7 @@ def _result(future: Future[Result], one: object, raises: type[Exception]) -> Res
     try:
         return future.result()
     except (WorkerLost, BrokenExecutor) as error:
-        raise Failed(f"{one}: {error}") from error
+        raise Failed(f"{one}: {error}") from None
     except CancelledError as error:
         raise Failed(
             f"{one}: expected a result, got the executor's word that it was cancelled"

@@ -13,6 +13,7 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 if TYPE_CHECKING:
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.scenes.scene import Scene
+    from taylor_verify.solvers.solver import Solver
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Selection:
         """The scenes of which a rung is run."""
         return [scene for scene in self.scenes if self._rungs(scene)]
 
-    def jobs(self, solver: str, tolerances: Tolerances = NO_TOLERANCES) -> list[Job]:
+    def jobs(self, solver: Solver | str, tolerances: Tolerances = NO_TOLERANCES) -> list[Job]:
         """Return a job for each scene that is run, on the rungs that are not left out."""
         return [Job(scene, solver, self._rungs(scene), tolerances) for scene in self.scenes_run]
 

@@ -9,6 +9,7 @@ all that its judgements depend on: scene, solver, rungs, tolerances, versions an
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 import logging
 import os
@@ -20,12 +21,13 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from msgspec import to_builtins
 from platformdirs import user_cache_path
 
 from taylor_verify.batch.lock import Occupied, alone_in
+from taylor_verify.batch.pickling import dumps
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, converted
 from taylor_verify.records.regular_file import bounded_bytes
@@ -33,6 +35,7 @@ from taylor_verify.records.regular_file import bounded_bytes
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
     from taylor_verify.judge.judgement import Judgement
+    from taylor_verify.solvers.solver import Solver
 
 _SUFFIX: Final = ".judged"
 _log = logging.getLogger(__name__)
@@ -130,18 +133,37 @@ def _words(job: Job) -> tuple[object, ...]:
 
     A Scene itself has no fixed order in its text.
     """
-    return job.name, job.solver, job.rungs, job.tolerances
+    solver = job.solver if isinstance(job.solver, str) else job.solver.name
+    return job.name, solver, job.rungs, job.tolerances
 
 
-def program_digests(solver: str) -> list[str]:
-    """The digests of the files that a command names: a program that has changed is another solver."""
-    from taylor_verify.solvers.registry import PROCESS
+def program_digests(solver: Solver | str) -> list[str]:
+    """The digests of a solver's own code: one that has changed is another solver.
 
+    They are those of the files that a command names, and of the module of a function.
+    """
+    from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
+
+    if not isinstance(solver, str):
+        return _digests_of(solver)
+    if solver.startswith(PYTHON):
+        return _digests_of(solver_named(solver))
     if not solver.startswith(PROCESS):
         return []
     words = shlex.split(solver.removeprefix(PROCESS))
     files = [Path(place) for word in words if (place := shutil.which(word) or word)]
     return [_digest(file.read_bytes()) for file in files if file.is_file()]
+
+
+def _digests_of(solver: Solver) -> list[str]:
+    """The digests of a solver as it is sent to a process, and of the file with its function."""
+    answer: Any = getattr(solver, "answer", solver)
+    try:
+        file = inspect.getsourcefile(inspect.unwrap(getattr(answer, "func", answer)))
+    except TypeError:
+        file = inspect.getsourcefile(type(answer))
+    content = [Path(file).read_bytes()] if file and Path(file).is_file() else []
+    return [_digest(part) for part in (dumps(solver), *content)]
 
 
 @cache

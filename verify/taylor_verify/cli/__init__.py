@@ -11,7 +11,15 @@ import sys
 from collections.abc import Sequence
 
 from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
-from taylor_verify.cli.streams import as_json_text, have_streams, print_out, say, stdout_reserved
+from taylor_verify.cli.streams import (
+    MANNER,
+    as_json_text,
+    have_streams,
+    print_out,
+    say,
+    stdout_reserved,
+    tell,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -22,16 +30,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         have_streams()
         options = parse(sys.argv[1:] if arguments is None else arguments)
+        MANNER.quiet, MANNER.colour = options.quiet, options.color
         with stdout_reserved():
             answer = options.act(options)
         return _print(answer, options.json)
     except KeyboardInterrupt as interrupt:
-        say(_interruption(interrupt))
+        tell(_interruption(interrupt))
         return INTERRUPTED
     except Exception as error:
         if sys.flags.dev_mode:
             raise
-        say(*_message(error))
+        tell(*_message(error))
         return WRONG_CALL
     finally:
         print_out()
@@ -43,12 +52,12 @@ def _print(answer: Answer, as_json: bool) -> int:
         print_out(as_json_text(answer.document))
     else:
         text = answer.text()
-        print_out(text)
+        print_out(text.rstrip().rpartition("\n")[2] if MANNER.quiet else text)
         # On a terminal both streams are read together, the text folded to its width.
         shown = "".join(text.split()) if sys.stdout.isatty() else ""
     for message in answer.messages:
         if "".join(message.split()) not in shown:
-            say(message)
+            (tell if answer.status == WRONG_CALL else say)(message)
     return answer.status
 
 

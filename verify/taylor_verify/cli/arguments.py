@@ -13,29 +13,29 @@ a verb are a text: a line for each, with its help two blanks behind it, which go
 from __future__ import annotations
 
 import argparse
-import difflib
+import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
 from functools import partial
 from importlib import import_module
-from typing import Any, Final, NoReturn
+from typing import Final
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.completion import SHELLS
-from taylor_verify.cli.streams import print_out
-from taylor_verify.cli.verbs import add, described, package_of, verbs
+from taylor_verify.cli.parser import Parser, add_argument, near_word, unknown_words
+from taylor_verify.cli.verbs import add, described, verbs
+from taylor_verify.records.plugins import package_of
 from taylor_verify.records.version import __version__
-from taylor_verify.scenes.names import one_line
 
 _VERB: Final = "VERB"
+COLOURS: Final = ("auto", "always", "never")
 # What this distribution publishes is not on the first page of help.
 _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
-# Name, whether it must be given, sign, value, default and help of an argument.
-_ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")
+
 
 _SCENE: Final = "SCENE  a scene file, or the name of a shipped scene (`taylor-verify list`)"
 _RUNG: Final = (
@@ -53,16 +53,16 @@ _CI: Final = """
 --explain  also show how each bound was computed
 --junit FILE  write the verdicts to FILE as JUnit XML
 --github  print annotations for GitHub on stderr, and write a summary to the file $GITHUB_STEP_SUMMARY
---baseline FILE  fail if a row is worse than in FILE (an earlier --json, or verdicts.json), beyond rounding
---gate bound|baseline [bound]  the exit status is that of the bounds, or of the baseline; default: bound
+--baseline FILE  fail if a row is worse than in FILE, by more than rounding explains; FILE is the output of
+  an earlier --json, or verdicts.json of an earlier `run --out`
+--gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
+  baseline alone, for an answer that is beyond its bounds and must not get worse; default: bound
 """
 _VERBS: Final = {
     "list": (
         "list the shipped scenes, families, solvers, precisions and file formats",
         "list --json",
-        """
---schema  print the JSON schema of what `run --json` and `check --json` print
-""",
+        "--schema  print the JSON schema of what `run --json` and `check --json` print",
     ),
     "scene": (
         "write a scene from a URDF, SDF or MJCF file",
@@ -104,7 +104,9 @@ scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or fol
         "exact euler/generic --at 0,10,1e9 --digits 40",
         f"""
 scene {_SCENE}
---at!* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--at* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
+--event TEXT  in place of --at: all times of "w2 = 0", "extremum r33" or the like, by the names of loads
+--until T  the end of the span of --event, from the start of the scene
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
@@ -120,27 +122,37 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   (velocity of the body's origin, body axes; with w1 w2 w3 in place of the impulses); x1 x2 x3 y1 y2 y3
   (impulses, body axes); q0 q1 q2 q3 (scalar first, body to space) or r11 ... r33; c1 c2 c3 (centre, space
   axes). Usual other names (time, wx, omega_x, qw, p q r) and units such as [ms] or [deg/s] are recognised,
-  and a note says so. All other columns are ignored, and a note names them. Several files are the answers
-  of one solver at several steps: their order of convergence is shown too
+  and a note says so. All other columns are ignored, and a note names them. `-` is standard input. Several
+  files are the answers of one solver at several steps: their order of convergence is shown too
 --columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, a name above or a group (omega=gyro); or
   its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
---accept-conventions  correct the order of the quaternion, axes, units, time, ... of a file, then judge it
---partial  accept a file that lacks tracked columns or a part of the time, which is undecided otherwise
+--event TEXT  judge the column or list `events` of the file, times of "w2 = 0" or the like, not its states
+--accept-conventions  correct the conventions that the file does not share with the scene (order of the
+  quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
+--partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
+  to such a file is undecided
 {_TOLERANCE}
---steps H,H,...  the steps of several files, in their order; default: what the files say (run_h0.05.csv)
+--steps H,H,...  the steps of several files, in their order; default: what the files or their names say
+  (run_h0.05.csv)
 --knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
 --picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
+    "certify": (
+        "bound the error of a dense answer for all times",
+        "certify dense.json --scene euler/generic --tolerance 1e-6",
+        """file FILE  pieces {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}, or samples
+--scene! SCENE  the scene that the file answers
+--tolerance E  the error that is allowed, as in `check`
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples
+""",
+    ),
     "explain": (
         "show the equations of a scene, its orbit in numbers, and how each bound is computed",
         "explain kirchhoff/screw --rung f80",
-        f"""
-scene {_SCENE}
-{_RUNG}
-""",
+        f"scene {_SCENE}\n{_RUNG}",
     ),
     "tradeoff": (
         "measure the time and the error of every setting of every solver",
@@ -213,13 +225,15 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
             options.verb.error(f"expected a value, got -- @ {option}")
     if options.completion:
         options.act = partial(_complete, options.completion)
+    elif options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
+        parser.error(f"expected a verb, got none ({', '.join(_VERBS)})")
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
     if hasattr(options, "unknown"):
         # A verb of a plug-in may name an unknown word itself, beside what there is.
         options.unknown, left = left, []
     if left and ((scenes is None and files is None) or any(word.startswith("-") for word in left)):
-        options.verb.error(_unknown_words(left, options.verb))
+        options.verb.error(unknown_words(left, options.verb))
     if scenes is not None:
         # argparse gives `--rung` every word up to the next option, and takes scenes in one place.
         options.rung, taken = _split(options.rung)
@@ -234,23 +248,7 @@ def _unknown_verb(arguments: Sequence[str]) -> str:
     """Return the message for a first word that is no verb, with those that are near to it."""
     word = next(word for word in arguments if not word.startswith("-"))
     known = [*_VERBS, *(verb.name for verb in verbs(_VERBS))]
-    return (
-        f"expected a verb, got {word} ({_near(word, known, '`taylor-verify --help` names them')})"
-    )
-
-
-def _unknown_words(words: Sequence[str], verb: argparse.ArgumentParser) -> str:
-    """Return the message for words that a verb does not take, with the options that may be meant."""
-    known = re.findall(r"--[a-z-]+", verb.format_usage())
-    options = [word for word in words if word.startswith("-")]
-    named = [f"{word} ({_near(word, known, 'there is none like it')})" for word in options]
-    expected = "the options" if named else "no words but those"
-    return f"expected {expected} above, got {', '.join(named or words)}"
-
-
-def _near(word: str, known: Iterable[str], otherwise: str) -> str:
-    close = difflib.get_close_matches(word.partition("=")[0], [*known], n=3, cutoff=0.65)
-    return f"did you mean {', '.join(close)}?" if close else otherwise
+    return f"expected a verb, got {word} ({near_word(word, known, '`taylor-verify --help` names them')})"
 
 
 def _greet(options: argparse.Namespace) -> Answer:
@@ -271,8 +269,8 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
     """Write ``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
     attached: list[str] = []
     for word in arguments:
-        if attached and attached[-1] == "--at" and _NEGATIVE_TIME.match(word):
-            attached[-1] = f"--at={word}"
+        if attached and attached[-1] in ("--at", "--until") and _NEGATIVE_TIME.match(word):
+            attached[-1] += f"={word}"
         else:
             attached.append(word)
     return attached
@@ -293,23 +291,9 @@ def _split(groups: Iterable[Sequence[str]] | None) -> tuple[list[str], list[str]
     return rungs, scenes
 
 
-class _Parser(argparse.ArgumentParser):
-    """A parser whose message is one harmless line: it repeats words that may be names of files."""
-
-    def error(self, message: str) -> NoReturn:
-        super().error(one_line(message))
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        """Print help and version as any answer: argparse says nothing of a disk that is full."""
-        if file is sys.stderr:
-            super()._print_message(message, file)
-        else:
-            print_out(message.removesuffix("\n"))
-
-
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Return the parser; verbs of other packages are loaded if they are among the words."""
-    parser = _Parser(
+    parser = Parser(
         prog="taylor-verify",
         description="Find out how wrong a simulation is: of a rigid body, or of a solid in an ideal "
         "fluid. Its numbers are compared with the exact motion.",
@@ -327,14 +311,14 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         choices=SHELLS,
         help=f"print the script by which a shell completes words: {', '.join(SHELLS)} (needs shtab)",
     )
-    parser.set_defaults(act=_greet, verb=parser, json=False)
+    parser.set_defaults(act=_greet, verb=parser, json=False, quiet=False, color=COLOURS[0])
     own = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in _VERBS.items():
         verb = _verb_parser(own, name, what, example)
         verb.set_defaults(act=partial(_act, name))
         for line in arguments.replace("\n  ", " ").split("\n"):
             if line:
-                _add(verb, line)
+                add_argument(verb, line)
     first = next((word for word in words if not word.startswith("-")), "")
     # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
     for plugged in verbs(_VERBS) if first not in _VERBS else ():
@@ -348,7 +332,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _verb_parser(
-    verbs: argparse._SubParsersAction[_Parser], name: str, what: str, example: str
+    verbs: argparse._SubParsersAction[Parser], name: str, what: str, example: str
 ) -> argparse.ArgumentParser:
     """Return the parser of a verb, with what every verb has."""
     verb = verbs.add_parser(
@@ -359,6 +343,15 @@ def _verb_parser(
         allow_abbrev=False,
     )
     verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
+    verb.add_argument(
+        "-q", "--quiet", action="store_true", help="print the last line of the answer alone"
+    )
+    verb.add_argument(
+        "--color",
+        choices=COLOURS,
+        default=COLOURS[0],
+        help="when to print in colours; default: auto",
+    )
     verb.set_defaults(verb=verb)
     return verb
 
@@ -367,33 +360,3 @@ def _act(name: str, options: argparse.Namespace) -> Answer:
     """Import the module of a verb and let it answer."""
     answer: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
     return answer
-
-
-def _whole_number(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"expected a whole number, got {text!r:.60}") from None
-
-
-def _add(verb: argparse.ArgumentParser, line: str) -> None:
-    """Add the argument that a line of the text describes."""
-    match = _ARGUMENT.fullmatch(line)
-    assert match is not None, line
-    name, required, sign, value, default, meaning = match.groups()
-    if value is None:
-        verb.add_argument(name, action="store_true", help=meaning)
-        return
-    first, *others = value.split("|")
-    given: dict[str, Any] = {"help": meaning, "metavar": None if others else first}
-    if others:
-        given["choices"] = [first, *others]
-    if value == "N":
-        given["type"] = _whole_number
-    if required:
-        given["required"] = True
-    if sign and name.startswith("-"):
-        given |= {"action": "append", "nargs": "+" if sign == "+" else None}
-    elif sign:
-        given["nargs"] = sign
-    verb.add_argument(name, default=default, **given)

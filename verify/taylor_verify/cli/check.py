@@ -30,6 +30,7 @@ from taylor_verify.cli.sentences import (
     print_sentence,
     status_text,
 )
+from taylor_verify.cli.standard_input import read_named
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import (
     FilesJudgement,
@@ -46,7 +47,7 @@ from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.request import request
-from taylor_verify.solvers.files.file import TrajectoryFile, read
+from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.words.account import cause_line, note_line
 from taylor_verify.words.opening import opening
 
@@ -65,6 +66,10 @@ _NUMBERS: Final = (
 def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
     (options.rung,) = known_rungs([options.rung])
+    if options.event is not None:
+        from taylor_verify.cli.check_events import answer as answer_of_events
+
+        return answer_of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     picture = _picture(options, files, steps)
@@ -111,7 +116,9 @@ def _asked(
     scene = attempt(read_scene, options.scene)
     columns = options.columns or ()
     names = dict.fromkeys(options.files)
-    files = [attempt(lambda name: read(name, request(columns), scene), name) for name in names]
+    files = [
+        attempt(lambda name: read_named(name, request(columns), scene), name) for name in names
+    ]
     if faults:
         raise WrongCall(*faults)
     return scene, files, steps

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -12,6 +13,7 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
+from taylor_verify.cli.streams import MANNER
 from taylor_verify.scenes.names import escaped, one_line
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
@@ -19,6 +21,11 @@ PIPED_WIDTH = 140
 
 
 Cell = str | Text
+
+_STYLES: Final[Mapping[str, dict[str, Any]]] = {
+    "always": {"force_terminal": True, "color_system": "standard"},
+    "never": {"color_system": None},
+}
 
 # The blanks between two columns, one where this makes room for all.
 _GAP = 2
@@ -49,7 +56,8 @@ class Page:
     """
 
     def __init__(self, piped_width: int = PIPED_WIDTH) -> None:
-        self.console = EscapingConsole(markup=False, emoji=False, highlight=False)
+        styles = _STYLES.get(MANNER.colour, {})
+        self.console = EscapingConsole(markup=False, emoji=False, highlight=False, **styles)
         if not sys.stdout.isatty():
             self.console.width = piped_width
         self.console.begin_capture()

@@ -11,18 +11,53 @@ from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
+from taylor_verify.exact.event_times import events_of
 from taylor_verify.exact.printed import document
+from taylor_verify.exact.printed_events import events_document
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 
 
 def answer(options: argparse.Namespace) -> Answer:
-    """Print the exact motion at the times asked for."""
+    """Print the exact motion at the times asked for, or the times of an event."""
     if not 1 <= options.digits <= MOST_DIGITS:
         raise WrongCall(
             f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
         )
+    if (options.event is None) is (options.at is None):
+        raise WrongCall("expected one of --at T,T,... and --event TEXT --until T")
+    if (options.event is None) is not (options.until is None):
+        raise WrongCall("expected --event TEXT and --until T together")
+    return _of_times(options) if options.event is None else _of_events(options)
+
+
+def _of_events(options: argparse.Namespace) -> Answer:
+    until, scene = read_number(options.until, "--until"), read_scene(options.scene)
+    content: dict[str, Any] = {"events": [], "undecided": []}
+    try:
+        with working(f"exact {scene.name}"):
+            content = events_document(events_of(scene, options.event, until, options.digits))
+    except Unsettled as doubt:
+        content["because"] = f"undecided: {doubt} @ {scene.name}"
+    doubts = [content["because"]] if "because" in content else []
+    status = UNDECIDED if doubts or content["undecided"] else PASS
+    document = {"scene": scene.name, "event": options.event, "until": options.until, **content}
+    return Answer(status, document, str if doubts else partial(_text_of_events, document), doubts)
+
+
+def _text_of_events(content: Mapping[str, Any]) -> str:
+    page = Page()
+    count = len(content["events"])
+    page.line(bold(content["scene"]), f": {count} times of {content['event']}, none missed")
+    for event in content["events"]:
+        page.line(f"t = {event['t']}   (radius {event['radius']})")
+    for event in content["undecided"]:
+        page.line(f"undecided: touched or crossed at t = {event['t']}, within {event['radius']}")
+    return page.text()
+
+
+def _of_times(options: argparse.Namespace) -> Answer:
     words = [text for times in options.at for text in times.split(",")]
     times = [(text.strip(), read_number(text, "--at")) for text in words]
     scene = read_scene(options.scene)

@@ -9,12 +9,13 @@ from typing import Final
 
 from taylor_verify.cli.answer import PASS, Answer
 from taylor_verify.cli.console import Page, bold
+from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.schema import schema, text
 from taylor_verify.scenes.families.library import family, family_names
-from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, names
+from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, added_names, names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.files.formats.reading import FORMATS
+from taylor_verify.solvers.files.formats.reading import FORMATS, plugged
 from taylor_verify.solvers.registry import remarks, solver_names
 
 # The widest name that has its sentence beside it.
@@ -30,9 +31,13 @@ def answer(options: argparse.Namespace) -> Answer:
         "extremes": list(names(EXTREMES, WORST)),
         "engines": list(names(ENGINES)),
     }
+    if added := list(added_names()):
+        scenes["added"] = added
     titles = {name: load(name).title for group in scenes.values() for name in group}
     families = {name: family(name).title for name in family_names()}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
+    formats |= {suffix: f"{plugin.name} {plugin.origin}" for suffix, plugin in plugged().items()}
+    packages = {kind: {p.name: p.package for p in plugins(kind)} for kind in KINDS}
     names_by_group = {
         **scenes,
         "families": list(families),
@@ -40,8 +45,11 @@ def answer(options: argparse.Namespace) -> Answer:
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    shown = partial(_text, names_by_group, {**titles, **families, **remarks(), **formats}, GUIDE)
-    return Answer(PASS, {**names_by_group, "guide": dict(GUIDE)}, shown)
+    origins = {f"{p.name} ({kind})": p.origin for kind in KINDS for p in plugins(kind)}
+    sentences = {**titles, **families, **remarks(), **formats, **origins}
+    shown = partial(_text, {**names_by_group, "plug-ins": list(origins)}, sentences, GUIDE)
+    document = {**names_by_group, "guide": dict(GUIDE), "plugins": packages}
+    return Answer(PASS, document, shown)
 
 
 def _text(

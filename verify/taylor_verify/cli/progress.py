@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.cli.streams import say
+from taylor_verify.cli.streams import MANNER, say
 from taylor_verify.scenes.names import one_line
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 @contextmanager
 def advancing() -> Iterator[Progress]:
     """Show a bar that advances as jobs end; a line for each where stderr is no terminal."""
-    if not sys.stderr.isatty():
+    if MANNER.quiet or not sys.stderr.isatty():
         yield _say_progress
         return
     with _bar("compiling and solving"):
@@ -50,7 +50,7 @@ def working(what: str) -> Iterator[None]:
 
     Where stderr is no terminal, lines with the news, each after twice the time of the one before.
     """
-    with _bar(what) if sys.stderr.isatty() else _lines(what):
+    with _bar(what) if sys.stderr.isatty() and not MANNER.quiet else _lines(what):
         yield
 
 

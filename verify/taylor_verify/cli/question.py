@@ -26,9 +26,7 @@ def answer(options: argparse.Namespace) -> Answer:
     document = question(problem)
     if not options.csv:
         return Answer(PASS, document, partial(as_json_text, document))
-    how = f"fill in the empty cells, then: taylor-verify check FILE --scene {scene.name}"
-    how += f" --rung {name}" * (name != "f64")
-    return Answer(PASS, document, partial(_csv, problem), [how])
+    return Answer(PASS, document, partial(_csv, problem))
 
 
 def _csv(problem: Problem) -> str:

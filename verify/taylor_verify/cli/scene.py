@@ -19,7 +19,7 @@ def answer(options: argparse.Namespace) -> Answer:
             f"expected the word `from` (scene from robot.urdf), got {options.source!r} @ scene"
         )
     imported = import_scene(Path(options.file), options.link)
-    warnings = read(imported.text, options.file).warnings
+    warnings = (*imported.warnings, *read(imported.text, options.file).warnings)
     document = {
         "text": imported.text,
         "link": imported.link,

@@ -6,13 +6,29 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from typing import Any, TextIO
+from typing import Any, Final, TextIO
 
 from taylor_verify.scenes.names import escaped, one_line, without_commands
 
 
+class Manner:
+    """Manner of talking: ``quiet`` without messages, in ``colour`` auto, always or never."""
+
+    quiet: bool = False
+    colour: str = "auto"
+
+
+MANNER: Final = Manner()
+
+
 def say(*lines: str) -> None:
-    """Print a message, each of its lines in one line."""
+    """Print a message, each of its lines in one line, unless the caller asked for none."""
+    if not MANNER.quiet:
+        tell(*lines)
+
+
+def tell(*lines: str) -> None:
+    """Print a message in any case."""
     tell_runner(without_commands("taylor-verify: " + "\n".join(map(one_line, lines))))
 
 

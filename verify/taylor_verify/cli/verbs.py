@@ -3,7 +3,8 @@
 An entry point's name is the verb. It points to a module or an object with
 
     add(parser)      add arguments to the parser of the verb
-    run(arguments)   return an Answer (taylor_verify.cli.answer), or an exit status after printing by itself
+    run(arguments)   return an Answer (taylor_verify.cli.answer), or an exit status; stdout is for it,
+                     what a verb prints by itself goes to stderr
     help, example    texts, which may be left out
 
 A plug-in is imported when its verb is called. One that cannot be imported, or whose name is taken, is named
@@ -17,18 +18,14 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall
+from taylor_verify.cli.answer import PASS, Answer, wrong_calls
 from taylor_verify.cli.streams import say
+from taylor_verify.records.plugins import BrokenPlugin, entries, load, package_of, taken
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-GROUP: Final = "taylor_verify.verbs"
-
-
-def package_of(verb: EntryPoint) -> str:
-    """Return the distribution that brings a verb."""
-    return verb.dist.name if verb.dist is not None else "an unknown package"
+KIND: Final = "verbs"
 
 
 def described(verb: EntryPoint) -> tuple[str, str]:
@@ -43,26 +40,16 @@ def described(verb: EntryPoint) -> tuple[str, str]:
 
 def _loaded(verb: EntryPoint) -> Any:
     """Return the object behind an entry point. Raises WrongCall as ``described`` does."""
-    expected = f"expected the verb {verb.name} of {package_of(verb)}"
-    try:
-        plugin = verb.load()
-    except Exception as error:
-        raise WrongCall(f"{expected}, got {type(error).__name__}: {error}") from error
-    lacking = [part for part in ("add", "run") if not callable(getattr(plugin, part, None))]
-    if lacking:
-        raise WrongCall(f"{expected} to have {' and '.join(lacking)}, got none")
-    return plugin
+    with wrong_calls(kinds=BrokenPlugin):
+        return load(KIND, verb)
 
 
-def verbs(taken: Collection[str]) -> Iterator[EntryPoint]:
-    """Yield the verbs of other packages, each name once; one that is ``taken`` is named on stderr."""
-    from importlib.metadata import entry_points
-
-    known = set(taken)
-    for verb in sorted(entry_points(group=GROUP), key=lambda entry: entry.name):
+def verbs(own: Collection[str]) -> Iterator[EntryPoint]:
+    """Yield the verbs of other packages, each name once; one that is our ``own`` is named on stderr."""
+    known = set(own)
+    for verb in entries(KIND):
         if verb.name in known:
-            package = package_of(verb)
-            say(f"the verb {verb.name} of {package} is left out: there is one of this name")
+            say(taken(KIND, verb.name, package_of(verb)))
             continue
         known.add(verb.name)
         yield verb

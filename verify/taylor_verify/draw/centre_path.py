@@ -1,7 +1,7 @@
 """The path of the body's origin through the fluid, with its projections and the body on the way.
 
 One scale for all three directions. The walls behind carry the path's projections on them. The body is drawn
-at equal intervals of time: an ellipsoid in its own size, and the frame of a body that has no shape.
+at equal intervals of time: an ellipsoid by its sections, and the frame of a body that has no shape.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.draw.caption import NotDrawn, captioned
-from taylor_verify.draw.solid import AXES, by_depth, draw_ellipsoid, draw_frame, reach
-from taylor_verify.draw.stage import END, START, Look, Stage, scale
-from taylor_verify.draw.view import Numbers, View
-from taylor_verify.plotting.palette import FAINT, INK, QUIET
+from taylor_verify.draw.stage import END, START, Look, Stage, scale, stretches
+from taylor_verify.draw.view import Ellipsoid, Numbers, View
+from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.sheet import Entry
-from taylor_verify.plotting.style import SMALL
+from taylor_verify.plotting.sheet import Entry, blank
+from taylor_verify.plotting.style import PAGE_WIDTH
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Document = Mapping[str, Any]
@@ -40,15 +40,11 @@ _FRAMES: Final = 10
 _APART: Final = 1.25
 _WIDTH: Final = 1.8
 _SHADOW: Final[Look] = {"color": "#A9B2BA", "linewidth": 0.8, "gid": "projection"}
-_SIDES: Final = ("x", "y", "z")
+_SEAM: Final[Look] = {"color": "#43525C", "linewidth": 0.6}
+_COLOURS: Final = ("#A83C00", "#1C8578", "#0B5FA5")
 # The sides from which a path may be seen, in degrees.
 _AZIMUTHS: Final = (-62, -50, -40, -28, 28, 40, 50, 62)
 _ELEVATION: Final = 22.0
-# The distance from an edge to the middle of a number, and of the side's letter, in points.
-_NUMBER: Final = 11.0
-_LETTER: Final = 27.0
-# The room above and below the box, in inches.
-_BELOW: Final = 0.42
 
 
 @dataclass(frozen=True)
@@ -77,38 +73,8 @@ class Series:
         if self.semi_axes is None:
             return self.path
         places = self.instants
-        half = reach(np.array(self.semi_axes), self.attitudes[places])
+        half = np.sqrt(np.square(self.attitudes[places] * self.semi_axes).sum(axis=2))
         return np.concatenate([self.path, self.path[places] + half, self.path[places] - half])
-
-
-@dataclass(frozen=True)
-class _Box:
-    """Box by two opposite corners, and for each side the wall that is behind."""
-
-    low: Numbers
-    high: Numbers
-    walls: Numbers
-
-    @classmethod
-    def of(cls, points: Numbers, view: View) -> _Box:
-        low, high = points.min(axis=0), points.max(axis=0)
-        longest = float((high - low).max()) or 1.0
-        half = np.maximum((high - low) / 2 + _MARGIN * longest, _LEAST_SIDE * longest / 2)
-        middle = (low + high) / 2
-        low, high = middle - half, middle + half
-        return cls(low, high, np.where(view.towards > 0, low, high))
-
-    @property
-    def longest(self) -> float:
-        """The length of the longest side."""
-        return float((self.high - self.low).max())
-
-    @property
-    def corners(self) -> Numbers:
-        pairs = np.stack([self.low, self.high])
-        return np.array(
-            [[pairs[i, 0], pairs[j, 1], pairs[k, 2]] for i, j, k in np.ndindex(2, 2, 2)]
-        )
 
 
 def series(portrait: Document) -> Series:
@@ -139,18 +105,17 @@ def picture(portrait: Document) -> Picture:
 
 
 def _figure(track: Series, words: str) -> Figure:
-    view = _view(track.extent)
-    box = _Box.of(track.extent, view)
-    stage = Stage.showing(view.project(box.corners), view, _STAGE, _HEIGHT, _BELOW)
-    _draw_walls(stage, box)
+    stage, low, high = _stage(track.extent)
+    walls = np.where(stage.view.towards > 0, low, high)
     for i in range(3):
         shadow = track.path.copy()
-        shadow[:, i] = box.walls[i]
-        stage.axes.plot(*view.project(shadow).T, zorder=1, **_SHADOW)
-    stage.course(track.path, _WIDTH, 4)
-    _draw_solids(stage, track, _AXIS * box.longest)
-    stage.mark(track.path[0], START, gid="start")
-    stage.mark(track.path[-1], END, gid="end")
+        shadow[:, i] = walls[i]
+        stage.axes.plot(*shadow.T, zorder=1, **_SHADOW)
+    for colour, piece in stretches(track.path):
+        stage.axes.plot(*piece.T, color=colour, linewidth=_WIDTH, zorder=4, gid="path")
+    _draw_solids(stage.axes, track, _AXIS * float((high - low).max()))
+    for row, look, name in ((0, START, "start"), (-1, END, "end")):
+        stage.axes.plot(*track.path[row][:, None], zorder=6, gid=name, **look)
     entries: list[Entry] = [
         ({"color": scale()(0.6), "linewidth": _WIDTH}, "origin of the body"),
         *_body_entries(track),
@@ -166,9 +131,42 @@ def _figure(track: Series, words: str) -> Figure:
 
 def _body_entries(track: Series) -> list[Entry]:
     if track.semi_axes:
-        look = {"marker": "o", "markersize": 8, "markerfacecolor": "#E8EEF2", "linestyle": "none"}
-        return [({**look, "markeredgecolor": "#43525C"}, "the solid, in its own size")]
-    return [({"color": colour}, f"body axis {k}") for k, colour in enumerate(AXES, start=1)]
+        return [(_SEAM, "the solid, in its own size")]
+    return [({"color": colour}, f"body axis {k}") for k, colour in enumerate(_COLOURS, start=1)]
+
+
+def _stage(extent: Numbers) -> tuple[Stage, Numbers, Numbers]:
+    """Return a box in space that has the extent in it, at one scale, with two of its corners."""
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = _box(extent)
+    view, figure = _view(extent), blank(_HEIGHT)
+    axes: Any = figure.add_axes(
+        (0.0, 0.04, _STAGE / PAGE_WIDTH, 0.96),
+        projection="3d",
+        proj_type="ortho",
+        azim=view.azimuth,
+        elev=view.elevation,
+        computed_zorder=False,
+    )
+    axes.set_box_aspect(high - low, zoom=0.9)
+    for side, first, last in zip("xyz", low, high, strict=True):
+        axes.set(**{f"{side}lim": (first, last), f"{side}label": side})
+        axis = getattr(axes, f"{side}axis")
+        axis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_pane_color("#FAFAFA")
+        axis.labelpad = -1.0
+    axes.tick_params(pad=0)
+    return Stage(figure, axes, view, _STAGE), low, high
+
+
+def _box(points: Numbers) -> tuple[Numbers, Numbers]:
+    """Return two opposite corners of a box with room about the points."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    longest = float((high - low).max()) or 1.0
+    half = np.maximum((high - low) / 2 + _MARGIN * longest, _LEAST_SIDE * longest / 2)
+    middle = (low + high) / 2
+    return middle - half, middle + half
 
 
 def _view(path: Numbers) -> View:
@@ -177,75 +175,15 @@ def _view(path: Numbers) -> View:
     return max(views, key=lambda view: round(float(np.ptp(view.project(path)[:, 0])), 6))
 
 
-def _draw_walls(stage: Stage, box: _Box) -> None:
-    """Draw three walls with a grid, and numbers along the edges where two of them end."""
-    from matplotlib.ticker import MaxNLocator
-
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        wall = np.array([box.walls] * 5)
-        wall[:, j] = np.array([box.low[j], box.high[j], box.high[j], box.low[j], box.low[j]])
-        wall[:, k] = np.array([box.low[k], box.low[k], box.high[k], box.high[k], box.low[k]])
-        look: Look = {"facecolor": "#FAFAFA", "edgecolor": FAINT, "linewidth": 0.6}
-        stage.axes.fill(*stage.view.project(wall).T, **look, zorder=0)
-    for i in range(3):
-        low, high = float(box.low[i]), float(box.high[i])
-        count = max(2, round(5 * (high - low) / box.longest))
-        values = MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
-        _draw_ticks(stage, box, i, [float(v) for v in values if low <= v <= high])
-
-
-def _draw_ticks(stage: Stage, box: _Box, i: int, ticks: list[float]) -> None:
-    """Draw the grid across both walls that the side belongs to, and numbers at its front edge."""
-    others = [n for n in range(3) if n != i]
-    for value in ticks:
-        for n, m in (others, others[::-1]):
-            line = np.array([box.walls, box.walls])
-            line[:, i] = value
-            line[:, n] = (box.low[n], box.high[n])
-            line[:, m] = box.walls[m]
-            stage.axes.plot(*stage.view.project(line).T, color=FAINT, linewidth=0.5, zorder=0.1)
-    edge, outward = _edge(stage.view, box, i)
-    middle = (box.low[i] + box.high[i]) / 2
-    texts = [(v, _NUMBER, f"{v:g}".replace("-", "\N{MINUS SIGN}")) for v in ticks]
-    for value, away, words in [*texts, (middle, _LETTER, _SIDES[i])]:
-        edge[i] = value
-        stage.axes.annotate(
-            words,
-            stage.view.project(edge)[0],
-            (float(outward[0]) * away, float(outward[1]) * away),
-            textcoords="offset points",
-            size=SMALL,
-            color=INK,
-            ha="center",
-            va="center",
-            zorder=6,
-            gid="tick",
-        )
-
-
-def _edge(view: View, box: _Box, i: int) -> tuple[Numbers, Numbers]:
-    """Return a point of the edge where the numbers of side i stand, and the way outwards on the paper.
-
-    On the ground it is the edge opposite the wall, for the upright side the leftmost edge.
-    """
-    ground = (0, 1) if i == 2 else (1 - i,)
-    edges = []
-    for n in ground:
-        point = box.walls.copy()
-        point[n] = box.high[n] if box.walls[n] == box.low[n] else box.low[n]
-        edges.append((point, view.project(np.sign(point - box.walls))[0]))
-    point, way = min(edges, key=lambda edge: float(view.project(edge[0])[0, 0]))
-    outward = np.array([-1.0, 0.0]) if i == 2 else way / np.linalg.norm(way)
-    return point, outward
-
-
-def _draw_solids(stage: Stage, track: Series, length: float) -> None:
-    """Draw the body at a few instants, the nearest last."""
-    rows = track.instants
-    for layer, k in enumerate(by_depth(track.path[rows], stage.view)):
-        row, at = rows[k], 4.5 + layer / 10
+def _draw_solids(axes: Axes, track: Series, length: float) -> None:
+    """Draw the body at a few instants: the sections of an ellipsoid across its axes, or a frame."""
+    for row in track.instants:
+        attitude, centre = track.attitudes[row], track.path[row]
         if track.semi_axes:
-            draw_ellipsoid(stage, track.semi_axes, track.attitudes[row], track.path[row], at)
+            for pole in np.eye(3):
+                section = Ellipsoid(track.semi_axes).circle(pole) @ attitude.T + centre
+                axes.plot(*section.T, zorder=5, gid="solid", **_SEAM)
         else:
-            draw_frame(stage, length, track.attitudes[row], track.path[row], at)
+            for axis, colour in zip(attitude.T, _COLOURS, strict=True):
+                ends = np.array([centre, centre + length * axis])
+                axes.plot(*ends.T, color=colour, linewidth=1.3, zorder=5, gid="solid")

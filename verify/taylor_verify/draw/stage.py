@@ -6,8 +6,9 @@ to dark.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, Any, Final
 
@@ -63,15 +64,13 @@ class Stage:
     surface: Ellipsoid | None = None
 
     @classmethod
-    def showing(
-        cls, spots: Numbers, view: View, width: float, height: float, above: float = _ABOVE
-    ) -> Stage:
+    def showing(cls, spots: Numbers, view: View, width: float, height: float) -> Stage:
         """Return a stage of this size in inches that shows all spots (n, 2), at one scale."""
         figure = blank(height)
         axes = add_axes(figure, Frame(0.0, 0.0, width, height))
         axes.axis("off")
         low, high = spots.min(axis=0), spots.max(axis=0)
-        room = np.array([width - 2 * _ASIDE, height - 2 * above])
+        room = np.array([width - 2 * _ASIDE, height - 2 * _ABOVE])
         unit = float(((high - low) / room).max())
         half = unit * np.array([width, height]) / 2
         middle = (low + high) / 2
@@ -119,12 +118,9 @@ class Stage:
 
     def course(self, points: Numbers, width: float, zorder: float) -> None:
         """Draw a line that darkens as time goes on."""
-        bounds = np.linspace(0, len(points) - 1, _STRETCHES + 1).round().astype(int)
-        for k in range(_STRETCHES):
-            part = k / _STRETCHES
-            colour = scale()((k + 0.5) / _STRETCHES)
+        for k, (colour, piece) in enumerate(stretches(points)):
             look = {"color": colour, "linewidth": width, "gid": "path"}
-            self.line(points[bounds[k] : bounds[k + 1] + 1], zorder + part, look)
+            self.line(piece, zorder + k / _STRETCHES, look)
 
     def mark(self, point: Numbers, look: Look, **other: Any) -> None:
         """Draw a mark above all lines."""
@@ -185,6 +181,13 @@ class Stage:
         axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         axes.set_xlabel("time t", size=SMALL)
         axes.tick_params(labelsize=SMALL)
+
+
+def stretches(points: Numbers) -> Iterator[tuple[Any, Numbers]]:
+    """Yield the pieces of a course, each with the colour of its time."""
+    bounds = np.linspace(0, len(points) - 1, _STRETCHES + 1).round().astype(int)
+    for k, (first, last) in enumerate(pairwise(bounds)):
+        yield scale()((k + 0.5) / _STRETCHES), points[first : last + 1]
 
 
 def scale() -> Colormap:

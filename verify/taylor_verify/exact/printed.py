@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
-from mpmath import mp, mpf
+from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.attitudes import in_form
 from taylor_verify.exact.registry import kind_of
@@ -173,6 +173,17 @@ def _rounded_up(bound: mpf) -> str:
         )
 
 
+def enclosed_number(value: Any, error: mpf, digits: int, least: int) -> tuple[str, str]:
+    """Return a number as text, and a bound of its error with the rounding of the text.
+
+    It has the digits that its error leaves, at most ``digits``, and not less than ``least``.
+    """
+    with mp.workprec(_BOUND_BITS):
+        count = max(least, _proven_digits(value, error, digits))
+        rounding = abs(mp.convert(value)) * mpf(10) ** (1 - count) / 2
+        return _entry(value, count), _rounded_up(rounding + error)
+
+
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
     """Return the initial state by name, as rationals; a zero of the start is exactly zero."""
     initial, kind = scene.initial, kind_of(scene.body)
@@ -225,3 +236,36 @@ def _entry(value: Any, digits: int) -> str:
         with mp.workdps(digits + _SPARE_DIGITS):
             return str(mp.nstr(value, digits, strip_zeros=False))
     return decimal_text(exact_value(value), digits)
+
+
+class Printed(mpf):  # type: ignore[misc]
+    """A number of mpmath that prints with the digits that were asked for."""
+
+    digits: int
+
+    def __str__(self) -> str:
+        return str(libmp.to_str(self._mpf_, self.digits, strip_zeros=False))
+
+    __repr__ = __str__
+
+    def __format__(self, spec: str) -> str:
+        return str(self) if not spec else str(super().__format__(spec))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _printing, (self._mpf_, self.digits)
+
+
+def _printing(number: Any, digits: int) -> Printed:
+    """Return the number of a tuple of mpmath's, which no precision in force rounds."""
+    printed = Printed.__new__(Printed)
+    printed._mpf_, printed.digits = number, digits
+    return printed
+
+
+def printable(motion: Motion, times: Sequence[Fraction], digits: int) -> Motion:
+    """Return the motion with its times, each of its numbers printing with so many digits."""
+    quantities = {}
+    for name, values in motion.quantities.items():
+        numbers = [_printing(value._mpf_, digits) for value in values.flat]
+        quantities[name] = np.array([*numbers, None], dtype=object)[:-1].reshape(values.shape)
+    return replace(motion, quantities=quantities, times=tuple(times), digits=digits)

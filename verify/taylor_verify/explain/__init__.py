@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from os import PathLike
+from typing import Any
 
+from taylor_verify import types
 from taylor_verify.numbers.working_precision import in_turn
-
-if TYPE_CHECKING:
-    from os import PathLike
-
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
 
 
 @in_turn
-def explain(scene: Scene | str | PathLike[str], rung: Rung | str = "f64") -> dict[str, Any]:
+def explain(
+    scene: types.Scene | str | PathLike[str], rung: types.Rung | str = "f64"
+) -> dict[str, Any]:
     """Run a scene on one rung and explain the equations, the orbit and the terms of each bound.
 
     Parameters

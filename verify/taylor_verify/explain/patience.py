@@ -19,7 +19,7 @@ class _Spent(BaseException):
 
 
 class Patience:
-    """So many seconds of processor time, for all that is made with them together."""
+    """A number of seconds of processor time, for all that is made with it together."""
 
     def __init__(self, seconds: float) -> None:
         self._left = seconds

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MAIN
 from taylor_verify.records.reason import Carried, Cause, stated
 from taylor_verify.records.record import Record
-from taylor_verify.records.showing import counts, dataframe, html_table
+from taylor_verify.records.showing import counts, dataframe, html_table, picture
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
@@ -63,6 +63,18 @@ class Judgement:
         """The facts that were found out about the answer, a sentence each."""
         return self.notes
 
+    @property
+    def times(self) -> Sequence[float]:
+        """The times of the rows that were compared; empty where nothing was."""
+        return () if self.record is None else self.record.times
+
+    def __getitem__(self, quantity: str) -> Verdict:
+        """Return the verdict on a quantity, as ``judgement["omega"]``; KeyError with those there are."""
+        for verdict in self.verdicts:
+            if verdict.quantity == quantity:
+                return verdict
+        raise KeyError(f"{quantity}, of {', '.join(verdict.quantity for verdict in self.verdicts)}")
+
     def __bool__(self) -> bool:
         return self.passed
 
@@ -88,9 +100,14 @@ class Judgement:
             (v.quantity, v.verdict.value, figure(v.max), figure(v.bound), v.unit)
             for v in self.verdicts
         )
-        return html_table(
+        table = html_table(
             repr(self)[1:-1], headings, rows, account(self.verdicts, self.causes, self.remarks)
         )
+        gates = () if self.record is None else self.record.gates
+        curves = {
+            gate.quantity: gate.errors for gate in gates if len(gate.errors) == len(self.times)
+        }
+        return table + (picture(self.times, curves, "errors", log=True) if curves else "")
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""

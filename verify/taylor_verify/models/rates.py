@@ -5,36 +5,24 @@ s  state, in the problem's units       J(s)  the Jacobian of the rates
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
 from functools import lru_cache
 from math import inf, isfinite
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.symbol import Symbol
 
 SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
 _SQUARINGS: Final = 4
 _NEARLY: Final = 1.2
 # Numbers whose squares add up to this have fourth powers far below the largest double.
 _MODERATE: Final = 2.0**400
-_OPERATIONS: Final[Mapping[tuple[str, int], Any]] = {
-    ("+", 2): operator.add,
-    ("-", 2): operator.sub,
-    ("-", 1): operator.neg,
-    ("*", 2): operator.mul,
-    ("/", 2): operator.truediv,
-}
+# A step so small that its square is nothing beside one.
+_ASIDE: Final = 2.0**-300
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-Indices = np.ndarray[Any, np.dtype[np.intp]]
 
 
 class Linearised:
@@ -47,15 +35,10 @@ class Linearised:
     """
 
     def __init__(self, problem: Problem, doubles: Floats | None = None) -> None:
-        self._momenta, terms = _linearised(problem.form)
-        n = self._momenta
-        given = map(float, problem.parameters) if doubles is None else doubles.tolist()
-        parameters = np.array([1.0, *given])
-        values = terms.coefficients * parameters[terms.factors].prod(axis=0)
-        entries = np.bincount(terms.places, values, (n * n + 4) * (n + 1)).reshape(-1, n + 1)
-        # A row for the constant, and one for each momentum.
-        self._table: Floats = np.ascontiguousarray(entries.T)
-        self._square = float(np.vdot(entries, entries))
+        self._momenta = momenta(problem.form)
+        given = list(map(float, problem.parameters)) if doubles is None else doubles
+        self._table = _table(problem.form, np.asarray(given))
+        self._square = float(np.vdot(self._table, self._table))
         self._turns = "e0" in problem.form.states
 
     def fastest(self, states: Any) -> float:
@@ -135,73 +118,26 @@ def _largest(numbers: Floats) -> float:
     return float(sizes[sizes.argmax()])
 
 
-class _Terms(NamedTuple):
-    """Terms c p_i p_j ... of a table: their places in it, row by row, c, and i, j, ... in columns.
-
-    p_0 is 1, and p_i the i-th parameter. The table has a row for each entry of J, by rows, and one for each
-    component of the attitude's rate; its columns are the constant and the factor of each s_k.
-    """
-
-    places: Indices
-    coefficients: Floats
-    factors: Indices
-
-
 def momenta(form: Form) -> int:
     """Return the number of the momenta, which come first of all states."""
     return sum(name[0] not in "ec" for name in form.states)
 
 
-@lru_cache(maxsize=64)
-def _linearised(form: Form) -> tuple[int, _Terms]:
-    """Return the number of the momenta, and the terms of J and omega/2."""
-    n = momenta(form)
-    terms = list[tuple[int, float, list[int]]]()
-    for i, c, variables, factors in _monomials(form):
-        if i < n:
-            entries = [
-                (n * i + k, variables[:p] + variables[p + 1 :]) for p, k in enumerate(variables)
-            ]
-        elif form.states[i][0] == "e" and n in variables:
-            # The factor of e0 in the rate of the quaternion is (0, omega)/2.
-            entries = [(n * n + i - n, [k for k in variables if k != n])]
-        else:
-            continue
-        terms += [((n + 1) * row + sum(k + 1 for k in of), c, factors) for row, of in entries]
-    degree = max((len(factors) for *_, factors in terms), default=0)
-    padded = [factors + [0] * (degree - len(factors)) for *_, factors in terms]
-    return n, _Terms(
-        np.array([place for place, *_ in terms], dtype=np.intp),
-        np.array([c for _, c, _ in terms], dtype=float),
-        np.array(padded, dtype=np.intp).reshape(len(terms), degree).T,
-    )
+def _table(form: Form, parameters: Floats) -> Floats:
+    """Return the entries of J and of 0 and omega/2: a row for the constant, and one for each momentum.
 
-
-def _monomials(form: Form) -> Iterator[tuple[int, float, list[int], list[int]]]:
-    """Yield the terms of every rate, multiplied out: the state's place, c, its variables, and parameters.
-
-    A variable is repeated according to its power. Parameters are counted from 1.
+    J comes from steps into the complex plane, so small that nothing is neglected and nothing cancels.
+    The factor of e0 in the rate of the quaternion is (0, omega)/2.
     """
-    names, n = [*form.states, *form.parameters], len(form.states)
-    variables = fmpq_mpoly_ctx.get([f"v{i}" for i in range(len(names))], Ordering.lex).gens()
-    known = dict(zip(names, variables, strict=True))
-    for place, rate in enumerate(form.symbolic()):
-        for powers, c in () if is_absent(rate) else _polynomial(rate, known).to_dict().items():
-            factors = [i for i, power in enumerate(powers) for _ in range(int(power))]
-            number = int(c.p) / int(c.q)
-            yield (
-                place,
-                number,
-                [i for i in factors if i < n],
-                [i - n + 1 for i in factors if i >= n],
-            )
-
-
-def _polynomial(term: Any, known: Mapping[str, Any]) -> Any:
-    """Return a symbolic rate as a polynomial; its numbers may be doubles, which flint does not take."""
-    if not isinstance(term, Symbol):
-        return fmpq(*Fraction(term).as_integer_ratio())
-    if term.name:
-        return known[term.name]
-    operands = [_polynomial(operand, known) for operand in term.operands]
-    return _OPERATIONS[term.operation, len(operands)](*operands)
+    n = momenta(form)
+    others = [float(name == "e0") for name in form.states[n:]]
+    points = np.vstack([np.zeros(n), np.eye(n)])
+    # Axes: the momenta, the points, the directions.
+    around = points.T[:, :, None] + 1j * _ASIDE * np.eye(n)[:, None, :]
+    rates = form.rates([*around, *others], [*parameters])
+    whole = np.array([rate + np.zeros_like(around[0]) for rate in rates])
+    turns = whole[n : n + 4, :, 0] if "e0" in form.states else np.zeros((4, n + 1))
+    J = np.moveaxis(whole[:n].imag, 0, 1).reshape(n + 1, n * n) / _ASIDE
+    entries = np.hstack([J, turns.real.T])
+    entries[1:] -= entries[0]
+    return np.ascontiguousarray(entries)

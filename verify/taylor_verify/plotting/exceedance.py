@@ -6,10 +6,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.named import Named
 from taylor_verify.plotting.palette import INK, QUIET
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.sheet import sheet
+from taylor_verify.plotting.sheet import name_lines, sheet
 from taylor_verify.plotting.style import look_of_line
 from taylor_verify.plotting.wording import plain
 from taylor_verify.records.quantities import INITIAL
@@ -54,8 +53,6 @@ def _points(spread: Spread) -> Points:
 
 
 def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
-    from taylor_verify.plotting.labels import write_names
-
     figure, (axes,) = sheet(1, [], height=_HEIGHT)
     lines = [_points(each) for each in drawn]
     sizes = [size for points in lines for size, _ in points]
@@ -70,21 +67,16 @@ def _figure(summary: SweepSummary, drawn: list[Spread]) -> Figure:
     )
     if summary.tolerance is None:
         _draw_gate(axes, summary.factor)
-    named = []
     for i, (each, points) in enumerate(zip(drawn, lines, strict=True)):
-        look = look_of_line(i)
         axes.plot(
             *zip(*points, strict=True),
-            color=look.colour,
+            color=look_of_line(i).colour,
             linewidth=1.2,
             gid=each.quantity,
+            label=each.quantity,
             zorder=3,
         )
-        # Enough points for a name to stand anywhere beside its line.
-        named.append(
-            Named(each.quantity, look.colour, [points[:: -max(len(points) // 20, 1)][::-1]])
-        )
-    write_names(axes, named)
+    name_lines(axes)
     return figure
 
 

@@ -7,10 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.named import Named
 from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.sheet import sheet
+from taylor_verify.plotting.sheet import name_lines, sheet
 from taylor_verify.plotting.style import look_of_line
 from taylor_verify.plotting.wording import stem_of
 from taylor_verify.records.answers import Order
@@ -67,8 +66,6 @@ def _figure(orders: Sequence[Order]) -> Figure:
 
 
 def _draw(axes: Axes, orders: Sequence[Order]) -> None:
-    from taylor_verify.plotting.labels import write_names
-
     errors = [_errors(order) for order in orders]
     floors = [[(p.step, p.attainable) for p in o.points if p.attainable] for o in orders]
     everything = [point for points in (*errors, *floors) for point in points]
@@ -78,7 +75,8 @@ def _draw(axes: Axes, orders: Sequence[Order]) -> None:
     number_axes(axes)
     for i, order in enumerate(orders):
         look = look_of_line(i).line
-        axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
+        (line,) = axes.plot(*zip(*errors[i], strict=True), gid=order.quantity, zorder=3, **look)
+        line.set_label(_name(order))
         least, most = order.smallest or 0.0, order.largest or 0.0
         read = [p for p in errors[i] if order.order is not None and least <= p[0] <= most]
         if read:
@@ -86,10 +84,7 @@ def _draw(axes: Axes, orders: Sequence[Order]) -> None:
             axes.plot(*zip(*read, strict=True), zorder=3, gid="order", **heavy)
         if floors[i]:
             axes.plot(*zip(*floors[i], strict=True), color=look["color"], gid="floor", **_DOTTED)
-    names = [
-        Named(_name(order), look_of_line(i).colour, [errors[i]]) for i, order in enumerate(orders)
-    ]
-    write_names(axes, names, [points for points in floors if points])
+    name_lines(axes)
 
 
 def _name(order: Order) -> str:

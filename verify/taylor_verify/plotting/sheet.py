@@ -23,8 +23,6 @@ RIGHT: Final = 0.08
 HEADING: Final = 0.26
 BELOW: Final = 0.46
 HEIGHT: Final = 2.35
-# Height of a family's line in the strip above a panel.
-STRIP: Final = 0.15
 # Height of a line of the legend, and of the space below.
 _LINE: Final = 0.2
 _FOOT: Final = 0.06
@@ -50,7 +48,7 @@ def sheet(
     count: int, entries: Sequence[Entry], note: str = "", height: float = HEIGHT
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure with ``count`` panels, two in a row, and its legend."""
-    frames, total = frames_of([0] * count, foot_of(entries, note), height)
+    frames, total = frames_of(count, foot_of(entries, note), height)
     figure = blank(total)
     draw_legend(figure, entries, note, free_place(frames))
     return figure, [add_axes(figure, frame) for frame in frames]
@@ -71,27 +69,19 @@ def add_axes(figure: Figure, frame: Frame) -> Axes:
     )
 
 
-def frames_of(
-    strips: Sequence[int], foot: float, height: float = HEIGHT
-) -> tuple[list[Frame], float]:
-    """Return the place of each panel below its strip of lines, and the height of the figure.
-
-    The headings of a row are on one line. A panel with a lower strip is higher by the difference.
-    """
-    across = min(2, len(strips))
-    width = PAGE_WIDTH / across - LEFT - RIGHT
-    rows = [list(strips[i : i + across]) for i in range(0, len(strips), across)]
-    heights = [HEADING + STRIP * max(row) + height + BELOW for row in rows]
+def frames_of(count: int, foot: float, height: float = HEIGHT) -> tuple[list[Frame], float]:
+    """Return the place of each panel, two in a row, and the height of the figure."""
+    across = min(2, count)
+    width, whole = PAGE_WIDTH / across - LEFT - RIGHT, HEADING + height + BELOW
     # The legend is in a free place beside the last panel, else at the foot.
-    top = total = sum(heights) + (0.0 if _leaves_a_place(len(strips)) else foot)
-    frames = []
-    for row, whole in zip(rows, heights, strict=True):
-        for column, lines in enumerate(row):
-            left = LEFT + column * (width + LEFT + RIGHT)
-            frames.append(
-                Frame(left, top - whole + BELOW, width, height + STRIP * (max(row) - lines))
-            )
-        top -= whole
+    total = whole * -(-count // across) + (0.0 if _leaves_a_place(count) else foot)
+    places = (divmod(k, across) for k in range(count))
+    frames = [
+        Frame(
+            LEFT + column * (width + LEFT + RIGHT), total - whole * (row + 1) + BELOW, width, height
+        )
+        for row, column in places
+    ]
     return frames, total
 
 
@@ -114,6 +104,21 @@ def foot_of(entries: Sequence[Entry], note: str) -> float:
 
 def _lines(entries: Sequence[Entry]) -> int:
     return max(-(-len(entries) // _ABREAST), 1)
+
+
+def name_lines(axes: Axes) -> None:
+    """Write the names of the lines that have one, where they hide the fewest points."""
+    if not axes.get_legend_handles_labels()[0]:
+        return
+    axes.legend(
+        loc="best",
+        fontsize=SMALL - 1,
+        handlelength=2.0,
+        borderpad=0.2,
+        labelspacing=0.15,
+        framealpha=0.6,
+        edgecolor="none",
+    )
 
 
 def draw_legend(

@@ -12,7 +12,7 @@ _LONGEST_SHOWN = 60
 _MOST_FAULTS = 100
 
 
-class Refused(Exception):  # noqa: N818 (an answer, not a fault of the code)
+class Refused(ValueError):  # noqa: N818 (an answer, not a fault of the code)
     """A scene that cannot be asked of any solver.
 
     ``faults`` holds one line each, ``expected ..., got ... @ body.inertia[1]``, with the mend in

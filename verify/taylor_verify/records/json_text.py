@@ -10,6 +10,7 @@ import json
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import Field, fields, is_dataclass
+from decimal import Decimal
 from enum import Enum
 from math import isfinite
 from pathlib import Path
@@ -17,9 +18,9 @@ from typing import Annotated, Any, Final, TypeVar
 
 import msgspec
 
-from taylor_verify.records.faults import Refused
+from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.records.limit import Limit
-from taylor_verify.records.regular_file import bounded_bytes
+from taylor_verify.records.regular_file import bounded_bytes, read_bytes
 
 Document = TypeVar("Document")
 
@@ -104,10 +105,20 @@ def read(file: Path, kind: type[Document]) -> Document:
     """Read a file as a document of a type. Raises OSError, and ValueError that names the file."""
     try:
         return parsed(bounded_bytes(file, "a stored document", DOCUMENT), kind)
-    except Refused as refused:
-        raise ValueError(str(refused)) from None
+    except Refused:
+        raise
     except ValueError as error:
         raise ValueError(f"{error} @ {file}") from error
+
+
+def exact_document(file: Path) -> Any:
+    """Return the JSON document in a file, its decimals as Decimal. Raises Refused."""
+    content = read_bytes(file, "a JSON document", DOCUMENT)
+    try:
+        return json.loads(content, parse_float=Decimal, parse_int=_whole)
+    except (ValueError, RecursionError) as error:
+        reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
+        raise refusal("a JSON document", f"a fault in it: {reason}", file) from None
 
 
 def _whole(text: str) -> int | str:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import BinaryIO, Final
 from xml.parsers import expat
 
-from taylor_verify.records.faults import refusal
+from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.records.limit import Limit
 
 DEEPEST: Final = Limit(200, "elements inside each other", "the longest chain of bodies is shorter")
@@ -70,6 +70,8 @@ class Markup(ABC):
                 self._parser.Parse(piece, False)  # noqa: FBT003 (Parse has no names)
                 TAG.check(size - max(self._parser.CurrentByteIndex, 0), self.place)
             self._parser.Parse(b"", True)  # noqa: FBT003
+        except Refused:
+            raise
         except (expat.ExpatError, LookupError, ValueError) as error:
             raise refusal("an XML document", f"a fault in it: {error}", self.path) from None
 

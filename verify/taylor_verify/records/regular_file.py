@@ -84,5 +84,7 @@ def _open_without_waiting(path: str, flags: int) -> int:
 def _check(status: os.stat_result, path: Path, expected: str, most: Limit) -> None:
     if not stat.S_ISREG(status.st_mode):
         kind = _KINDS.get(stat.S_IFMT(status.st_mode), "no regular file")
-        raise Refused([f"expected {expected}, got {kind} @ {path}"])
+        is_piped = stat.S_ISFIFO(status.st_mode) and "trajectory" in expected
+        mend = " (name it -, and hand it over on standard input)" if is_piped else ""
+        raise Refused([f"expected {expected}, got {kind} @ {path}{mend}"])
     most.check(status.st_size, path)

@@ -153,8 +153,8 @@ def _placed(stored: _Verdicts, timed: _Timed) -> Iterator[tuple[str, Verdict]]:
 
 def _within(fault: str, place: str) -> str:
     """Return a fault of a row with the place of the row in its document."""
-    said, _, inner = fault.partition(" @ ")
-    return f"{said} @ {place}" + (f".{inner}" if inner and inner != "the document" else "")
+    sentence, _, inner = fault.partition(" @ ")
+    return f"{sentence} @ {place}" + (f".{inner}" if inner and inner != "the document" else "")
 
 
 def with_digest(verdict: Verdict, digests: Mapping[str, str]) -> Verdict:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
 
-if TYPE_CHECKING:
-    import os
-
-    from taylor_verify.scenes.scene import Scene
+from taylor_verify import types
 
 
-def load(scene: str | os.PathLike[str]) -> Scene:
+def load(scene: str | os.PathLike[str]) -> types.Scene:
     """Read a scene file, or a shipped scene.
 
     Parameters

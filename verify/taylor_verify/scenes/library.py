@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Final
 
 from taylor_verify.records.faults import Refused, brief
+from taylor_verify.records.plugins import free
 
 STANDARD_SET: Final = ("euler", "kirchhoff", "loads", "manufactured")
 EXTREMES: Final = "extremes"
@@ -73,6 +74,21 @@ def names(*folders: str) -> tuple[str, ...]:
     )
 
 
+def folders_of_plugins() -> dict[str, Path]:
+    """Return the folders of scenes that other packages add, by name."""
+    own = (folder.name for folder in cases_directory().iterdir())
+    sound = free("scenes", lambda plugin: iter((plugin.name,)), own)
+    return {plugin.name: Path(plugin.content) for plugin in sound}
+
+
+def added_names() -> tuple[str, ...]:
+    """Return the names of the scenes that other packages add."""
+    folders = folders_of_plugins().items()
+    return tuple(
+        f"{name}/{f.stem}" for name, folder in folders for f in sorted(folder.glob("*.toml"))
+    )
+
+
 def named(scene: str) -> tuple[str, ...]:
     """Return the scenes that a word of the command line stands for.
 
@@ -84,6 +100,8 @@ def named(scene: str) -> tuple[str, ...]:
         if scene.endswith(_ENDING):
             return tuple(sorted(glob(scene))) or (scene,)
         return tuple(name for name in _all_names() if fnmatchcase(name, scene)) or (scene,)
+    if scene in folders_of_plugins():
+        return tuple(name for name in added_names() if name.startswith(f"{scene}/"))
     folders = (EXTREMES, WORST) if scene == EXTREMES else (scene,)
     is_folder = scene in (*STANDARD_SET, EXTREMES, WORST, ENGINES)
     return (names(*folders) if is_folder else ()) or (scene,)
@@ -106,6 +124,13 @@ def find(scene: str | os.PathLike[str]) -> Path:
         shipped = cases_directory() / f"{name}.toml"
         if name and shipped.is_file():
             return shipped
+        folder, _, stem = name.partition("/")
+        if (
+            stem
+            and (added := folders_of_plugins().get(folder))
+            and (added / f"{stem}.toml").is_file()
+        ):
+            return added / f"{stem}.toml"
     except OSError as error:  # a name longer than any file's
         raise Refused([f"expected {expected}, got {name:.60} ({error.strerror})"]) from None
     raise Refused([f"expected {expected}, got {name} ({_near(name)})"])
@@ -117,7 +142,7 @@ def _is_pattern(scene: str) -> bool:
 
 
 def _all_names() -> tuple[str, ...]:
-    return names(*STANDARD_SET, EXTREMES, WORST, ENGINES)
+    return (*names(*STANDARD_SET, EXTREMES, WORST, ENGINES), *added_names())
 
 
 def _near(scene: str) -> str:

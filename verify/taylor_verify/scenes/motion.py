@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
 
@@ -101,8 +102,8 @@ class Clock:
         return Instants(len(self.instants), lambda k: self.instants[k] - self.start)
 
 
-@dataclass(frozen=True)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Sampled):
     """A motion sampled at n instants, as NumPy object arrays of mpmath numbers.
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse`` (n, 3; body axes),
@@ -114,6 +115,7 @@ class Motion:
     ``errors`` that of every component, absolutely: shaped as the quantities are. Quantities are also the
     scene's own states that it tracks, by name and of shape (n, components), read after an instant; the
     radius of such a one is relative to ``peaks``, a lower bound of its largest norm up to each row.
+    ``digits`` are those that were asked for: each number prints with them.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
@@ -121,9 +123,12 @@ class Motion:
     radii: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
     errors: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
     peaks: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
+    times: Sequence[Fraction] = ()
+    digits: int | None = None
 
-    def __getitem__(self, quantity: str) -> np.ndarray[Any, Any]:
-        return self.quantities[quantity]
+    @property
+    def _remark(self) -> str:
+        return "" if self.digits is None else f", to {self.digits} digits"
 
     def radius_of(self, quantity: str) -> np.ndarray[Any, Any]:
         """Return the radius of this quantity alone, or that of the whole row if no other is known."""
@@ -135,4 +140,5 @@ class Motion:
             {name: values[rows] for name, values in by_name.items()}
             for by_name in (self.quantities, self.radii, self.errors, self.peaks)
         )
-        return Motion(quantities, self.radius[rows], radii, errors, peaks)
+        times = [self.times[k] for k in rows] if self.times else ()
+        return Motion(quantities, self.radius[rows], radii, errors, peaks, times, self.digits)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from taylor_verify.records.quantities import (
     GROUPS,
@@ -18,7 +19,7 @@ from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import Clock, State
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """Content of a scene file: every number is an exact rational, in the scene's own consistent units.
 
@@ -42,6 +43,16 @@ class Scene:
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     states: frozenset[str] = frozenset()
+
+    @property
+    def times(self) -> Sequence[Fraction]:
+        """The times asked for, on the clock of the scene."""
+        return self.clock.instants
+
+    def __repr__(self) -> str:
+        tracked = ", ".join(quantity.name for quantity in self.tracked)
+        span = f"{len(self.times)} times from {self.times[0]} to {self.times[-1]}"
+        return f"<Scene {self.name}: {self.title}; {self.model}, {tracked} at {span}>"
 
     @property
     def tracked(self) -> tuple[Quantity, ...]:

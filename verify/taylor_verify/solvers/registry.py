@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from difflib import get_close_matches
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
+
+from taylor_verify.records.plugins import Plugin, free
 
 if TYPE_CHECKING:
     from taylor_verify.solvers.solver import Solver
@@ -17,6 +20,8 @@ PROCESS = "process:"
 CLOSED_FORM = "closed-form:"
 # Solvers of other libraries, each in its own environment.
 OUTSIDE = "outside:"
+# A function of Python.
+PYTHON = "python:"
 
 
 class Family(NamedTuple):
@@ -52,6 +57,7 @@ FAMILIES = (
     Family(CLOSED_FORM, "closed_form", _ELLIPJ[0], _ELLIPJ, "scipy", "scipy"),
     Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
     Family(PROCESS, "process.process", "process:COMMAND"),
+    Family(PYTHON, "function", "python:package.module:function"),
     Family("fmu:", "fmu.fmu", _FMU[0], _FMU, "fmpy", "fmu"),
 )
 
@@ -61,7 +67,7 @@ def solver_names() -> tuple[str, ...]:
     names = (
         _module(family).usages() if family.names is None else family.names for family in FAMILIES
     )
-    return tuple(chain.from_iterable(names))
+    return (*chain.from_iterable(names), *(plugin.name for plugin in _plugged()))
 
 
 def remarks() -> dict[str, str]:
@@ -73,7 +79,7 @@ def remarks() -> dict[str, str]:
         elif family.package and find_spec(family.package) is None:
             install = f"unavailable: pip install 'taylor-verify[{family.extra}]'"
             by_name |= dict.fromkeys(family.names, install)
-    return by_name
+    return by_name | {plugin.name: plugin.origin for plugin in _plugged()}
 
 
 def solver_named(name: str) -> Solver:
@@ -81,10 +87,22 @@ def solver_named(name: str) -> Solver:
     for family in FAMILIES:
         if f"{name}?".startswith(family.prefix):
             return cast("Solver", _module(family).named(name))
+    word, _, query = name.partition("?")
+    for plugin in _plugged():
+        if plugin.name == word:
+            from taylor_verify.solvers.function import solver_of
+
+            return solver_of(plugin.content, word, query)
     forms = ", ".join(family.form for family in FAMILIES)
     near = get_close_matches(name, solver_names(), n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise ValueError(f"expected a solver ({forms}), got {name!r}{hint}")
+
+
+def _plugged() -> list[Plugin]:
+    """Return the solvers of other packages whose names are not those of a family."""
+    words = (family.prefix.rstrip("?:") for family in FAMILIES)
+    return free("solvers", lambda plugin: iter((plugin.name.partition(":")[0],)), words)
 
 
 def _module(family: Family) -> Any:
@@ -92,14 +110,16 @@ def _module(family: Family) -> Any:
     return import_module(f"taylor_verify.solvers.{family.module}")
 
 
-def as_solver(solver: Solver | str) -> Solver:
-    """Return a Solver as it is, and that of a name; ValueError for anything else."""
+def as_solver(solver: Solver | Callable[..., Any] | str) -> Solver:
+    """Return a Solver as it is, and that of a name or of a callable; ValueError for anything else."""
     from taylor_verify.records.faults import brief
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.solver import Solver
 
     if isinstance(solver, str):
         return solver_named(solver)
     if isinstance(solver, Solver):
         return solver
-    mend = " (a callable is judged by taylor_verify.check)" if callable(solver) else ""
-    raise ValueError(f"expected a Solver or the name of one, got {brief(solver)}{mend}")
+    if callable(solver):
+        return Callback.of(solver)
+    raise ValueError(f"expected a Solver, the name of one or a callable, got {brief(solver)}")

@@ -1,26 +1,17 @@
-"""The contract of a solver, and the solver that calls a user's function."""
+"""The contract of a solver."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
-from numbers import Rational
-from time import perf_counter
-from typing import Any, ClassVar, Final, final
-
-import numpy as np
-from mpmath import mp
+from collections.abc import Collection
+from typing import ClassVar, Final
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify.solvers.values import Value, as_mpf, exact
 
-_RATIONAL_BITS = 4000
 # What acts on a body, in the words of a sentence.
 _ACTING: Final = {
     "rotor": "wheels",
@@ -86,46 +77,6 @@ class Solver(ABC):
         return f"{self.name} does not take loads that a scene writes down"
 
 
-@final
-@dataclass(frozen=True)
-class Callback(Solver):
-    """A user's function as a solver: ``answer(problem)`` returns states of shape (samples, n).
-
-    Columns: omega, or x and y; then q0..q3 where the attitude is tracked, then the centre where it is, then
-    the tracked states of the scene's own. A Python or NumPy number, a Fraction or an mpf is taken exactly.
-    A masked number and a table with named columns are refused. An exception is a failed run, and so is
-    `sys.exit` with any code; an interrupt stays an interrupt.
-    """
-
-    answer: Callable[[Problem], Any]
-    name: str = "callback"
-    takes_loads = True
-
-    def solve(self, problem: Problem) -> Trajectory:
-        began = perf_counter()
-        try:
-            answered = self.answer(problem)
-            if fault := _no_array(answered):
-                return Trajectory(Outcome.MISSHAPEN, detail=fault)
-            states = np.asarray(answered)
-        except (Exception, SystemExit) as error:  # a user's code: its exception is its outcome
-            return raised(error)
-        seconds = perf_counter() - began
-        layout = columns(problem)
-        expected = (len(problem.times), sum(width for _, width in layout))
-        if states.shape != expected:
-            detail = f"expected states of shape {expected}, got {states.shape}"
-            return Trajectory(Outcome.MISSHAPEN, detail=detail, seconds=seconds)
-        try:
-            numbers = np.array([[_as_mpf(v) for v in row] for row in states], dtype=object)
-        except TypeError as error:
-            return Trajectory(Outcome.MISSHAPEN, detail=str(error), seconds=seconds)
-        ends = np.cumsum([width for _, width in layout])[:-1]
-        parts = np.split(numbers, ends, axis=1)
-        quantities = {name: part for (name, _), part in zip(layout, parts, strict=True)}
-        return Trajectory(Outcome.FINISHED, quantities, seconds=seconds)
-
-
 def float64_alone(name: str, rung: Rung) -> str:
     """Return the reason why a solver made in float64 cannot run on that rung; empty where it can."""
     return "" if rung.name == "f64" else f"{name} is made in float64: f64 alone"
@@ -156,22 +107,6 @@ def raised(error: BaseException) -> Trajectory:
     return Trajectory(Outcome.RAISED, detail=detail)
 
 
-def _no_array(answered: Any) -> str:
-    """Return the reason why an answer is no array of numbers; empty where it is one.
-
-    NumPy drops a mask, and a table's columns have names that say more than their order.
-    """
-    mend = "hand over its columns in the order of a state, as an array"
-    if isinstance(answered, Mapping):
-        return f"expected an array of states, got a dict ({mend}, or check(scene, the_dict))"
-    if hasattr(answered, "columns"):
-        return f"expected an array of states, got a {type(answered).__name__} ({mend})"
-    rows = answered if isinstance(answered, list | tuple) else [answered]
-    masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
-    masked = sum(int(np.sum(mask)) for mask in masks)
-    return f"expected states without a mask, got {masked} masked numbers" if masked else ""
-
-
 def columns(problem: Problem) -> list[tuple[str, int]]:
     """Return the quantities of a state row in their order, each with its number of columns.
 
@@ -180,20 +115,3 @@ def columns(problem: Problem) -> list[tuple[str, int]]:
     tracked states of the scene's own.
     """
     return [(group.name, len(group.columns)) for group in problem.scene.groups]
-
-
-def _as_mpf(value: Any) -> Any:
-    """Return the mpf equal to a number; NaN and infinity stay what they are, and fail every gate.
-
-    A rational that is no binary fraction is rounded to 4000 bits. Raises TypeError for what is no
-    real number.
-    """
-    if isinstance(value, mp.mpf):
-        return value
-    if isinstance(value, Rational) and not isinstance(value, bool):
-        number: Value = Fraction(int(value.numerator), int(value.denominator))
-    elif isinstance(value, np.floating | float):
-        number = exact(value)
-    else:
-        raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
-    return as_mpf(number, _RATIONAL_BITS)

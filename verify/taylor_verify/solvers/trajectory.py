@@ -10,7 +10,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpmath import mp
@@ -24,9 +24,13 @@ from taylor_verify.models.registry import mechanics
 from taylor_verify.models.written import unit_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import exact_value, held_exactly
+from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+
+if TYPE_CHECKING:
+    from taylor_verify.solvers.files.file import TrajectoryFile
 
 
 class Outcome(Enum):
@@ -131,8 +135,8 @@ def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Moti
     return Motion(by_name, np.array([mp.zero] * samples, dtype=object))
 
 
-@dataclass(frozen=True)
-class Trajectory:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory(Sampled):
     """The answer of one solver to one problem.
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse``, ``centre`` (n, 3) and
@@ -140,7 +144,8 @@ class Trajectory:
     solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED.
     ``evaluations`` counts derivatives of the whole state, ``seconds`` the propagation alone and
     ``compile_seconds`` what came before it. ``inner_seconds`` is the part of ``seconds`` that was
-    spent in somebody else's compiled integrator, where that is told apart.
+    spent in somebody else's compiled integrator, where that is told apart. A ``file`` is an answer of a
+    user's function at times of its own, or by names: it is judged as a trajectory file is.
     """
 
     outcome: Outcome
@@ -151,6 +156,13 @@ class Trajectory:
     seconds: float = 0.0
     compile_seconds: float = 0.0
     inner_seconds: float | None = None
+    file: TrajectoryFile | None = None
+    times: Sequence[Fraction] = ()
+
+    @property
+    def _remark(self) -> str:
+        reason = f" ({self.detail})" if self.detail else ""
+        return f", {self.outcome.value}{reason}"
 
     def motion(self, bits: int) -> Motion:
         """Return the answer as a Motion; ``bits`` is the precision of attitude matrices."""

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from decimal import Decimal
 from fractions import Fraction
+from numbers import Rational
 from typing import Any, Final
 
 import numpy as np
@@ -104,3 +105,19 @@ def as_mpf(value: Value, bits: int) -> Any:
         ratio = (value.numerator, value.denominator)
         return mp.make_mpf(libmp.from_rational(*ratio, bits, libmp.round_nearest))
     return held_exactly(value)
+
+
+def number_as_mpf(value: Any, bits: int) -> Any:
+    """Return the mpf equal to a number of Python, NumPy or mpmath; NaN and infinity stay what they are.
+
+    A rational that is no binary fraction is rounded. Raises TypeError for what is no real number.
+    """
+    if isinstance(value, mp.mpf):
+        return value
+    if isinstance(value, Rational) and not isinstance(value, bool):
+        number: Value = Fraction(int(value.numerator), int(value.denominator))
+    elif isinstance(value, np.floating | float):
+        number = exact(value)
+    else:
+        raise TypeError(f"expected real numbers, got {value!r} of type {type(value).__name__}")
+    return as_mpf(number, bits)

@@ -155,34 +155,29 @@ def _judgement(
 ) -> tuple[Judgement, BaseException | None]:
     """Return the judgement, and the exception that a callable raised, whose traceback pytest then shows."""
     __tracebackhide__ = True
+    from dataclasses import replace
+
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.records.faults import Refused
     from taylor_verify.run import run
     from taylor_verify.scenes.reading.reader import as_scene
+    from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.registry import as_solver
-    from taylor_verify.solvers.solver import Callback, Solver
 
     raised: list[BaseException] = []
 
-    def answer(problem: Any) -> Any:
-        assert callable(solve)
+    def answer(problem: Any, **settings: Any) -> Any:
         try:
-            return solve(problem)
+            return given.answer(problem, **settings)
         except (Exception, SystemExit) as error:
             raised.append(error)
             raise
 
     try:
         scene = as_scene(scene)
-        if isinstance(solve, str | Solver):
-            solver = as_solver(solve)
-        elif callable(solve):
-            solver = Callback(answer, getattr(solve, "__qualname__", type(solve).__name__))
-        else:
-            raise ValueError(
-                f"expected a callable, a Solver or the name of a solver, got {solve!r} @ solve"
-            )
+        given: Any = as_solver(solve)
+        solver = replace(given, answer=answer) if isinstance(given, Callback) else given
         exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
     except (Refused, ValueError) as fault:
         raise pytest.fail.Exception(str(fault)) from None

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from os import PathLike
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from os import PathLike
-
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.tradeoff.recommendation import Recommendation
-    from taylor_verify.tradeoff.setting import Setting
-    from taylor_verify.tradeoff.trade_off import TradeOff
+from taylor_verify import types
 
 
 def tradeoff(
-    scene: Scene | str | PathLike[str],
-    asked: Sequence[Setting] | None = None,
+    scene: types.Scene | str | PathLike[str],
+    asked: Sequence[types.Setting] | None = None,
     repeats: int | None = None,
     seed: int | None = None,
-) -> TradeOff:
+) -> types.TradeOff:
     """Measure the time and the error of every setting on a scene, and find the front.
 
     Parameters
@@ -61,11 +55,11 @@ def tradeoff(
 
 
 def recommend(
-    scene: Scene | str | PathLike[str],
+    scene: types.Scene | str | PathLike[str],
     error: float,
-    asked: Sequence[Setting] | None = None,
+    asked: Sequence[types.Setting] | None = None,
     seed: int | None = None,
-) -> Recommendation:
+) -> types.Recommendation:
     """Measure the settings, and return the fastest whose error stays below a limit on several starts.
 
     Parameters

@@ -6,10 +6,11 @@ import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.models.problem import NotRepresentable
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.records.showing import dataframe
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
@@ -24,6 +25,9 @@ from taylor_verify.tradeoff.solves import SEED
 from taylor_verify.tradeoff.starts import nearby
 from taylor_verify.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
+if TYPE_CHECKING:
+    import pandas
+
 # A margin of one binary digit for starts outside the ensemble.
 MARGIN: Final = 2.0
 # These may compute in a wider precision than that of their answer, so that the floor does not bind them.
@@ -34,7 +38,7 @@ class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
     """No setting reaches the target; the text names the most accurate one, or the reasons."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recommendation:
     """A setting that is ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
@@ -71,6 +75,17 @@ class Recommendation:
             "command": self.command,
             "sentence": self.sentence,
         }
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame of one row. Raises ModuleNotFoundError without pandas."""
+        return dataframe([self.document()])
+
+    def __str__(self) -> str:
+        return f"{self.sentence}\n{self.command}"
+
+    def __repr__(self) -> str:
+        setting = label(self.solver.name, self.solver.setting, self.rung.name)
+        return f"<Recommendation for {self.scene} below {self.target:.3g}: {setting}>"
 
     @property
     def command(self) -> str:

@@ -16,6 +16,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
 
 # Of a scene that no solver was asked.
@@ -41,7 +42,7 @@ class Chunk:
     first: int
     stop: int
     questions: Questions
-    solver: str
+    solver: Solver | str
     rung: str
     tolerances: Tolerances
 
@@ -106,7 +107,8 @@ def _unjudged(
     question: Question, chunk: Chunk, status: Status, outcome: Outcome, reason: Reason
 ) -> Verdict:
     """Return the verdict on a scene as a whole."""
-    run_of = question.name, chunk.solver, chunk.rung, ""
+    solver = chunk.solver if isinstance(chunk.solver, str) else chunk.solver.name
+    run_of = question.name, solver, chunk.rung, ""
     return Verdict(*run_of, SCENE, status, outcome.value, reason=reason)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.judging import Interrupted
@@ -37,8 +37,8 @@ from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import SweepSummary
-from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.solver import Lack
+from taylor_verify.solvers.registry import as_solver
+from taylor_verify.solvers.solver import Lack, Solver
 from taylor_verify.solvers.trajectory import Outcome
 
 Result = TypeVar("Result")
@@ -60,7 +60,7 @@ def sweep(
     count: int | None = None,
     seed: int | None = None,
     points: str | None = None,
-    solver: str = "taylor",
+    solver: Solver | Callable[..., Any] | str = "taylor",
     rung: str = "f64",
     tolerance: Tolerances | Tolerance = None,
     executor: Executor | None = None,
@@ -70,56 +70,15 @@ def sweep(
     worst: int = WORST,
     ahead: int = AHEAD,
 ) -> SweepSummary:
-    """Solve and judge many scenes; return how their errors are spread, and the worst of them.
-
-    Parameters
-    ----------
-    what
-        A shipped family (``satellites``), the path of a template, a folder of scene files, or a folder of
-        shipped scenes (``extremes``).
-    count, seed, points
-        How many points are drawn, from which seed, and ``random`` or ``sobol``. Point k of a seed is the
-        same however many are drawn. What is None is what the template says, else 100, 1 and ``random``.
-    solver, rung, tolerance
-        As those of `run`.
-    executor
-        A `concurrent.futures.Executor` in place of processes of this machine. Only its ``submit`` is
-        called, and it is left open. Chunks and rows are pickled; a worker writes nothing.
-    jobs
-        The number of processes on this machine; as many as cores unless given.
-    out
-        A folder for the dataset, the summary, the picture and the worst cases. Without it nothing is left.
-    resume
-        Go on from the chunks that the same sweep, in the same folder, had finished.
-    worst
-        The number of worst cases that are written as scenes.
-    ahead
-        The number of chunks under way at a time.
-
-    Raises
-    ------
-    records.faults.Refused
-        For a template or scenes that cannot be read, with all their faults, and for a folder that holds
-        another sweep.
-    ValueError
-        For an argument that is none.
-    batch.lock.Occupied
-        If another run writes to ``out``.
-    batch.failure.Failed
-        For a chunk whose process was lost, or of which the executor made an error.
-    batch.judging.Interrupted
-        A KeyboardInterrupt that says how many scenes are stored for ``resume``.
-
-    Notes
-    -----
-    Every process imports the script that calls this: there the call stands under
-    ``if __name__ == "__main__":``.
-    """
+    """Solve and judge many scenes; arguments and errors are those of `taylor_verify.sweep`."""
     faults = list(_faults(jobs, worst, ahead, resume, out))
     try:
         asked = questions(str(what), count, seed, points)
         tolerated = tolerances(tolerance, asked.examples())
-        manifest = _manifest(asked, solver, rung_named(rung), tolerated)
+        chosen = _solver(solver)
+        manifest = _manifest(asked, chosen, rung_named(rung), tolerated)
+    except Refused:
+        raise
     except ValueError as error:
         raise ValueError("\n".join([*faults, str(error)])) from None
     if faults:
@@ -127,7 +86,7 @@ def sweep(
     with _folder(out) as folder, alone_in(folder):
         dataset = Dataset(folder, manifest)
         _begin(dataset, asked, resume)
-        work = _Work(dataset, asked, tolerated, executor, jobs, ahead)
+        work = _Work(dataset, asked, chosen, tolerated, executor, jobs, ahead)
         try:
             _judge_all(work)
         except Interrupted:
@@ -140,9 +99,11 @@ def sweep(
                 raise
             raise Failed(f"{lost}; what was judged is stored: go on with --resume") from lost
         made = _explained(work, summary(dataset, asked, asked.title, worst))
+        if out is None:
+            # Nothing is drawn or written for a folder that goes.
+            return with_files(made, {})
         written, _ = write_summary(folder, made, asked)
-    # What was written into a folder that is gone has no file.
-    return written if out is not None else with_files(written, {})
+    return written
 
 
 def _faults(
@@ -161,11 +122,19 @@ def _faults(
         yield "expected pyarrow (pip install 'taylor-verify[parquet]'), got none"
 
 
-def _manifest(asked: Questions, solver: str, rung: Rung, tolerated: Tolerances) -> Manifest:
+def _solver(solver: Solver | Callable[..., Any] | str) -> Solver | str:
+    """Return a name as it is, which a process looks up, and the Solver of a callable."""
     try:
-        missing = solver_named(solver).unavailable(rung)
+        chosen = as_solver(solver)
     except ValueError as error:
         raise ValueError(f"{error} @ solver") from None
+    return solver if isinstance(solver, str) else chosen
+
+
+def _manifest(
+    asked: Questions, solver: Solver | str, rung: Rung, tolerated: Tolerances
+) -> Manifest:
+    missing = as_solver(solver).unavailable(rung)
     if isinstance(missing, Lack) and missing.outcome is Outcome.NO_PACKAGE:
         raise ValueError(missing)
     length = min(max(asked.total // _CHUNKS, _LEAST_CHUNK), _LONGEST_CHUNK)
@@ -174,7 +143,7 @@ def _manifest(asked: Questions, solver: str, rung: Rung, tolerated: Tolerances) 
         digest=asked.digest,
         total=asked.total,
         chunk=length,
-        solver=solver,
+        solver=solver if isinstance(solver, str) else solver.name,
         rung=rung.name,
         tolerance=tolerated.text,
         programs=tuple(program_digests(solver)),
@@ -219,6 +188,7 @@ class _Work:
 
     dataset: Dataset
     asked: Questions
+    solver: Solver | str
     tolerances: Tolerances
     executor: Executor | None
     jobs: int | None
@@ -227,7 +197,7 @@ class _Work:
     def chunk(self, number: int, first: int, stop: int) -> Chunk:
         """Return the scenes with these numbers."""
         manifest, part = self.dataset.manifest, self.asked.part(first, stop)
-        return Chunk(number, first, stop, part, manifest.solver, manifest.rung, self.tolerances)
+        return Chunk(number, first, stop, part, self.solver, manifest.rung, self.tolerances)
 
     def part(self, number: int) -> Chunk:
         """Return the scenes of a part of the dataset."""

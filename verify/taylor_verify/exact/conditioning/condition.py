@@ -231,7 +231,7 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
         steps = integrated(scene, flow, elapsed)
         if steps is not None:
             return Path(scene, flow, elapsed, steps)
-    differences = next(settled(scene, elapsed))
+    differences = settled(scene, elapsed)
     return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
 
 
@@ -291,31 +291,20 @@ def differs_dearly(scene: Scene) -> bool:
     return any(solution(start_scene).route == "taylor" for start_scene in (scene, *beside))
 
 
-def sharp(
-    scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0, to_tell: bool = False
-) -> Path:
+def sharp(scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0) -> Path:
     """A path from differences so small that products of F with its inverses have their leading digits.
 
-    A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. This is the worst
-    case. If the products of two precisions agree, their error is known to be smaller: it shrinks with the
-    step. If no precision of the ladder is enough, the result contains noise, which makes it larger and not
-    smaller. With ``to_tell`` the search ends as soon as the orbit is known not to be regular, because |F|
-    is sharp before F F^-1 is.
+    A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. The first step
+    tells both sizes. If no exponent is enough, the result has noise, which makes it larger and not smaller.
     """
-    last: Steps | None = None
-    for differences in settled(scene, points, least):
-        steps, shrinkage = differences.steps(flow)
-        path = Path(scene, flow, points, steps, differences.exponent)
-        # In decades, because squares and powers may be beyond float64.
-        growth, shrunk = _decades(path.growth.max()), _decades(shrinkage)
-        if 2 * growth + shrunk <= _decades(_SHARP) + differences.exponent:
-            break
-        if to_tell and growth <= _decades(_ROUGH) + differences.exponent and not path.is_regular:
-            break
-        if last is not None and _agree(last, steps):
-            break
-        last = steps
-    return path
+    differences = settled(scene, points, least)
+    steps, shrinkage = differences.steps(flow)
+    path = Path(scene, flow, points, steps, differences.exponent)
+    # In decades, because squares and powers may be beyond float64.
+    lost = 2 * _decades(path.growth.max()) + _decades(shrinkage)
+    enough = min(lost - _decades(_SHARP), _LARGEST_EXPONENT)
+    is_enough = not enough > differences.exponent
+    return path if is_enough else sharp(scene, flow, points, ceil(enough))
 
 
 def _decades(size: float) -> float:
@@ -323,30 +312,13 @@ def _decades(size: float) -> float:
     return log10(size) if 0 < size < inf else -inf if size == 0 else float(size)
 
 
-def _agree(rough: Steps, fine: Steps) -> bool:
-    """Return True if each block of three components agrees to `_SHARP` of its size, or of one unit."""
-    pairs = (rough.steps, fine.steps), (rough.since_first, fine.since_first)
-    with np.errstate(all="ignore"):  # what is not finite does not agree
-        return all(
-            bool((_block_norms(a - b) <= _SHARP * np.maximum(_block_norms(b), 1)).all())
-            for a, b in pairs
-        )
-
-
-def _block_norms(matrices: Floats) -> Floats:
-    """Return the norms of the 3 x 3 blocks of matrices (n, 3k, 3k), as (n, k, k)."""
-    count, size, _ = matrices.shape
-    norms: Floats = np.linalg.norm(matrices.reshape(count, size // 3, 3, size // 3, 3), axis=(2, 4))
-    return norms
-
-
 def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
-    """Return the orbit at a few points, only as sharp as needed to see whether they are too few."""
+    """Return the orbit at a few points."""
     if _is_short(scene, flow) or differs_dearly(scene):
         steps = integrated(scene, flow, points, is_rough=True)
         if steps is not None:
             return Path(scene, flow, points, steps)
-    return sharp(scene, flow, points, to_tell=True)
+    return sharp(scene, flow, points)
 
 
 def _is_short(scene: Scene, flow: Flow) -> bool:

@@ -5,7 +5,7 @@ It shares nothing with the equations that a solver is given.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -41,8 +41,8 @@ _VOLUME_ERROR: Final = mpf("1e-6")
 _SHARPER: Final = 6
 
 
-def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterator[Derivatives]:
-    """Differences that conserve volume, of 10^-``least`` units or less, at one precision after the other.
+def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Derivatives:
+    """Differences that conserve volume, of 10^-``least`` units or less.
 
     Both flows conserve volume, det D = 1, loads or not; a false digit in D shows in det D as it does in
     D_i D_k^-1, so precision rises until det D = 1 to six digits. Raises Unsettled if it never is.
@@ -51,18 +51,15 @@ def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Iterat
     is_by_series = exact.route == "taylor" or exact.by_quadrature
     ladder = _TAYLOR_EXPONENTS if is_by_series else _CLOSED_FORM_EXPONENTS
     first = max(least, ladder[0])
-    is_settled = False
     for exponent in (first, *(higher for higher in ladder if higher > first)):
         digits = 2 * exponent + _GUARD_DIGITS
         differences = derivatives(scene, elapsed, exponent, digits)
         if differences.volume_error() <= _VOLUME_ERROR:
-            is_settled = True
-            yield differences
-    if not is_settled:
-        raise Unsettled(
-            f"differences of the exact solution at {digits} digits do not conserve volume along the "
-            f"orbit of {scene.name}: its transition matrix is not known"
-        )
+            return differences
+    raise Unsettled(
+        f"differences of the exact solution at {digits} digits do not conserve volume along the "
+        f"orbit of {scene.name}: its transition matrix is not known"
+    )
 
 
 @dataclass(frozen=True)

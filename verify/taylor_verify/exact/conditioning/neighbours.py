@@ -199,7 +199,8 @@ class _Arcs:
         rows = len(motion.radius)
         if not self._has_turn:
             return np.tile(np.eye(3), (rows, 1, 1))
-        return motion["attitude"].astype(float)
+        turns: Floats = motion["attitude"].astype(float)
+        return turns
 
     def _in_space(self, difference: Floats, frames: Floats) -> Floats:
         """Return momentum, turn and centre in space axes, without a frame that is not tracked as zeros."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import chain
 
-from taylor_verify.exact.conserved.polynomial import Polynomial
+from taylor_verify.exact.conserved.polynomial import Polynomial, terms
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Vector
 
@@ -37,9 +38,9 @@ class Combinations:
 
 def _rows(polynomials: Sequence[Polynomial]) -> Iterator[Vector]:
     """The coefficients of each monomial in all polynomials."""
-    monomials = {monomial: None for each in polynomials for monomial in each.terms}
-    for monomial in monomials:
-        yield tuple(each.terms.get(monomial, Fraction(0)) for each in polynomials)
+    every = [dict(terms(each)) for each in polynomials]
+    for monomial in dict.fromkeys(chain(*every)):
+        yield tuple(each.get(monomial, Fraction(0)) for each in every)
 
 
 def orthogonal(vectors: Sequence[Vector]) -> list[Vector]:

@@ -21,9 +21,8 @@ from taylor_verify.exact.conserved.derivation import (
     cross,
     mapped,
     product,
-    symbols,
 )
-from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong
+from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, rational
 from taylor_verify.exact.conserved.potential import Factors, Potential, potentials
 from taylor_verify.exact.euler.rigid import Rotating
 from taylor_verify.exact.registry import kind_of
@@ -60,7 +59,7 @@ def conservation(scene: Scene) -> Conservation:
     pieces = list(_pieces(scene, loads))
     if len(pieces) > _MOST_PIECES:
         return Conservation()
-    derivations = [Derivation(scene, piece) for piece in pieces]
+    derivations = Derivation.each(scene, pieces)
     try:
         return _proven(derivations)
     except TooLong:
@@ -122,15 +121,13 @@ def _searched(
 def kinetic(derivation: Derivation) -> Polynomial:
     """T."""
     body, z = derivation.scene.body, derivation.state
-    return product(z, mapped(kind_of(body).energy(body), z)).times(Fraction(1, 2))
+    return product(z, mapped(kind_of(body).energy(body), z)) / 2
 
 
 def _of_spin(derivation: Derivation) -> dict[str, Row]:
     body, kind = derivation.scene.body, kind_of(derivation.scene.body)
     assert isinstance(kind, Rotating)
-    wheels = [Polynomial.number(h) for h in kind.rotor(body)]
-    if derivation.has_rotor:
-        wheels = derivation.wheels
+    wheels = derivation.wheels if derivation.has_rotor else map(rational, kind.rotor(body))
     H = [*map(add, mapped(kind.energy(body), derivation.state), wheels)]
     return {"H2": [product(H, H)], "H_space": derivation.turned(H), "H_axis": H}
 
@@ -138,7 +135,7 @@ def _of_spin(derivation: Derivation) -> dict[str, Row]:
 def _of_impulses(derivation: Derivation) -> dict[str, Row]:
     x, y = derivation.state[:3], derivation.state[3:]
     in_space = derivation.turned(x)
-    arm = cross(symbols(CENTRE), in_space)
+    arm = cross(derivation.symbols(CENTRE), in_space)
     return {
         "F2": [product(x, x)],
         "FG": [product(x, y)],

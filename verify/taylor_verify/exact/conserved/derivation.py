@@ -11,13 +11,21 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, reduce
-from itertools import repeat
-from operator import add, mul, sub
+from itertools import chain, repeat
+from operator import add, sub
 from typing import Any, Final
 
 from taylor_verify.exact import rotation
 from taylor_verify.exact.clocks import Exact
-from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, total
+from taylor_verify.exact.conserved.polynomial import (
+    Polynomial,
+    TooLong,
+    multiplied,
+    rate_of,
+    rational,
+    reduced,
+    symbols_of,
+)
 from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -33,18 +41,33 @@ _MOST_POWER: Final = 4
 _ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
     "+": add,
     "-": sub,
-    "*": mul,
+    "*": multiplied,
 }
-_NOTHING: Final = Polynomial()
 _MOMENTUM: Final = ("H1", "H2", "H3")
+# What is no symbol, whatever its operands are.
+_SUMS: Final = ("input", "number", "+", "-")
 
 
 @dataclass(frozen=True)
 class Derivation:
-    """The state, the frame and their rates, under the loads of one piece of time."""
+    """The state, the frame and their rates, under the loads of one piece of time.
+
+    ``known`` are all symbols by name.
+    """
 
     scene: Scene
     piece: Piece
+    known: Mapping[str, Polynomial]
+
+    @classmethod
+    def each(cls, scene: Scene, pieces: Sequence[Piece]) -> list[Derivation]:
+        """The derivations of some pieces, with the same symbols."""
+        moving = (COLUMNS[name] for name in kind_of(scene.body).moving)
+        steps = [(k, step) for piece in pieces for k, step in enumerate(piece.steps)]
+        read = (step.name for _, step in steps if step.operation == "input")
+        made = (_symbol(k) for k, step in steps if step.operation not in _SUMS)
+        known = symbols_of(chain(*moving, _MOMENTUM, CENTRE, read, made))
+        return [cls(scene, piece, known) for piece in pieces]
 
     @cached_property
     def equations(self) -> Equations:
@@ -56,6 +79,10 @@ class Derivation:
         """True if texts write the momentum h of wheels: then the symbols are those of H = I omega + h."""
         loads = self.scene.body.loads
         return loads is not None and bool(loads.rotor)
+
+    def symbols(self, names: Sequence[str]) -> Row:
+        """The symbols of these names."""
+        return [self.known[name] for name in names]
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -69,13 +96,13 @@ class Derivation:
     def state(self) -> Row:
         """The state z; of a body with wheels omega, by H."""
         if not self.has_rotor:
-            return symbols(self.names)
+            return self.symbols(self.names)
         return mapped(kind_of(self.scene.body).pushed(self.scene.body), self._of_body)
 
     @property
     def _of_body(self) -> Row:
         """I omega = H - h."""
-        return [*map(sub, symbols(_MOMENTUM), self.wheels)]
+        return [*map(sub, self.symbols(_MOMENTUM), self.wheels)]
 
     @cached_property
     def wheels(self) -> Row:
@@ -85,12 +112,13 @@ class Derivation:
 
     @cached_property
     def _quaternion(self) -> list[Any]:
-        return symbols(QUATERNION)
+        return self.symbols(QUATERNION)
 
     @cached_property
     def attitude(self) -> list[Row]:
         """R of the unit quaternion."""
-        return rotation.rotation_rows(self._quaternion)
+        rows = rotation.rotation_rows(self._quaternion)
+        return [[*map(reduced, row)] for row in rows]
 
     @cached_property
     def rates(self) -> Mapping[str, Polynomial]:
@@ -107,37 +135,38 @@ class Derivation:
 
     def rate(self, quantity: Polynomial) -> Polynomial:
         """The rate of a polynomial in state and frame. Raises TooLong."""
-        return quantity.rate(self.rates)
+        return rate_of(quantity, self.rates)
 
     # The rates of the symbols.
 
     def _of_state(self) -> Row:
         equations, z = self.equations, self.state
         if self.has_rotor:
-            turned = cross(symbols(_MOMENTUM), z)
-            drag = [part.times(self.scene.body.damping) for part in self._of_body]
+            turned = cross(self.symbols(_MOMENTUM), z)
+            damping = rational(self.scene.body.damping)
+            drag = [part * damping for part in self._of_body]
             return [*map(sub, map(add, turned, self.loads), drag)]
         pushed = mapped(kind_of(self.scene.body).pushed(self.scene.body), self.loads)
         rates = []
         for constant, linear, hessian, push in zip(
             equations.constant, equations.linear, equations.hessian, pushed, strict=True
         ):
-            half = [sum_of(row, z).times(Fraction(1, 2)) for row in hessian]
-            free = Polynomial.number(constant) + sum_of(linear, z)
+            half = [sum_of(row, z) / 2 for row in hessian]
+            free = sum_of(linear, z) + rational(constant)
             rates.append(free + push + product(z, half))
         return rates
 
     def _of_attitude(self) -> Row:
         """q' = q Omega/2."""
-        doubled = rotation.product(self._quaternion, [_NOTHING, *self.spin])
-        return [rate.times(Fraction(1, 2)) for rate in doubled]
+        doubled = rotation.product(self._quaternion, [0 * self.spin[0], *self.spin])
+        return [reduced(rate) / 2 for rate in doubled]
 
     def _of_centre(self) -> Row:
         """c' = R U and the current."""
         loads = self.scene.body.loads
         currents = repeat(Fraction(0), 3) if loads is None else loads.current
         return [
-            Polynomial.number(current) + moved
+            moved + rational(current)
             for current, moved in zip(currents, self.turned(self.velocity), strict=True)
         ]
 
@@ -171,25 +200,25 @@ class Derivation:
 
     def _value(self, place: int, step: Step, operands: Row) -> Polynomial:
         if step.operation == "input":
-            return Polynomial.symbol(step.name)
+            return self.known[step.name]
         if step.operation == "number":
             assert step.number is not None
-            return Polynomial.number(step.number)
+            return 0 * self.known["q0"] + rational(step.number)
         try:
             written = self._written_out(step, operands)
         except TooLong:
             written = None
         # Equal steps are one step, so that the place names the function and its operands.
-        return Polynomial.symbol(f"step {place}") if written is None else written
+        return self.known[_symbol(place)] if written is None else written
 
     def _written_out(self, step: Step, operands: Row) -> Polynomial | None:
         """The polynomial of a step; None of a step that is none. Raises TooLong."""
         if step.operation in _ARITHMETIC:
             return _ARITHMETIC[step.operation](*operands)
-        if step.operation == "/" and set(operands[1].terms) == {()}:
-            return operands[0].times(1 / operands[1].terms[()])
+        if step.operation == "/" and operands[1].is_constant() and not operands[1].is_zero():
+            return operands[0] / operands[1].leading_coefficient()
         if step.operation == "power" and step.number in range(2, _MOST_POWER + 1):
-            return reduce(mul, operands * int(step.number or 0))
+            return reduce(multiplied, operands * int(step.number or 0))
         return None
 
     @cached_property
@@ -203,14 +232,15 @@ class Derivation:
         return inputs
 
 
-def symbols(names: Sequence[str]) -> Row:
-    """The symbols of these names."""
-    return [Polynomial.symbol(name) for name in names]
+def _symbol(place: int) -> str:
+    """The name of a step of which nothing is known."""
+    return f"step {place}"
 
 
 def sum_of(numbers: Vector, row: Row) -> Polynomial:
     """The sum of multiples of polynomials."""
-    return total(part.times(number) for number, part in zip(numbers, row, strict=True))
+    parts = (part * rational(number) for number, part in zip(numbers, row, strict=True))
+    return sum(parts, 0 * row[0])
 
 
 def mapped(matrix: Matrix | Exact, row: Row) -> Row:
@@ -220,9 +250,10 @@ def mapped(matrix: Matrix | Exact, row: Row) -> Row:
 
 def product(a: Row, b: Row) -> Polynomial:
     """The scalar product."""
-    return total(map(mul, a, b))
+    return sum(map(multiplied, a, b), 0 * a[0])
 
 
 def cross(a: Row, b: Row) -> Row:
     """The cross product."""
-    return [a[j] * b[k] - a[k] * b[j] for j, k in ((1, 2), (2, 0), (0, 1))]
+    pairs = ((1, 2), (2, 0), (0, 1))
+    return [multiplied(a[j], b[k]) - multiplied(a[k], b[j]) for j, k in pairs]

@@ -17,7 +17,7 @@ from typing import Self
 import numpy as np
 
 from taylor_verify.exact.conserved.derivation import Derivation
-from taylor_verify.exact.conserved.polynomial import Polynomial
+from taylor_verify.exact.conserved.polynomial import Polynomial, multiplied, terms
 from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.rows import cross
 from taylor_verify.numbers.tensors import Vector
@@ -102,11 +102,11 @@ def potentials(derivation: Derivation, power: Polynomial) -> dict[Factors, Polyn
     """Return the products of which V may consist; pairs only where the power is that of a position."""
     entries = dict(zip(ROTATION, chain(*derivation.attitude), strict=True))
     if derivation.velocity:
-        entries |= {name: Polynomial.symbol(name) for name in CENTRE}
+        entries |= {name: derivation.known[name] for name in CENTRE}
     products: dict[Factors, Polynomial] = {(name,): entry for name, entry in entries.items()}
     if _is_positional(derivation, power):
         for first, second in combinations_with_replacement(entries, 2):
-            products[first, second] = entries[first] * entries[second]
+            products[first, second] = multiplied(entries[first], entries[second])
     return products
 
 
@@ -114,7 +114,7 @@ def _is_positional(derivation: Derivation, power: Polynomial) -> bool:
     """True if forces that depend on the position alone may have this power, and not linearly."""
     state, places = set(derivation.names), {*QUATERNION, *CENTRE}
     is_linear = True
-    for monomial in power.terms:
+    for monomial, _ in terms(power):
         moving = sum(name in state for name in monomial)
         if moving != 1 or not places.issuperset(set(monomial) - state):
             return False

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from taylor_verify.exact.conserved.derivation import Derivation
-from taylor_verify.exact.conserved.polynomial import TooLong
+from taylor_verify.exact.conserved.polynomial import TooLong, terms
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import applied, largest, norms, ones, squares, turned
@@ -75,17 +75,18 @@ def _wheels(scene: Scene, loads: Loads) -> Wheels | None:
     if loads.switches:
         return None
     try:
-        rows = Derivation(scene, loads.piece(Fraction(0))).wheels
+        (derivation,) = Derivation.each(scene, [loads.piece(Fraction(0))])
+        rows = [dict(terms(row)) for row in derivation.wheels]
     except TooLong:
         return None
     states = {s.name: s.components for s in loads.states if s.name in scene.states}
     names = {name for components in states.values() for name in components}
-    if any(len(m) > 1 or not names.issuperset(m) for row in rows for m in row.terms):
+    if any(len(m) > 1 or not names.issuperset(m) for row in rows for m in row):
         return None
     zero = Fraction(0)
-    constant = tuple(row.terms.get((), zero) for row in rows)
+    constant = tuple(row.get((), zero) for row in rows)
     by_state = {
-        state: tuple(tuple(row.terms.get((name,), zero) for name in components) for row in rows)
+        state: tuple(tuple(row.get((name,), zero) for name in components) for row in rows)
         for state, components in states.items()
     }
     read = {state: matrix for state, matrix in by_state.items() if any(map(any, matrix))}

@@ -119,16 +119,18 @@ class Bounds:
 
     def terms(self) -> list[arb]:
         """The sizes of the rates at the beginning if none of their terms cancelled."""
-        return [self._without_cancelling(rate) for rate in self.tape.rates]
+        first = [row[0] for row in self.sizes]
+        return [self.without_cancelling(rate, first) for rate in self.tape.rates]
 
-    def _without_cancelling(self, i: int) -> arb:
+    def without_cancelling(self, i: int, of_nodes: Sequence[arb]) -> arb:
+        """The size of a node if no terms cancelled, by those of the nodes that it is made of."""
         if not isinstance(self.tape.operations[i], Bilinear):
-            return self.sizes[i][0]
+            return of_nodes[i]
         sizes, total = self.factors(i), self.series.factors(i).constant.abs_upper()
         for size, a, b in sizes.products:
-            total += size * self.sizes[a][0] * self.sizes[b][0]
+            total += size * of_nodes[a] * of_nodes[b]
         for size, e in sizes.sums:
-            total += size * self.sizes[e][0]
+            total += size * of_nodes[e]
         return total
 
     # What operations ask.

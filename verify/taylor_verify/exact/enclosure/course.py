@@ -9,7 +9,7 @@ from fractions import Fraction
 from flint import arb
 
 from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.step import Stepper
+from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.stopping import MOST_STEPS
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row, Walk
@@ -53,6 +53,10 @@ class Course:
     def first_row(self) -> Row:
         """The start itself."""
         return Walk(self, [Fraction(0)]).first_row()
+
+    def steps(self, until: Fraction) -> Iterator[tuple[Fraction, Step]]:
+        """The steps to a time, each with the time at which it begins. Raises as ``rows`` does."""
+        yield from Walk(self, [until]).steps()
 
     def rows(self, times: Sequence[Fraction]) -> Iterator[tuple[Fraction, Row]]:
         """The state at these times, which go away from zero on one side.

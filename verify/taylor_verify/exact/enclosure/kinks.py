@@ -82,6 +82,26 @@ class Absolute(OfOne):
 
 
 @dataclass(frozen=True)
+class Sign(OfOne):
+    """The sign of a, which is the slope of its absolute value; within 1 of 0 where it may change."""
+
+    def first(self, i: int, s: Series) -> arb:
+        return arb(sign_of(s.forward[self.a][0]))
+
+    def following(self, i: int, s: Series, k: int) -> arb:
+        return ZERO
+
+    def left_out(self, i: int, b: Bounds) -> arb:
+        return ZERO
+
+    def apart(self, i: int, b: Bounds) -> arb:
+        return ZERO if b.keeps_from_zero(self.a) else 1 + b.length[i]
+
+    def slopes(self, i: int, b: Bounds) -> Iterator[Slope]:
+        yield from ()
+
+
+@dataclass(frozen=True)
 class Norm(Operation):
     """The root of the sum of the squares of some nodes.
 

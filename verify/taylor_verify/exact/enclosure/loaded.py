@@ -37,10 +37,13 @@ class LoadedBody:
     """The tapes of one scene, each made when a motion comes to its piece of time.
 
     ``frame`` names what is in the state though no load may depend on it: the attitude, or also the centre.
+    ``orders`` are those of the rates of change that functions of the motion are wanted with.
     """
 
-    def __init__(self, scene: Scene, loads: Loads, frame: frozenset[str] = frozenset()) -> None:
-        self._scene, self._loads = scene, loads
+    def __init__(
+        self, scene: Scene, loads: Loads, frame: frozenset[str] = frozenset(), orders: int = 0
+    ) -> None:
+        self._scene, self._loads, self._orders = scene, loads, orders
         self._kind = kind_of(scene.body)
         self._layout = Layout(
             size=len(self._kind.state(scene.initial)),
@@ -109,7 +112,8 @@ class LoadedBody:
         """The tape from an elapsed time on."""
         piece, tapes = self._loads.piece(elapsed, is_later), self._tapes_at(elapsed, is_later)
         image = tapes.image if self._loads.rotor else None
-        return Piece(tapes.rates, piece.end if is_later else piece.begin, image)
+        functions = tapes.functions(self._orders) if self._loads.functions else None
+        return Piece(tapes.rates, piece.end if is_later else piece.begin, image, functions)
 
     def _tapes_at(self, elapsed: Fraction, is_later: bool) -> PieceTapes:
         piece = self._loads.piece(elapsed, is_later)

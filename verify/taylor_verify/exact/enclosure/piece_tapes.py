@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.clocks import Exact
+from taylor_verify.exact.enclosure.derived import Derived
+from taylor_verify.exact.enclosure.driven import driven
 from taylor_verify.exact.enclosure.framing import Frame, named
 from taylor_verify.exact.enclosure.layout import Layout
 from taylor_verify.exact.enclosure.lowering import Lowering
@@ -16,7 +18,9 @@ from taylor_verify.exact.enclosure.system import natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
 from taylor_verify.exact.equations import exact
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Piece
+from taylor_verify.scenes.loads.vocabulary import INVARIANTS
 from taylor_verify.scenes.scene import Scene
 
 
@@ -65,15 +69,43 @@ class PieceTapes:
     @cached_property
     def rates(self) -> Tape:
         """The rates of all components; held values have none."""
+        return self._tape(self._rates)
+
+    @cached_property
+    def _rates(self) -> list[Sum]:
         loads = self._lowered(self._piece.outputs)
         moving = self._with_wheels(loads) if self._wheels else self._natural(loads)
         rates = [*moving, *self._frame.rates(), *self._lowered(self._piece.rates)]
-        return self._tape([*rates, *[Sum()] * (self._layout.whole - len(rates))])
+        return [*rates, *[Sum()] * (self._layout.whole - len(rates))]
 
     def _natural(self, loads: Sequence[Sum]) -> list[Sum]:
-        pushed = exact(self._kind.pushed(self._scene.body))
-        free = natural(self._graph, self._kind.equations(self._scene.body), self._z)
-        return [rate + push for rate, push in zip(free, formed(pushed, loads), strict=True)]
+        body = self._scene.body
+        equations, pushed = self._kind.equations(body), exact(self._kind.pushed(body))
+        rates = natural(self._graph, equations, self._z)
+        pushes = formed(pushed, loads)
+        if body.manufactured is not None:
+            motion = driven(self._graph, equations, body.manufactured)
+            pushes = [push + load for push, load in zip(pushes, motion, strict=True)]
+        return [rate + push for rate, push in zip(rates, pushes, strict=True)]
+
+    def functions(self, orders: int) -> Tape:
+        """The functions of the motion, then their rates of change, and so on up to an order."""
+        if orders not in self._functions:
+            self._functions[orders] = self._with_rates(orders)
+        return self._functions[orders]
+
+    @cached_property
+    def _functions(self) -> dict[int, Tape]:
+        return {}
+
+    def _with_rates(self, orders: int) -> Tape:
+        names = INVARIANTS[self._scene.model]
+        self._inputs |= dict(zip(names, self._invariants(), strict=True))
+        rate = Derived(self._graph, self._rates).rate
+        columns = [self._lowered(self._piece.functions)]
+        for _ in range(orders):
+            columns.append([rate(value) for value in columns[-1]])
+        return self._tape([value for column in columns for value in column])
 
     def _with_wheels(self, loads: Sequence[Sum]) -> list[Sum]:
         """H' = H x omega + M, and what the body's own equations add that is linear in H - h."""
@@ -84,6 +116,21 @@ class PieceTapes:
             product(H[j], w[k]) - product(H[k], w[j]) + loads[i] + rest[i] + Sum(constant)
             for (i, j, k), constant in zip(_CYCLES, equations.constant, strict=True)
         ]
+
+    def _invariants(self) -> list[Sum]:
+        """The kinetic energy, and the squares of the momenta."""
+        energy = exact(self._kind.energy(self._scene.body))
+        if self._velocity:
+            twice = self._dot(self._z, formed(energy, self._z))
+            x, y = self._z[:3], self._z[3:]
+            return [twice.times(_HALF), self._dot(x, x), self._dot(x, y)]
+        momentum = formed(energy, self._spin)
+        rotor = self._wheels or [Sum(h) for h in getattr(self._scene.body, "rotor", ZERO_VECTOR)]
+        whole = [p + h for p, h in zip(momentum, rotor, strict=True)]
+        return [self._dot(self._spin, momentum).times(_HALF), self._dot(whole, whole)]
+
+    def _dot(self, first: Sequence[Sum], second: Sequence[Sum]) -> Sum:
+        return total(self._graph.product(a, b) for a, b in zip(first, second, strict=True))
 
     @cached_property
     def image(self) -> Tape:
@@ -109,6 +156,7 @@ class PieceTapes:
 
 
 _ONE: Final = Fraction(1)
+_HALF: Final = Fraction(1, 2)
 _CYCLES: Final = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from taylor_verify.exact.enclosure.functions import Cosine, Sine
+from taylor_verify.exact.enclosure.driven import driven
 from taylor_verify.exact.enclosure.loaded import LoadedBody
-from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.system import System, always, natural
-from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape
-from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene
 
 
@@ -30,19 +27,3 @@ def posed(scene: Scene) -> System:
         equations.spin,
         equations.velocity,
     )
-
-
-def driven(graph: Graph, equations: Equations, motion: Manufactured) -> list[Sum]:
-    """The loads z*' - N(z*) of a manufactured motion z*."""
-    wanted, rates = (
-        [Sum(constant) for constant in motion.constant],
-        [Sum() for _ in motion.constant],
-    )
-    for wave in motion.waves:
-        angle = graph.node(Time()).times(wave.frequency)
-        sine, cosine = graph.pair(Sine, Cosine, angle)
-        for i, (c, s) in enumerate(zip(wave.cosine, wave.sine, strict=True)):
-            wanted[i] += cosine.times(c) + sine.times(s)
-            rates[i] += cosine.times(wave.frequency * s) - sine.times(wave.frequency * c)
-    needed = natural(graph, equations, wanted)
-    return [rate - other for rate, other in zip(rates, needed, strict=True)]

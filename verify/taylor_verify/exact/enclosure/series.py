@@ -50,7 +50,8 @@ class Series(Nodes):
     """The coefficients from an exact point at the time ``begin``, for a step of a length h.
 
     ``flat`` are kinks whose polynomial is 0 in this step; ``sign`` and ``valuation`` are what the others
-    turn out to be, and ``single`` the one operand of a norm that is not zero throughout.
+    turn out to be, and ``single`` the one operand of a norm that is not zero throughout. With ``rows`` the
+    series of the state are known, and the outputs of the tape are no rates.
     """
 
     def __init__(
@@ -61,6 +62,7 @@ class Series(Nodes):
         step: Fraction,
         order: int,
         flat: frozenset[int] = frozenset(),
+        rows: Rows | None = None,
     ) -> None:
         super().__init__(tape, begin)
         self.step, self.order = step, order
@@ -72,15 +74,19 @@ class Series(Nodes):
         self.backward: list[list[arb]] = [[] for _ in tape.operations]
         self._slopes: dict[int, list[arb]] = {}
         with ctx.workprec(ctx.prec):
-            for component, place in enumerate(tape.states):
-                self._append(place, point[component])
+            known = [point] if rows is None else rows
+            for row in known:
+                for place, entry in zip(tape.states, row, strict=True):
+                    self._append(place, entry)
             for k, bits in enumerate(falling_bits(order)):
                 ctx.prec = bits
                 self._add_order(k)
+                if rows is None:
+                    self._add_to_state(k)
         self._single_out()
 
     def _add_order(self, k: int) -> None:
-        """The coefficients of order k of all nodes, then those of order k + 1 of the state."""
+        """The coefficients of order k of all nodes but the state."""
         for i, operation in enumerate(self.tape.operations):
             if isinstance(operation, State):
                 continue
@@ -91,6 +97,9 @@ class Series(Nodes):
                 self._append(i, operation.first(i, self))
             else:
                 self._append(i, operation.following(i, self, k))
+
+    def _add_to_state(self, k: int) -> None:
+        """The coefficients of order k + 1 of the state."""
         step = self.length / (k + 1)
         for place, rate in zip(self.tape.states, self.tape.rates, strict=True):
             self._append(place, self.forward[rate][k] * step)

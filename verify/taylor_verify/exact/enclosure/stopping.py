@@ -75,17 +75,19 @@ class Watch:
         ``lengths`` are those of the steps that nothing cut short.
         """
         apart = box.apart.entries()
-        for k, span in enumerate(self.spans):
-            if size_of(apart, span) > largest[k] + _LOST:
-                raise Coarse(self.needed(now, pending))
-        if lengths and len(lengths) % _SEVERAL == 0:
-            usual = median(lengths[-8 * _SEVERAL :])
-            if lengths[-1] < usual * power_of_two(_SHRUNK):
-                if self._is_narrow(box):
-                    because = (
-                        "steps become ever shorter, as where a motion ends or a kink is touched,"
-                    )
-                    raise self.stuck(because, now, pending)
+        is_lost = any(
+            size_of(apart, span) > largest[k] + _LOST for k, span in enumerate(self.spans)
+        )
+        if is_lost and not lengths:
+            raise Coarse(self.needed(now, pending))
+        if lengths and (is_lost or len(lengths) % _SEVERAL == 0):
+            usual = median(lengths if is_lost else lengths[-8 * _SEVERAL :])
+            has_shrunk = lengths[-1] < usual * power_of_two(_SHRUNK)
+            # Steps that shrink in front of an end of the motion lose every box at last.
+            if has_shrunk and (is_lost or self._is_narrow(box)):
+                because = "steps become ever shorter, as where a motion ends or a kink is touched,"
+                raise self.stuck(because, now, pending)
+            if is_lost or has_shrunk:
                 raise Coarse(self.needed(now, pending))
             limit = abs(now) + (self.most_steps - steps) * usual
             if abs(pending[0]) > limit:
@@ -93,7 +95,8 @@ class Watch:
                 needed = steps + abs(time - now) / usual
                 raise Unreached(
                     f"the Taylor series would take about {_brief(needed)} steps to reach "
-                    f"t = {self._shown(time)}; expected at most {self.most_steps}",
+                    f"t = {self._shown(time)} from t = {float_text(self.begin + now)}; "
+                    f"expected at most {self.most_steps}",
                     time,
                 )
 

@@ -28,11 +28,13 @@ class Piece(NamedTuple):
     """A tape, and the first time at which it is another one, in the direction of the motion; or None.
 
     Where ``image`` is a tape, its outputs are omega and the entries of R, and stand for them in rows.
+    Those of ``functions`` are wanted all along the motion.
     """
 
     tape: Tape
     end: Fraction | None
     image: Tape | None = None
+    functions: Tape | None = None
 
 
 class Taken(NamedTuple):

@@ -96,7 +96,12 @@ class Walk:
     def __init__(self, course: Course, times: Sequence[Fraction]) -> None:
         self._course, self._system, self._stepper = course, course.system, course.stepper
         self._watch = Watch(
-            course.bits, course.most_bits, course.most_steps, course.begin, self._system.others
+            course.bits,
+            course.most_bits,
+            course.most_steps,
+            course.begin,
+            # A motion that is of own states alone is lost by these.
+            self._system.others or self._system.spans,
         )
         self._box, self._place = Box.about(course.start), course.place
         self._now, self._last = Fraction(0), times[-1]
@@ -145,6 +150,15 @@ class Walk:
             self._go(step)
             yield from self._rows_here()
             if self._pending:
+                self._check()
+
+    def steps(self) -> Iterator[tuple[Fraction, Step]]:
+        """The steps to the last time, each with the time at which it begins."""
+        while self._now != self._last:
+            step = self._step()
+            yield self._now, step
+            self._go(step)
+            if self._now != self._last:
                 self._check()
 
     # Rows.
@@ -233,7 +247,7 @@ class Walk:
     @cached_property
     def _own_from(self) -> int:
         """The first place of an own state."""
-        return self._system.others[-1].stop
+        return min((span.start for span in self._system.own.values()), default=self._system.size)
 
     def _go(self, step: Step) -> None:
         """Go to the end of the step, and take the values of an instant there."""

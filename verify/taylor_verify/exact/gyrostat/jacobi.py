@@ -18,8 +18,10 @@ from functools import cached_property
 from operator import itemgetter
 from typing import Final, NamedTuple, final
 
+from flint import acb, ctx
 from mpmath import mp, mpc, mpf
 
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.rotations import Course, Rotation, decades
@@ -33,7 +35,6 @@ from taylor_verify.exact.gyrostat.azimuth import (
     poles,
     rate_at_start,
 )
-from taylor_verify.exact.gyrostat.carlson import integral_j
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
@@ -44,6 +45,8 @@ from taylor_verify.scenes.motion import Quaternion
 
 _MPMATH: Final = Arithmetic(mp.convert, mpc, mp.sqrt)
 _GUARD_DIGITS: Final = 15
+# Of Carlson's integral, whose balls are wider than the last bit.
+_GUARD_BITS: Final = 20
 
 
 def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> Rotation:
@@ -276,8 +279,11 @@ class Azimuth:
 
 
 def _integral(place: Place, x: mpc) -> mpc:
-    """int_0^r dt/(p - x) up to the time r > 0 of the place, at most half a period."""
-    return integral_j(*place.above_roots, place.p - x) / 3
+    """int_0^r dt/(p - x) up to the time r > 0 of the place, at most half a period: R_J by Carlson."""
+    numbers = map(mp.mpc, (*place.above_roots, place.p - x))
+    with ctx.workprec(mp.prec + _GUARD_BITS):
+        value = acb.elliptic_rj(*(acb(z.real, z.imag) for z in numbers))
+    return mpc(midpoint(value.real), midpoint(value.imag)) / 3
 
 
 def _best_poles(free: FreeGyrostat, swing: Swing) -> tuple[Frame, list[Pole]]:

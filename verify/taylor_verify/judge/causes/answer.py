@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.models.frame import rotation
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.scene import Scene
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 
@@ -24,6 +25,8 @@ VECTOR: Final = 3.0
 ATTITUDE: Final = 4.0
 # A quantity is wrong if its error is this many times the rounding of the file.
 _WRONG: Final = 30.0
+# The search itself is no better.
+_ARITHMETIC: Final = 1e-12
 _SAME_START: Final = 10.0
 
 
@@ -56,7 +59,7 @@ class Answer:
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
     ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
-    ``places`` are the rows of the file, from 0, that these are.
+    ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
     """
 
     right: Equations
@@ -71,6 +74,13 @@ class Answer:
     decimals: int | None = None
     own_attitudes: Floats | None = None
     begins: float = 0.0
+    scene: Scene | None = None
+
+    @property
+    def has_states(self) -> bool:
+        """True if the scene has states of its own, which no row of the search has."""
+        loads = None if self.scene is None else self.scene.body.loads
+        return loads is not None and bool(loads.states or any(loads.rotor))
 
     @property
     def n(self) -> int:
@@ -156,7 +166,7 @@ class Answer:
             name
             for name, error in self.error.items()
             if self.quantity(name) in self.quantities
-            and np.max(error) > _WRONG * self.roundings[name]
+            and np.max(error) > max(_WRONG * self.roundings[name], _ARITHMETIC)
         )
 
     @property

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,8 +18,10 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
+from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.printed import half_units
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
@@ -29,11 +31,14 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
 from taylor_verify.words.causes import sentence
@@ -42,8 +47,7 @@ if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
 
 NOT_LOOKED_FOR: Final = (
-    "likely causes are not looked for: this body has terms or states of its own that the search "
-    "does not know"
+    "likely causes are not looked for: this body has terms of its own that the search does not know"
 )
 _READINGS: Final = frozenset({"convention", "clock", "stamps", "omega against attitude"})
 # Other bodies that are conventions of a scene's text: judge.conventions.worlds reads a file by them.
@@ -52,6 +56,8 @@ _OTHER_BODIES: Final = frozenset(
 )
 _WITH_TERMS: Final = frozenset({"rotor"})
 _MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
+# Names in the texts of loads whose values are those of another body if the mass changes.
+_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
 _DIGITS: Final = 20
 # R^T R of printed digits is off by less.
 _NO_ROTATION: Final = 1e-5
@@ -66,8 +72,7 @@ _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 def are_known(body: Body) -> bool:
     """Return True if every part of the body has its terms in the search."""
-    own = body.loads is not None and bool(body.loads.states or any(body.loads.rotor))
-    return body.others <= _WITH_TERMS and body.manufactured is None and not own
+    return body.others <= _WITH_TERMS and body.manufactured is None
 
 
 @dataclass(frozen=True)
@@ -139,6 +144,7 @@ def explained(answer: Answer) -> Explained:
         causes = causes_of(answer)
     except _SILENT:
         return Explained()
+    causes += plugged_causes(answer)
     is_motion = bool(causes) and not any(map(_is_convention, causes))
     notes: tuple[str, ...] = ()
     if not causes:
@@ -182,9 +188,20 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     return replace(
         equations,
         acting=Acting(given, loads),
+        texts=_texts(loads),
+        is_hung=bool(loads.hung),
+        names_mass=not loads.inputs.isdisjoint(_OF_MASS),
         reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
         switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
         current=np.array(loads.current, dtype=float) if any(loads.current) else None,
+    )
+
+
+def _texts(loads: Loads) -> tuple[str, ...]:
+    """Return the entries of the loads as texts."""
+    entries = dict(loads.vectors)
+    return tuple(
+        str(entry) for name in VECTORS[loads.model] for entry in entries.get(name, ZERO_VECTOR)
     )
 
 
@@ -207,14 +224,10 @@ def material(
     rows = _rows(elapsed, file)
     if len(rows) < 2 or not failed:
         return None
-    needs_centre = file.c is not None or right.reads > 4
-    track = {"attitude", *["centre"] * needs_centre}
-    exact = solution(replace(given, track=frozenset(track)))
+    exact = ExactMotion(given, file.c is not None or right.reads > 4)
     instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
-    motion = exact.evaluate(instants, _DIGITS)
-    truth = _truth(given, motion, has_momenta).at(np.s_[1:])
-    start = _truth(given, motion, has_momenta=False).at(np.s_[:1])
-    has_closed_form = exact.route != "taylor"
+    truth = exact.at(instants, has_momenta).at(np.s_[1:])
+    start = exact.at(instants[:1], has_momenta=False)
     compared = file.at(rows)
     return Answer(
         right,
@@ -224,9 +237,10 @@ def material(
         truth,
         (_noise(noise[0], compared.v, truth.v), *noise[1:]),
         failed,
-        Budget(_BUDGET * right.size if has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
+        Budget(_BUDGET * right.size if exact.has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
         every * np.array(rows),
         decimals,
+        scene=given,
     )
 
 
@@ -249,14 +263,6 @@ def _rows(elapsed: Floats, file: Motion) -> list[int]:
     return [int(k) for k in (side[: bad[0]] if len(bad) else side)]
 
 
-def _truth(given: Scene, exact: Mapping[str, Any], has_momenta: bool) -> Motion:
-    v = np.hstack([exact[name].astype(float) for name in MOMENTA[given.model]])
-    if given.model == "kirchhoff" and not has_momenta:
-        v = v @ np.array(given.body.energy_matrix, dtype=float).T
-    q = steady_signs(quaternion_columns(exact["attitude"].astype(float)))
-    return Motion(v, q, exact["centre"].astype(float) if "centre" in exact else None)
-
-
 def material_of_file(
     file: TrajectoryFile,
     rung: Rung,
@@ -274,22 +280,39 @@ def material_of_file(
     names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
     if not names:
         return None
-    has_momenta = given.model == "kirchhoff" and names[0] == MOMENTA[given.model]
-    attitudes = _attitudes(file, given, conventions)
+    read = [
+        _read_by(file, given, conventions, names[0], attitudes, verdicts, every)
+        for attitudes in _attitudes(file, given, conventions)
+    ]
+    # Where the file's own attitude is wrong, the exact one may be that of its space axes.
+    known = [answer for answer in read if answer is not None]
+    return min(known, key=lambda each: max(each.worst[g] for g in each.groups), default=None)
+
+
+def _read_by(
+    file: TrajectoryFile,
+    given: Scene,
+    conventions: Conventions,
+    names: tuple[str, ...],
+    attitudes: Floats | None,
+    verdicts: Iterable[Verdict],
+    every: int,
+) -> Answer | None:
+    """Return a file as material, its space axes taken to body axes by these attitudes."""
+    has_momenta = given.model == "kirchhoff" and names == MOMENTA[given.model]
     v, noise, units = [], [], half_units(file)
-    for name in names[0]:
+    for name in names:
         rows = _read(file, name, conventions, attitudes)
         v.append(rows)
         noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
     frame, q, c = _frame_of(file), None, None
-    if attitudes is not None and frame:
-        q = steady_signs(quaternion_columns(attitudes))
+    if frame:
+        q = steady_signs(quaternion_columns(_own_attitudes(file, frame, conventions)))
     if "centre" in file.groups:
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
     motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
-    decimals = _decimals(file.times)
-    return material(given, motion, has_momenta, noises, verdicts, decimals, every)
+    return material(given, motion, has_momenta, noises, verdicts, _decimals(file.times), every)
 
 
 def _frame_of(file: TrajectoryFile) -> str:
@@ -342,16 +365,17 @@ def _read(
     return reading.read(rows, R)
 
 
-def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> Floats | None:
-    """Return the file's attitudes; the exact ones if it has none and its omega is in space axes."""
-    if group := _frame_of(file):
-        reading = conventions.readings.get(group, readings(group)[0])
-        read = reading.read(file.groups[group].doubles(), np.empty(0))
-        return rotations(read) if group == "quaternion" else read
-    if not conventions.readings:
-        return None
-    tracked = replace(given, track=frozenset({"attitude"}))
-    exact: Floats = (
-        solution(tracked).evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)
-    )
-    return exact
+def _attitudes(file: TrajectoryFile, given: Scene, conventions: Conventions) -> list[Floats | None]:
+    """Return the attitudes that may take space axes to body axes: the file's own and the exact ones."""
+    group, has_readings = _frame_of(file), bool(_MOVING & set(conventions.readings))
+    own = [_own_attitudes(file, group, conventions)] if group else []
+    if not has_readings:
+        return [*own, None][:1]
+    exact = solution(replace(given, track=frozenset({"attitude"})))
+    return [*own, exact.evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)]
+
+
+def _own_attitudes(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:
+    reading = conventions.readings.get(group, readings(group)[0])
+    read = reading.read(file.groups[group].doubles(), np.empty(0))
+    return rotations(read) if group == "quaternion" else read

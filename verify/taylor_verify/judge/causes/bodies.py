@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 from itertools import combinations, permutations
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.fault import Fault, Sizes, of_body, of_coriolis
+from taylor_verify.judge.causes.fault import Fault, Sizes, linear
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.terms import load_names
 
-_Put = Callable[[Floats], Changes]
 _SAME: Final = 1e-9
 # Entries whose ratios differ by less than this are unchanged together.
 _UNCHANGED: Final = 1e-3
@@ -21,17 +23,13 @@ _NEAR: Final = 1e-6
 
 
 def faults_of_bodies(right: Equations) -> Iterator[Fault]:
-    """Yield bodies that result from misreading the scene's, each once."""
-    known = [right.mass]
+    """Yield bodies that result from misreading the scene's."""
     misread = _misread_tensors(right) if right.size == 3 else _misread_masses(right)
     for name, mass in misread:
-        size = _SAME * np.max(np.abs(right.mass))
-        is_new = all(np.max(np.abs(mass - other)) > size for other in known)
-        if is_new and np.all(np.linalg.eigvalsh(mass) > 0):
-            known.append(mass)
-            yield Fault(name, "body", of_body(mass))
+        if np.all(np.linalg.eigvalsh(mass) > 0):
+            yield Fault(name, "body", {"mass": mass})
     if right.size == 6:
-        yield from _coupling_in_one(right.mass)
+        yield from _coupling_in_one(right)
 
 
 def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
@@ -45,7 +43,7 @@ def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
             other[i, k] = other[k, i] = factor * inertia[i, k]
             yield f"I_{i + 1}{k + 1} {words}", other
     yield "products of the inverse tensor left out", np.diag(1 / np.diag(inverse))
-    is_free = not np.any(right.rotor) and not np.any(right.load) and right.acting is None
+    is_free = not np.any(right.rotor) and not right.has_loads
     scale = np.cbrt(np.linalg.det(inertia)) ** 2 if is_free else 1.0
     yield "inverse of the tensor used for the tensor", scale * inverse
     for order in permutations(range(3)):
@@ -83,14 +81,13 @@ def _coupled(mass: Floats, factor: float) -> Floats:
     return other
 
 
-def _coupling_in_one(mass: Floats) -> Iterator[Fault]:
-    if not np.any(mass[:3, 3:]):
-        return
-    uncoupled = _coupled(mass, 0.0)
+def _coupling_in_one(right: Equations) -> Iterator[Fault]:
+    uncoupled = _coupled(right.mass, 0.0)
+    factors = right.basis.factors(products=coriolis_of(uncoupled - right.mass))
     name = "coupling (centre of mass) in the mass matrix and not in the Coriolis terms"
-    yield Fault(name, "Coriolis matrix", of_coriolis(uncoupled))
+    yield Fault(name, "Coriolis matrix", {"extra": factors})
     name = "coupling (centre of mass) in the Coriolis terms and not in the mass matrix"
-    yield Fault(name, "Coriolis matrix", {"mass": uncoupled})
+    yield Fault(name, "Coriolis matrix", {"mass": uncoupled, "extra": -factors})
 
 
 # Families.
@@ -100,38 +97,30 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
     """Yield the families of mass matrices: a factor, entries, diagonals, another centre of mass, all."""
     n, mass = right.size, right.mass
     if not is_up_to_a_factor(right):
-        one = np.ones(1)
-        name = "factor of the inertia" if n == 3 else "factor of the mass matrix"
-        yield Family(name, "body", one, one, lambda p: of_body(p[0] * mass))
+        noun = "inertia" if n == 3 else "mass matrix"
+        yield linear(right, f"factor of the {noun}", "body", 1.0, [1], mass=mass[None])
     scale = np.outer(sizes.inertia, sizes.inertia)
     upper = [(i, k) for i in range(n) for k in range(i, n)]
-    for place in upper:
-        if n == 3 or place[0] == place[1] or mass[place]:
-            yield from _both(_label(n, *place), mass, _of_entries(mass, scale, [place]))
+    diagonal = [(i, i) for i in range(n)]
+    for i, k in upper:
+        if n == 3 or i == k or mass[i, k]:
+            yield from _each(right, _label(n, i, k), _of_entries(mass, scale, [(i, k)]))
     # A free motion does not show a common factor.
     lacks = 1 if is_up_to_a_factor(right) and not right.damping else 0
-    diagonal = [(i, i) for i in range(n)]
     if n == 3:
-        numbers = _of_entries(mass, scale, diagonal[: 3 - lacks])
-        yield _of_mass("moments of inertia", "body", mass, numbers, of_body)
-        numbers = _of_entries(mass, scale, upper[: 6 - lacks])
-        yield _of_mass("inertia tensor", "body", mass, numbers, of_body)
-        for name, places in (("moments of inertia", diagonal), ("tensor", upper)):
-            numbers, title = (
-                _of_entries(mass, scale, places),
-                f"{name} in the gyroscopic term alone",
-            )
-            yield _of_mass(title, "Coriolis matrix", mass, numbers, of_coriolis)
-        yield Family(
-            "another centre of mass: I + m (c.c 1 - c c^T), with c sqrt(m)",
-            "body",
-            np.zeros(3),
-            np.full(3, sizes.inertia[2]),
-            lambda p: of_body(mass + p @ p * np.eye(3) - np.outer(p, p)),
-        )
+        for of_body, of_term, places in (
+            ("moments of inertia", "moments of inertia", diagonal),
+            ("inertia tensor", "tensor", upper),
+        ):
+            numbers = _of_entries(mass, scale, places)
+            yield _of_body(right, of_body, numbers[: len(numbers) - lacks])
+            yield _of_coriolis(right, f"{of_term} in the gyroscopic term alone", numbers)
+        name = "another centre of mass: I + m (c.c 1 - c c^T), with c sqrt(m)"
+        zeros, sizes_ = np.zeros(3), np.full(3, sizes.inertia[2])
+        yield Family(name, "body", zeros, sizes_, partial(_with_another_centre, mass))
         return
     masses, moments = (_of_entries(mass, scale, places) for places in (diagonal[:3], diagonal[3:]))
-    arm = _of_arm(mass, scale[0, 3])
+    arm, entries = _of_arm(mass, scale[0, 3]), _of_entries(mass, scale, upper)
     for name, numbers in (
         ("three masses", masses),
         ("three moments of inertia", moments),
@@ -140,14 +129,41 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
         ("another centre of mass (m r and three moments of inertia)", arm + moments),
         ("masses, m r and moments of inertia", masses + arm + moments),
     ):
-        yield from _both(name, mass, numbers)
-    name = "three masses in the Munk moment alone"
-    yield _of_mass(name, "Coriolis matrix", mass, masses, lambda other: {"munk": other[:3]})
-    numbers = _of_entries(mass, scale, upper[: 21 - lacks])
-    yield _of_mass("mass matrix", "body", mass, numbers, of_body)
-    numbers = _of_entries(mass, scale, upper)
-    name = "mass matrix of the Coriolis terms alone"
-    yield _of_mass(name, "Coriolis matrix", mass, numbers, of_coriolis)
+        yield from _each(right, name, numbers)
+    munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in masses]
+    yield _of_coriolis(right, "three masses in the Munk moment alone", masses, munk)
+    yield _of_body(right, "mass matrix", entries[: len(entries) - lacks])
+    yield _of_coriolis(right, "mass matrix of the Coriolis terms alone", entries)
+    yield from _single_terms(right)
+
+
+def _single_terms(right: Equations) -> Iterator[Family]:
+    """Yield the terms that a diagonal mass matrix has in the Coriolis terms: one alone, and all."""
+    own, zeros, pairs = coriolis_of(right.mass), np.zeros_like, right.basis.pairs
+    scale, names = float(np.max(np.abs(right.mass))), load_names(6)
+    labels, along, values = list[str](), list[Floats](), list[float]()
+    for i, column in np.argwhere(coriolis_of(np.diag([1.0, 2, 3, 4, 5, 6]))):
+        unit = zeros(own)
+        unit[i, column] = 1.0
+        text = right.basis.texts[right.basis.groups["products"]][column]
+        labels.append(f"{text} in {names[i]} ({_entries_with(i, pairs[column])})")
+        along.append(right.basis.factors(products=unit))
+        values.append(float(own[i, column]))
+    kind, name = "Coriolis matrix", "single terms of the Coriolis matrix"
+    for k, label in enumerate(labels):
+        one = slice(k, k + 1)
+        yield linear(right, label, kind, scale, values[one], (label,), extra=along[one])
+    yield linear(right, name, kind, scale, values, tuple(labels), extra=along)
+
+
+def _entries_with(i: int, pair: tuple[int, int]) -> str:
+    """Return the entries of the Coriolis matrix that have a product in row i: one, or two alike."""
+    columns = [k for k in pair if i > 2 or k > 2]
+    return " or ".join(f"C_{i + 1}{k + 1}" for k in columns)
+
+
+def _with_another_centre(mass: Floats, p: Floats) -> Changes:
+    return {"mass": mass + p @ p * np.eye(3) - np.outer(p, p)}
 
 
 class _Number(NamedTuple):
@@ -159,22 +175,25 @@ class _Number(NamedTuple):
     along: Floats
 
 
-def _both(name: str, mass: Floats, numbers: list[_Number]) -> Iterator[Family]:
+def _each(right: Equations, name: str, numbers: list[_Number]) -> Iterator[Family]:
     """Yield the family of another body, and that of other Coriolis terms alone."""
-    term = "gyroscopic term" if len(mass) == 3 else "Coriolis terms"
-    yield _of_mass(name, "body", mass, numbers, of_body)
-    yield _of_mass(f"{name} in the {term} alone", "Coriolis matrix", mass, numbers, of_coriolis)
+    term = "gyroscopic term" if right.size == 3 else "Coriolis terms"
+    yield _of_body(right, name, numbers)
+    yield _of_coriolis(right, f"{name} in the {term} alone", numbers)
 
 
-def _of_mass(name: str, kind: str, mass: Floats, numbers: list[_Number], put: _Put) -> Family:
-    right = np.array([number.value for number in numbers])
-    along = np.array([number.along for number in numbers])
-    scale = np.array([number.scale for number in numbers])
+def _of_body(right: Equations, name: str, numbers: list[_Number]) -> Family:
+    labels, values, scales, along = zip(*numbers, strict=True)
+    return linear(right, name, "body", scales, values, labels, mass=along)
 
-    def changes(p: Floats) -> Changes:
-        return put(mass + np.tensordot(p - right, along, axes=1))
 
-    return Family(name, kind, right, scale, changes, tuple(number.label for number in numbers))
+def _of_coriolis(
+    right: Equations, name: str, numbers: list[_Number], products: list[Floats] | None = None
+) -> Family:
+    labels, values, scales, along = zip(*numbers, strict=True)
+    own = products or [coriolis_of(each) for each in along]
+    extra = [right.basis.factors(products=each) for each in own]
+    return linear(right, name, "Coriolis matrix", scales, values, labels, extra=extra)
 
 
 def _label(n: int, i: int, k: int) -> str:
@@ -203,8 +222,7 @@ def _of_arm(mass: Floats, scale: float) -> list[_Number]:
 
 def is_up_to_a_factor(right: Equations) -> bool:
     """Return True if a motion does not show a common factor of the mass matrix."""
-    loads = right.acting is not None or np.any(right.load) or np.any(right.rotor)
-    return not (loads or right.has_momenta)
+    return not (right.has_loads or np.any(right.rotor) or right.has_momenta)
 
 
 # Words for a body that was fitted.
@@ -235,17 +253,16 @@ def entries(right: Floats, mass: Floats) -> tuple[tuple[str, ...], Floats, Float
     return labels, right[rows, columns], mass[rows, columns]
 
 
-def structure(right: Floats, changes: Changes) -> str:
+def structure(family: Family, masses: Floats) -> str:
     """Return in words how the masses of the Coriolis terms follow from the body's; empty if they do not.
 
     With an added mass A = M - m 1 that enters f times, they are m + f A: a straight line.
     """
-    if len(right) == 3 or "mass" in changes or "turn" not in changes:
+    is_diagonal = family.labels[:3] == ("M_11", "M_22", "M_33") and family.kind != "body"
+    own, other = family.right[:3], masses[:3]
+    if not is_diagonal or "Munk" in family.name or np.ptp(own) < _SAME * np.max(own):
         return ""
-    own, other = np.diag(right)[:3], np.diag(changes["turn"])
-    if np.ptp(own) < _SAME * np.max(own):
-        return ""
-    (factor, offset), _rest, *_ = np.polyfit(own, other, 1, full=True)
+    factor, offset = np.polyfit(own, other, 1)
     if np.any(np.abs(other - factor * own - offset) > _NEAR * np.max(own)):
         return ""
     nice = {0.0: "lack the added mass", 2.0: "have the added mass twice"}

@@ -2,40 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import combinations_with_replacement
+from fractions import Fraction
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.scenes.bodies import Body, RigidBody
+from taylor_verify.scenes.loads.vocabulary import VECTORS
 
-# Changes that no scene has: of the clock, of the attitude's equation, of texts that are not constant.
+# Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
 _NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late"})
 _NOTHING: Final = 1e-10
 
 
 def changed_scene(right: Equations, changes: Changes) -> str:
     """Return the keys of [body] as TOML; empty where no scene is such a motion."""
-    if not changes or _NO_SCENE & set(changes) or right.acting is not None:
+    if not changes or _NO_SCENE & set(changes):
         return ""
     other, lines, n = right.changed(changes), list[str](), right.size
+    if not _is_written(other, changes):
+        return ""
     if "mass" in changes:
         key = "inertia" if n == 3 else "mass_matrix"
-        lines.append(f"{key} = {_list([_list(map(number, row)) for row in other.mass])}")
+        lines.append(
+            f"{key} = {_list([_list(map(number, row)) for row in _symmetric(other.mass)])}"
+        )
     if "rotor" in changes and np.any(right.rotor):
         lines.append(f"rotor = {_list(map(number, other.rotor))}")
     if "damping" in changes:
         lines.append(f"damping = {number(float(other.damping))}")
-    texts = _loads(other)
-    if texts != _loads(right):
-        for key, part in zip(
-            ("moment",) if n == 3 else ("force", "couple"), (texts[:3], texts[3:]), strict=False
-        ):
-            lines.append(f"{key} = {_list(part)}")
+    if "extra" in changes:
+        texts = [text if _is_number(text) else f'"{text}"' for text in load_texts(other)]
+        for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
+            lines.append(f"{key} = {_list(texts[first : first + 3])}")
     return "; ".join(lines)
+
+
+def _symmetric(matrix: Floats) -> Floats:
+    """Return a symmetric matrix without what rounding left in it."""
+    size = float(np.max(np.abs(matrix)))
+    return np.where(np.abs(matrix) > 1e-13 * size, (matrix + matrix.T) / 2, 0.0)
 
 
 def number(value: float) -> str:
@@ -48,67 +58,78 @@ def _list(parts: Iterable[str]) -> str:
     return f"[{', '.join(parts)}]"
 
 
-def _loads(other: Equations) -> list[str]:
-    """Return each component of the loads: a number, or the text of an expression in quotes."""
-    constant = other.load if other.weights is None else other.load * other.weights
-    in_space = float(other.in_space)
-    texts, quadratic, names = list[list[tuple[float, str]]](), _quadratic(other), _names(other.size)
-    for i in range(other.size):
-        terms = [(float(constant[i]) * (1 - in_space), "")]
-        terms += _of_space(i, in_space * constant if other.space is None else other.space)
-        terms += _of_arm(i, other)
-        if other.linear is not None:
-            terms.append((-other.linear[i], names[i]))
-        if other.quadratic is not None:
-            terms.append((-other.quadratic[i], f"abs({names[i]})*{names[i]}"))
-        terms += quadratic[i]
-        texts.append(terms)
-    largest = max(abs(value) for terms in texts for value, _ in terms)
-    return [_text(terms, largest) for terms in texts]
+def changed_body(body: Body, right: Equations, changes: Changes) -> Body | None:
+    """Return a rigid body whose loads are texts, with changes of its inertia and its loads; else None."""
+    other, loads = right.changed(changes), body.loads
+    if loads is None or {"rotor", *_NO_SCENE} & set(changes) or not _is_written(other, changes):
+        return None
+    if "mass" in changes and isinstance(body, RigidBody):
+        inertia = tuple(tuple(map(Fraction, row)) for row in _symmetric(other.mass).tolist())
+        body = replace(body, inertia=inertia)
+    elif "mass" in changes:
+        return None
+    texts = load_texts(other)
+    names = VECTORS[loads.model]
+    vectors = tuple((name, tuple(texts[3 * i : 3 * i + 3])) for i, name in enumerate(names))
+    changed = body.with_loads(replace(loads, vectors=vectors))
+    return changed.with_damping(Fraction(float(other.damping)))
 
 
-def _names(n: int) -> list[str]:
-    return [f"{letter}{i}" for letter in ("w" if n == 3 else "uw") for i in (1, 2, 3)]
+def _is_written(other: Equations, changes: Changes) -> bool:
+    """Return True if texts can say what has changed: they name no other mass, and no weight is changed."""
+    changes_loads = np.any(other.extra[:, other.basis.groups["loads"].start :])
+    is_other = "mass" in changes and other.names_mass
+    return not (is_other or (other.is_hung and changes_loads))
 
 
-def _of_space(i: int, space: Floats) -> Iterator[tuple[float, str]]:
-    """Yield the terms of component i of R^T s."""
-    first = 3 * (i // 3)
-    for k in range(3):
-        yield float(space[first + k]), f"r{k + 1}{i % 3 + 1}"
+def load_texts(other: Equations) -> list[str]:
+    """Return each component of the loads as a number or the text of an expression."""
+    factors, words = _of_texts(other) if other.texts else _of_numbers(other)
+    largest = float(np.max(np.abs(factors)))
+    return [_text(row, words, largest) for row in factors]
 
 
-def _of_arm(i: int, other: Equations) -> list[tuple[float, str]]:
-    """Return the terms of component i of the couple arm x R^T e3."""
-    if other.arm is None or i < other.size - 3:
-        return []
-    j, k = (i + 1) % 3, (i + 2) % 3
-    return [(float(other.arm[j]), f"r3{k + 1}"), (-float(other.arm[k]), f"r3{j + 1}")]
+def _of_numbers(other: Equations) -> tuple[Floats, tuple[str, ...]]:
+    """Return the factors of each expression where the loads of the scene are numbers."""
+    basis, groups, extra, load = other.basis, other.basis.groups, other.extra.copy(), other.load
+    extra[:, 0] += load + extra[:, groups["loads"]] @ load
+    vectors = np.repeat(load.reshape(-1, 3), 3, axis=0)
+    axes = np.tile(np.eye(3), (other.size // 3, 1))
+    in_space = np.einsum("jk,ji->jki", vectors, axes).reshape(-1, 9)
+    extra[:, groups["frame"]] += extra[:, groups["turned loads"]] @ in_space
+    return extra[:, : len(basis.texts)], basis.texts
 
 
-def _quadratic(other: Equations) -> list[list[tuple[float, str]]]:
-    """Return the terms by which the Coriolis terms differ from those of the mass matrix."""
-    plain = Equations.of_mass(other.mass, other.rotor)
-    own = replace(plain, gyro=other.gyro, turn=other.turn, munk=other.munk)
-    n, zero = other.size, np.zeros(1)
-
-    def extra(nu: Floats) -> Floats:
-        z = nu[None, :, None]
-        return (own.mass @ (own.rates(zero, z) - plain.rates(zero, z)))[0, :, 0]
-
-    unit, names, terms = np.eye(n), _names(n), [[] for _ in range(n)]  # type: ignore[var-annotated]
-    for j, k in combinations_with_replacement(range(n), 2):
-        of_pair = (
-            extra(unit[j]) if j == k else extra(unit[j] + unit[k]) - extra(unit[j]) - extra(unit[k])
-        )
-        for i in range(n):
-            terms[i].append((float(of_pair[i]), f"{names[j]}*{names[k]}"))
-    return terms
+def _of_texts(other: Equations) -> tuple[Floats, tuple[str, ...]]:
+    """Return the factors of each expression where the loads of the scene are texts."""
+    n, groups, texts, extra = other.size, other.basis.groups, other.texts, other.extra.copy()
+    extra[:, groups["loads"]] += np.eye(n)
+    turned = []
+    for j in range(n):
+        first = j - j % 3
+        terms = [(f"r{k + 1}{j % 3 + 1}", texts[first + k]) for k in range(3)]
+        turned.append(" + ".join(f"{r}*({text})" for r, text in terms if text != "0"))
+    words = (*other.basis.texts, *(f"({text})" for text in texts), *(f"({t})" for t in turned))
+    extra[:, [k for k, word in enumerate(words) if word in ("(0)", "()")]] = 0.0
+    return extra, words
 
 
-def _text(terms: Sequence[tuple[float, str]], largest: float) -> str:
-    large = [(value, word) for value, word in terms if abs(value) > _NOTHING * largest]
+def _text(row: Floats, words: Sequence[str], largest: float) -> str:
+    large = [
+        (float(value), word)
+        for value, word in zip(row, words, strict=True)
+        if abs(value) > _NOTHING * largest
+    ]
     if not any(word for _, word in large):
         return number(large[0][0]) if large else "0.0"
-    written = " + ".join(f"{number(value)}{'*' if word else ''}{word}" for value, word in large)
-    return '"' + written.replace("+ -", "- ") + '"'
+    written = " + ".join(map(_term, large))
+    return written.replace("+ -", "- ")
+
+
+def _is_number(text: str) -> bool:
+    return not set(text) - set("0123456789.+-e")
+
+
+def _term(of: tuple[float, str]) -> str:
+    value, word = of
+    return word if word and value == 1 else f"{number(value)}{'*' if word else ''}{word}"

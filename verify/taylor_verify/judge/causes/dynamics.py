@@ -20,7 +20,7 @@ from taylor_verify.judge.causes.bodies import (
 )
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.equations import Changes
-from taylor_verify.judge.causes.fault import Fault, Sizes, of_body
+from taylor_verify.judge.causes.fault import Fault, Sizes, both
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fitted, gauss_newton
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
@@ -39,6 +39,10 @@ _STRICTEST: Final = 1e-4
 _PAIR: Final = 1e-4
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
+# Kinds that are one class: no two of them make a pair.
+_OF_INERTIA: Final = dict.fromkeys(
+    ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
+)
 _NOTHING: Final = 1e-9
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
 _LOOSE: Final = 0.1
@@ -216,19 +220,23 @@ class _Dynamics:
         few = [each for each in linear if each.family.count <= 3]
         defects, size = self.arcs.of_right.ravel(), self.arcs.size
         bases = [_basis(each.slopes * each.family.scale, 1e-6) for each in few]
-        names = [set(each.family.changes(each.family.right)) for each in few]
+        classes = [_OF_INERTIA.get(each.family.kind, each.family.kind) for each in few]
         tried = []
         rests = [self._across(basis, defects) for basis in bases]
         for i, k in combinations(range(len(few)), 2):
             count = few[i].family.count + few[k].family.count
-            if names[i] & names[k] or count > _PAIR_NUMBERS or few[i].left > 0.97:
+            if (
+                classes[i] == classes[k]
+                or count > _PAIR_NUMBERS
+                or min(few[i].left, few[k].left) > 0.97
+            ):
                 continue
             basis = _basis(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
             left = float(np.linalg.norm(self._across(basis, rests[i]))) / size
             if left < 0.15:
                 tried.append((left * 3.0**count, i, k))
         for _, i, k in sorted(tried)[:8]:
-            family = _both(few[i].family, few[k].family)
+            family = both(self.answer.right, few[i].family, few[k].family)
             fit = gauss_newton(self.arcs, family)
             if fit.size / size < max(_PAIR, 3 * self.floor):
                 yield self._fitted(family, fit.numbers, fit.size)
@@ -259,8 +267,9 @@ class _Dynamics:
 
     def _is_near(self, candidate: Candidate) -> bool:
         """Return True if the defects that are left allow a proof."""
-        is_loose = self.answer.file.q is None and bool(
-            {"space", "arm", "in_space"} & set(candidate.changes)
+        right = self.answer.right
+        is_loose = (
+            self.answer.file.q is None and right.changed(candidate.changes).coupled > right.coupled
         )
         most = _LOOSE if is_loose else max(LEAVES, _DEFECT_ROUNDINGS * self.floor)
         if candidate.kind == "method":
@@ -343,8 +352,9 @@ class _Dynamics:
         if candidate.kind == "body" and candidate.count > 1:
             mass = nearest_factor(right, changes["mass"])
             words = with_numbers(candidate.name, *entries(right.mass, mass))
-            return words, of_body(mass)
-        words = structure(right.mass, changes) if candidate.family else ""
+            return words, {"mass": mass}
+        family, numbers = candidate.family, candidate.numbers
+        words = "" if family is None or numbers is None else structure(family, numbers)
         return ": ".join(filter(None, (words, candidate.text))), changes
 
 
@@ -364,14 +374,3 @@ def _basis(columns: Floats, least: float) -> Floats:
     """Return an orthonormal basis of the columns, without directions below a part of the largest."""
     U, singular, _ = np.linalg.svd(columns, full_matrices=False)
     return np.asarray(U[:, singular > least * max(singular[0], 1e-300)])
-
-
-def _both(one: Family, other: Family) -> Family:
-    count = one.count
-    return Family(
-        f"{one.name} and {other.name}",
-        "pair",
-        np.concatenate([one.right, other.right]),
-        np.concatenate([one.scale, other.scale]),
-        lambda p: {**one.changes(p[:count]), **other.changes(p[count:])},
-    )

@@ -1,58 +1,51 @@
-"""The equations of motion with every fault as a parameter, for many parameters and arcs at once.
+"""The equations of motion of changed scenes, for many changes and many arcs at once.
 
-    P = M nu;  P' = clock (x_t x W + X, y x W + x_m x U + L) - damping P,   nu' = M^-1 P'
-    x_t = turn nu,  y = gyro nu + rotor,  x_m = munk nu
+    P = M nu;   P' = C(M) - damping P + rotor x W + (1 + extra) f,   nu' = M^-1 P'
 
-nu is omega of a rigid body, or (U, W) in a fluid. In the right equations ``turn``, ``gyro`` and ``munk``
-are rows of the mass matrix M. A state has the components v (nu, or the momenta P if ``has_momenta``),
-then the quaternion and the centre as far as they are asked for; the axes of an array of states are
-(parameters, components, arcs). A parameter may have an axis of parameter sets in front.
+A change is one of a scene: ``mass``, ``rotor``, ``damping``, and ``extra``, the factors of expressions f
+in the texts of its loads. An array of states has the axes (parameters, components, arcs). A state has nu
+(or the momenta P if ``has_momenta``), then the quaternion and the centre as far as they are asked for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.algebra import ABSENT, add, cross
 from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
-from taylor_verify.models.kirchhoff import impulse_rates
 
 Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {
-    **dict.fromkeys(("mass", "turn", "gyro", "munk"), 2),
-    **dict.fromkeys(
-        ("rotor", "load", "weights", "space", "arm", "linear", "quadratic", "turns"), 1
-    ),
-    **dict.fromkeys(("damping", "clock", "ahead", "late", "in_space"), 0),
-}
+_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
+_AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
+AXES: Final = _AXES | _AXES_OF_NUMBERS
+_FRAMED: Final = frozenset({"frame", "turned loads"})
 
 
 @dataclass(frozen=True)
 class Equations:
     """Parameters of the equations of motion.
 
-    ``load`` is constant in body axes, ``space`` in space axes, ``arm`` x R^T e3 is a couple; ``linear``
-    and ``quadratic`` are drags on each component of nu. ``acting`` are the loads that the scene writes as
-    texts, read ``late`` by so much time; all loads of the scene are multiplied by ``weights``, and are
-    those in space axes if ``in_space`` is 1. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2,
-    where W is omega + ``ahead`` omega'. ``current`` moves the centre.
+    ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts, of which each
+    piece between ``switches`` is smooth; they are read ``late`` by so much time, and their velocities are
+    those of ``scene_mass``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is
+    omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
+    takes v for components in space axes, into which the loads are turned. ``texts`` are the entries of
+    the loads in the scene, beside a weight if ``is_hung``; they may name the inertia or the momenta.
     """
 
     mass: Floats
-    gyro: Floats
-    turn: Floats
-    munk: Floats
     rotor: Floats
     load: Floats
+    extra: Floats
     has_momenta: bool = False
     acting: Acting | None = None
     reads: int = 0
@@ -60,23 +53,21 @@ class Equations:
     start: float = 0.0
     current: Floats | None = None
     switches: Floats | None = None
-    weights: Floats | None = None
-    space: Floats | None = None
-    arm: Floats | None = None
-    linear: Floats | None = None
-    quadratic: Floats | None = None
     damping: Any = 0.0
     clock: Any = 1.0
     turns: Floats | None = None
     ahead: Any = 0.0
     late: Any = 0.0
-    in_space: Any = 0.0
+    in_world: bool = False
+    texts: tuple[str, ...] = ()
+    is_hung: bool = False
+    names_mass: bool = False
 
     @classmethod
     def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
         """Return the right equations of a free body with wheels of this momentum."""
-        rows = mass[:3]
-        return cls(mass, mass[-3:], rows, rows, rotor, np.zeros(len(mass)), scene_mass=mass)
+        n = len(mass)
+        return cls(mass, rotor, np.zeros(n), np.zeros((n, basis(n).count)), scene_mass=mass)
 
     @property
     def size(self) -> int:
@@ -84,34 +75,30 @@ class Equations:
         return int(self.mass.shape[-1])
 
     @property
-    def coupled(self) -> int:
-        """Number of components of the state that the rates of v depend on."""
-        return self.size + max(4 * self._has_frame, self.reads)
+    def basis(self) -> Basis:
+        return basis(self.size)
 
     @property
-    def _has_frame(self) -> bool:
-        return self.space is not None or self.arm is not None or "in_space" in self._has
+    def has_loads(self) -> bool:
+        """True if the scene has loads, constant or written as texts."""
+        return self.acting is not None or bool(np.any(self.load))
+
+    @property
+    def coupled(self) -> int:
+        """Number of components of the state that the rates of v depend on."""
+        return self.size + max(4 * self._reads_frame, self.reads)
+
+    @property
+    def _reads_frame(self) -> bool:
+        return self.in_world or not _FRAMED.isdisjoint(self._columns)
 
     @property
     def sets(self) -> int:
         """Number of parameter sets."""
+        shapes = {name: np.shape(getattr(self, name)) for name in AXES}
         return max(
-            len(value) if np.ndim(value := getattr(self, name)) > axes else 1
-            for name, axes in _AXES.items()
+            shapes[name][0] if len(shapes[name]) > axes else 1 for name, axes in AXES.items()
         )
-
-    @cached_property
-    def inverse(self) -> Floats:
-        return np.asarray(np.linalg.inv(self.mass))
-
-    @cached_property
-    def _has(self) -> frozenset[str]:
-        """The names of the parameters that have an effect."""
-        plain = {
-            "clock": 1.0,
-            **dict.fromkeys(("damping", "ahead", "rotor", "load", "in_space"), 0.0),
-        }
-        return frozenset(n for n, v in plain.items() if np.any(np.asarray(getattr(self, n)) != v))
 
     def changed(self, changes: Changes) -> Equations:
         """Return the equations with one set of other parameters."""
@@ -119,126 +106,141 @@ class Equations:
 
     def copies(self, sets: Sequence[Changes]) -> Equations:
         """Return equations with an axis of parameter sets; a set names the parameters that it changes."""
-        stacked: dict[str, Any] = {}
-        for name in {name for changes in sets for name in changes}:
-            values = [changes.get(name, getattr(self, name)) for changes in sets]
-            shape = np.shape(next(value for value in values if value is not None))
-            plain = {"weights": np.ones(shape), "turns": np.array([0.0, 1.0])}
-            empty = plain.get(name, np.zeros(shape))
-            filled = [empty if value is None else value for value in values]
-            stacked[name] = np.array(filled, dtype=float)
+        names = {name for changes in sets for name in changes}
+        right = {name: getattr(self, name) for name in names}
+        if "turns" in names and self.turns is None:
+            right["turns"] = np.array([0.0, 1.0])
+        stacked: dict[str, Any] = {
+            name: np.array([changes.get(name, right[name]) for changes in sets], dtype=float)
+            for name in names
+        }
         return replace(self, **stacked)
+
+    @cached_property
+    def inverse(self) -> Floats:
+        return np.asarray(np.linalg.inv(self.mass))
+
+    @cached_property
+    def _factors(self) -> Floats:
+        """The factors of all expressions in the rates of the momenta."""
+        groups, n = self.basis.groups, self.size
+        damping = np.asarray(self.damping, dtype=float)[..., None, None]
+        products, damped = coriolis_of(self.mass), -damping * self.mass
+        wheels = np.einsum("ijk,...j->...ik", EPSILON, self.rotor)
+        parts = (self.extra, products, damped, wheels)
+        axes = np.broadcast_shapes(*(part.shape[:-2] for part in parts))
+        factors = np.zeros((*axes, *self.extra.shape[-2:])) + self.extra
+        factors[..., groups["products"]] += products
+        factors[..., groups["velocities"]] += damped
+        factors[..., n - 3 :, groups["velocities"]][..., n - 3 :] += wheels
+        if self.has_loads:
+            factors[..., groups["loads"]] += np.eye(n)
+        else:
+            factors[..., groups["loads"].start :] = 0.0
+        return factors
+
+    @cached_property
+    def _columns(self) -> dict[str, Any]:
+        """The columns of each group that have an effect."""
+        factors = self._factors
+        has_effect = np.any(factors != 0, axis=tuple(range(factors.ndim - 1)))
+        columns = {
+            name: np.flatnonzero(has_effect[part]) for name, part in self.basis.groups.items()
+        }
+        return {name: places for name, places in columns.items() if len(places)}
+
+    @cached_property
+    def _slopes(self) -> Floats:
+        """The factors of the columns that have an effect, in the rates of v."""
+        groups = self.basis.groups
+        places = [groups[name].start + own for name, own in self._columns.items()]
+        factors = self._factors[..., np.concatenate([np.empty(0, dtype=int), *places])]
+        return factors if self.has_momenta else self.inverse @ factors
 
     def rates(self, time: Floats, z: Floats) -> Floats:
         """Return the rates of states with or without a quaternion and a centre."""
-        n, count = self.size, z.shape[1]
+        n = self.size
         nu = self.inverse @ z[:, :n] if self.has_momenta else z[:, :n]
-        momentum = self._forces(time, z, nu)
-        out = np.empty((max(len(momentum), len(z)), *z.shape[1:]))
-        acceleration = None
-        if not self.has_momenta or "ahead" in self._has:
-            acceleration = self.inverse @ momentum
-        out[:, :n] = momentum if self.has_momenta else acceleration
-        if count > n:
-            q, W = _parts(z[:, n : n + 4]), _parts(nu[:, -3:])
-            if acceleration is not None and "ahead" in self._has:
-                W = _parts(nu[:, -3:] + _number(self.ahead) * acceleration[:, -3:])
-            for i, component in enumerate(self._turned(q, W)):
-                out[:, n + i] = component
-        if count > n + 4:
-            for i, component in enumerate(centre_rate(_parts(z[:, n : n + 4]), _parts(nu[:, :3]))):
-                out[:, n + 4 + i] = (
-                    component if self.current is None else component + self.current[i]
-                )
-        return out * _number(self.clock) if "clock" in self._has else out
+        moving = self._slopes @ self._expressions(time, z, nu)
+        out = np.empty((max(len(moving), len(z)), *z.shape[1:]))
+        out[:, :n] = moving
+        if z.shape[1] > n:
+            self._put_frame_rates(out, z, nu, moving)
+        return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)
 
-    @cached_property
-    def _has_loads(self) -> bool:
-        parts = (self.acting, self.space, self.arm, self.linear, self.quadratic)
-        return "load" in self._has or any(part is not None for part in parts)
+    def _put_frame_rates(self, out: Floats, z: Floats, nu: Floats, moving: Floats) -> None:
+        n, W = self.size, nu[:, -3:]
+        if np.any(self.ahead):
+            acceleration = self.inverse @ moving if self.has_momenta else moving
+            W = W + _number(self.ahead) * acceleration[:, -3:]
+        q = parts(z[:, n : n + 4])
+        for i, component in enumerate(self._turned(q, parts(W))):
+            out[:, n + i] = component
+        if z.shape[1] > n + 4:
+            current = np.zeros(3) if self.current is None else self.current
+            for i, component in enumerate(centre_rate(q, parts(nu[:, :3]))):
+                out[:, n + 4 + i] = component + current[i]
 
-    def _forces(self, time: Floats, z: Floats, nu: Floats) -> Floats:
-        """Return the rates of the momenta without the factor of the clock."""
-        n = self.size
-        W, turning = _parts(nu[:, -3:]), self.gyro @ nu
-        y = _parts(turning + _column(self.rotor) if "rotor" in self._has else turning)
-        load = self._loads(time, z, nu)
-        if n == 3:
-            rates = add(cross(y, W), load)
-        else:
-            x, U = _parts(self.turn @ nu), _parts(nu[:, :3])
-            of_x, of_y = impulse_rates(x, y, U, W, load[:3], load[3:])
-            if self.munk is not self.turn:
-                apart = _parts((self.munk - self.turn) @ nu)
-                of_y = add(of_y, cross(apart, U))
-            rates = [*of_x, *of_y]
-        total = _stacked(rates)
-        if "damping" in self._has:
-            momentum = z[:, :n] if self.has_momenta else self.mass @ nu
-            total = total - _number(self.damping) * momentum
-        return total
+    def _expressions(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+        """Return the values of the expressions that have an effect, (parameters, columns, arcs)."""
+        R = loads = None
+        if self._reads_frame:
+            R = _rotations(z[:, self.size : self.size + 4])
+        if not {"loads", "turned loads"}.isdisjoint(self._columns):
+            loads = self._loads(time, z, nu)
+        values = [self._values(name, nu, R, loads, at) for name, at in self._columns.items()]
+        if len(values) == 1:
+            return values[0]
+        sets, arcs = max(map(len, values), default=1), z.shape[2]
+        if not values:
+            return np.zeros((1, 0, arcs))
+        return np.concatenate(
+            [np.broadcast_to(each, (sets, each.shape[1], arcs)) for each in values], axis=1
+        )
 
-    def _loads(self, time: Floats, z: Floats, nu: Floats) -> list[Any]:
-        """Return the components of all loads but damping, body axes."""
-        n = self.size
-        total: Any = _column(self.load)
-        if not self._has_loads:
-            return [ABSENT] * n
-        if self.acting is not None:
-            total = total + self._written(time, z, nu)
-        if self.weights is not None:
-            total = total * _column(self.weights)
-        if z.shape[1] > n and self._has_frame:
-            q = z[:, n : n + 4]
-            R = rotation(_parts(q / np.sqrt(np.sum(q * q, axis=1, keepdims=True))))
-            if "in_space" in self._has:
-                vectors = np.broadcast_to(total, (len(total), n, z.shape[2]))
-                total = total + _number(self.in_space) * (_to_body(R, vectors) - total)
-            if self.space is not None:
-                total = total + _to_body(R, _column(self.space))
-            if self.arm is not None:
-                couple = np.stack(cross(_parts(_column(self.arm)), R[2]), axis=1)
-                total = total + (couple if n == 3 else np.concatenate([0 * couple, couple], axis=1))
-        if self.linear is not None:
-            total = total - _column(self.linear) * nu
-        if self.quadratic is not None:
-            total = total - _column(self.quadratic) * np.abs(nu) * nu
-        return _parts(total)
+    def _values(self, name: str, nu: Floats, R: Any, loads: Any, columns: Any) -> Floats:
+        if name == "products":
+            j, k = np.transpose(self.basis.pairs)[:, columns]
+            return np.asarray(nu[:, j] * nu[:, k])
+        own: dict[str, Callable[[], Floats]] = {
+            "constants": lambda: np.ones((1, 1, 1)),
+            "velocities": lambda: nu,
+            "squares": lambda: np.abs(nu) * nu,
+            "frame": lambda: R,
+            "loads": lambda: _to_space(R, loads) if self.in_world else loads,
+            "turned loads": lambda: _to_body(R, loads),
+        }
+        return np.asarray(own[name]()[:, columns])
 
-    def _written(self, time: Floats, z: Floats, nu: Floats) -> Floats:
-        """Return the loads that are texts, (parameters, components, arcs)."""
-        assert self.acting is not None
+    def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+        """Return the loads of the scene, (parameters, components, arcs)."""
+        load = np.asarray(self.load)
+        constant = np.asarray(load if load.ndim == 3 else load[None, :, None], dtype=float)
+        if self.acting is None:
+            return constant
         n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
         moving = nu if n == 3 or self.scene_mass is None else self.scene_mass @ nu
         state = np.concatenate([moving, z[:, n:]], axis=1).transpose(0, 2, 1)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
         stacked = values if n == 3 else np.concatenate(values, axis=-1)
-        return np.asarray(stacked).transpose(0, 2, 1)
+        return np.asarray(constant + np.asarray(stacked).transpose(0, 2, 1))
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
         right = attitude_rate(q, W)
         if self.turns is None:
             return right
         weights = np.asarray(self.turns, dtype=float)
-        conjugate = [q[0], -q[1], -q[2], -q[3]]
         # W q is the conjugate of q* W*, and W* = -W.
-        r0, *r = attitude_rate(conjugate, [-w for w in W])
+        r0, *r = attitude_rate([q[0], -q[1], -q[2], -q[3]], [-w for w in W])
         left = [r0, *(-component for component in r)]
         before, after = _number(weights[..., 0])[..., 0], _number(weights[..., 1])[..., 0]
         return [before * a + after * b for a, b in zip(left, right, strict=True)]
 
 
-def _parts(rows: Floats) -> list[Floats]:
+def parts(rows: Floats) -> list[Floats]:
     """Return the components, each (parameters, arcs)."""
     return [rows[:, i] for i in range(rows.shape[1])]
-
-
-def _column(vector: Floats) -> Floats:
-    """Return (components,) or (parameters, components) with the axes of an array of states."""
-    if np.ndim(vector) == 3:
-        return vector
-    return vector[..., :, None] if np.ndim(vector) == 2 else vector[None, :, None]
 
 
 def _number(value: Any) -> Floats:
@@ -246,20 +248,23 @@ def _number(value: Any) -> Floats:
     return np.asarray(value, dtype=float).reshape(-1, 1, 1)
 
 
-def _to_body(R: list[list[Any]], vectors: Floats) -> Floats:
+def _rotations(q: Floats) -> Floats:
+    """Return the entries of R(q) of quaternions of any length, (parameters, 9, arcs)."""
+    unit = q / np.sqrt(np.sum(q * q, axis=1, keepdims=True))
+    return np.stack([entry for row in rotation(parts(unit)) for entry in row], axis=1)
+
+
+def _to_space(R: Floats, vectors: Floats) -> Floats:
+    """Return R v for vectors of three components."""
+    turned = [sum(R[:, 3 * i + k] * vectors[:, k] for k in range(3)) for i in range(3)]
+    return np.stack([np.asarray(component) for component in turned], axis=1)
+
+
+def _to_body(R: Floats, vectors: Floats) -> Floats:
     """Return R^T v for every vector of three components."""
     turned = [
-        sum(R[k][i] * vectors[:, first + k] for k in range(3))
+        sum(R[:, 3 * k + i] * vectors[:, first + k] for k in range(3))
         for first in range(0, vectors.shape[1], 3)
         for i in range(3)
     ]
-    return _stacked(turned)
-
-
-def _stacked(parts: Sequence[Any]) -> Floats:
-    """Return components (parameters or 1, arcs) as one array."""
-    sets, arcs = max(len(part) for part in parts), max(part.shape[1] for part in parts)
-    stacked = np.empty((sets, len(parts), arcs))
-    for i, part in enumerate(parts):
-        stacked[:, i] = part
-    return stacked
+    return np.stack([np.asarray(component) for component in turned], axis=1)

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A change of the equations that has no number to fit."""
+    """A change of the scene that has no number to fit."""
 
     name: str
     kind: str
@@ -53,14 +53,49 @@ def _largest(rows: Floats, least: float) -> Floats:
     return np.asarray(np.maximum(np.max(np.abs(rows), axis=0), least * vectors))
 
 
-def of_body(mass: Floats) -> dict[str, Any]:
-    """Return the changes of a body with another mass matrix."""
-    return {"mass": mass, **of_coriolis(mass)}
+def linear(
+    equations: Equations,
+    name: str,
+    kind: str,
+    scale: Any,
+    right: Any = None,
+    labels: tuple[str, ...] = (),
+    **along: Any,
+) -> Family:
+    """Return a family whose numbers change parameters linearly, each ``along`` a direction of its own.
+
+    The numbers of the scene are ``right``, and 0 without it.
+    """
+    directions = {field: np.asarray(each, dtype=float) for field, each in along.items()}
+    count = len(next(iter(directions.values())))
+    own = np.zeros(count) if right is None else np.array(right, dtype=float)
+
+    def changes(p: Floats) -> Changes:
+        return {
+            field: getattr(equations, field) + np.tensordot(p - own, each, axes=1)
+            for field, each in directions.items()
+        }
+
+    scales = np.broadcast_to(np.asarray(scale, dtype=float), own.shape)
+    return Family(name, kind, own, scales, changes, labels)
 
 
-def of_coriolis(matrix: Floats) -> Mapping[str, Any]:
-    """Return the changes of Coriolis terms with another matrix than that of the acceleration."""
-    own: dict[str, Any] = {"gyro": matrix[-3:]}
-    if len(matrix) == 6:
-        own |= {"turn": matrix[:3], "munk": matrix[:3]}
-    return own
+def both(equations: Equations, one: Family, other: Family) -> Family:
+    """Return the family of the changes of two families together."""
+    count = one.count
+
+    def changes(p: Floats) -> Changes:
+        first, second = one.changes(p[:count]), other.changes(p[count:])
+        common = {
+            field: first[field] + second[field] - getattr(equations, field)
+            for field in first.keys() & second.keys()
+        }
+        return {**first, **second, **common}
+
+    return Family(
+        f"{one.name} and {other.name}",
+        "pair",
+        np.concatenate([one.right, other.right]),
+        np.concatenate([one.scale, other.scale]),
+        changes,
+    )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -12,16 +13,18 @@ import numpy as np
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.fit import Family
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.equations import Equations, parts
+from taylor_verify.judge.causes.fault import linear
+from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
+from taylor_verify.models.algebra import apply
+from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
-_ARCS: Final = 48
+_ARCS: Final = 16
 _CLEAR: Final = 20.0
 # What a hypothesis without numbers leaves of the defects.
 _REPLAYED: Final = 1e-2
@@ -128,26 +131,37 @@ def _wrong(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[
         changed = right.changed({"turns": np.array(weights)})
         left = _apart(ends, _turned(changed, arcs)) / size
         yield _Tried(name, "kinematics", left, partial(_weighted, changed))
+    assert arcs.answer.file.q is not None
+    by_space = np.einsum("aij,aj->ia", _by_space(right, arcs), arcs.answer.file.q[arcs.first])
+    name = "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
+    yield _Tried(name, "kinematics", _apart(ends, by_space) / size, partial(_by_space, right))
+
+
+def _by_space(right: Equations, arcs: Arcs) -> Floats:
+    """Return the maps of q by q' = q omega / 2 with the components of the true omega in space axes."""
+    n, truth = arcs.answer.n, arcs.answer.truth.q
+    assert truth is not None
+    true = np.broadcast_to(truth[arcs.first].T, (4, 4, len(arcs.first)))
+    own = with_units(arcs.begin(n)[0])
+    begin = np.concatenate([own[:, :n], true, own[:, n:]], axis=1)
+
+    def rates(time: Floats, z: Floats) -> Floats:
+        omega, R = _omega(right, z[:, :n]), rotation(parts(z[:, n : n + 4]))
+        in_space = apply(R, parts(omega))
+        turned = np.stack(attitude_rate(parts(z[:, n + 4 :]), in_space), axis=1)
+        return np.concatenate([right.rates(time, z[:, : n + 4]), turned], axis=1)
+
+    ends = flow(rates, begin, arcs.since, arcs.spans, arcs.steps)
+    return np.asarray(ends[:, n + 4 :].transpose(2, 1, 0))
 
 
 def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
-    omega, one = arcs.answer.truth.v[:, -3:], np.ones(1)
+    omega = arcs.answer.truth.v[:, -3:]
     pace = 1.0 if right.has_momenta else float(np.max(np.linalg.norm(omega, axis=1)))
+    turns, name = right.changed({"turns": np.array([0.0, 1.0])}), "attitude turns by a factor"
     families = (
-        Family(
-            "attitude by the rate of another moment",
-            "late rate",
-            0 * one,
-            one * 0.1 / pace,
-            lambda p: {"ahead": p[0]},
-        ),
-        Family(
-            "attitude turns by a factor",
-            "kinematics",
-            one,
-            one,
-            lambda p: {"turns": np.array([0.0, p[0]])},
-        ),
+        linear(right, "attitude by the rate of another moment", "late rate", 0.1 / pace, ahead=[1]),
+        linear(turns, name, "kinematics", 1.0, [1], turns=[[0, 1]]),
     )
     for family in families:
         numbers = family.right.copy()
@@ -171,23 +185,23 @@ def _replays(
     n = arcs.answer.n
     if right.coupled > n:
         return
-    begin, size = arcs.begin(n + 4), _apart(ends, exact)
+    q, size = arcs.begin(n + 4)[:, n:], _apart(ends, exact)
     unit = exact / np.linalg.norm(exact, axis=0)
+    rates = cache(partial(_rates, right, arcs, method))
     for name, (order, update) in UPDATES.items():
 
         def apart(rows: Floats, steps: int, update: Any = update) -> float:
-            return _apart(rows, _updated(right, update, begin, arcs, steps, method)[0])
-
-        def left(steps: int, apart: Any = apart) -> float:
-            return float(apart(ends, steps) / size)
+            return _apart(rows, _updated(update, q, rates(steps), arcs.spans / steps)[0])
 
         steps = method[1] if method else _steps(order, partial(apart, unit), size)
-        tried = {k: left(k) for k in ({steps} if method else {max(1, steps - 1), steps, steps + 1})}
+        some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
+        tried = {k: apart(ends, k) / size for k in some}
         best = min(tried, key=lambda k: tried[k])
         h = float(np.median(np.abs(arcs.spans))) / best
         words = f"attitude {name}" + ("" if method else f", h = {h:.6g}")
-        maps = partial(_maps, right, update, best, method)
-        yield _Tried(words, "attitude step", tried[best], maps)
+        yield _Tried(
+            words, "attitude step", tried[best], partial(_maps, right, update, best, method)
+        )
 
 
 def _steps(order: int, error: Callable[[int], float], size: float) -> int:
@@ -203,22 +217,26 @@ def _steps(order: int, error: Callable[[int], float], size: float) -> int:
     return steps
 
 
-def _updated(
-    right: Equations, update: Any, begin: Floats, arcs: Arcs, steps: int, method: Any
-) -> Floats:
-    """Return q, not of unit length, after the arcs in so many updates."""
-    answer, n, h = arcs.answer, arcs.answer.n, arcs.spans / steps
-    v, q = begin[:, :n], begin[:, n:]
-    for k in range(steps):
-        since = arcs.since + k * h
-        if method:
-            after = replay(answer, method[0], right, v, since, h, 1)
-        else:
-            inner = max(1, -(-arcs.steps // steps))
-            after = moved(answer, right, v, since, h, inner)
-        q = update(q, _omega(right, v), _omega(right, after), h)
-        v = after
-    return np.asarray(q)
+def _updated(update: Any, q: Floats, rates: list[Floats], h: Floats) -> Floats:
+    """Return q, not of unit length, after an update from each of the rates to the next."""
+    for before, after in itertools.pairwise(rates):
+        q = update(q, before, after, h)
+    return q
+
+
+def _rates(right: Equations, arcs: Arcs, method: Any, steps: int) -> list[Floats]:
+    """Return omega at the begin of the arcs and after each of so many steps."""
+    answer, h = arcs.answer, arcs.spans / steps
+    v = arcs.begin(answer.n)
+    rows = [v]
+    if method:
+        for k in range(steps):
+            rows.append(replay(answer, method[0], right, rows[-1], arcs.since + k * h, h, 1))
+    else:
+        spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
+        ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)
+        rows += np.split(ends, steps, axis=2)
+    return [_omega(right, each) for each in rows]
 
 
 def _omega(right: Equations, v: Floats) -> Floats:
@@ -227,5 +245,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
 
 def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
-    begin = with_units(arcs.begin(arcs.answer.n)[0])
-    return _updated(right, update, begin, arcs, steps, method).transpose(2, 1, 0)
+    n = arcs.answer.n
+    q = with_units(arcs.begin(n)[0])[:, n:]
+    rates = _rates(right, arcs, method, steps)
+    return _updated(update, q, rates, arcs.spans / steps).transpose(2, 1, 0)

@@ -176,11 +176,17 @@ def _slope(q: Floats, omega: Floats) -> Floats:
     return np.stack(attitude_rate(_parts(q), _parts(omega)), axis=1)
 
 
-def _updated_in_place(q: Floats, before: Floats, after: Floats, h: Floats) -> Floats:
+def _in_turn(q: Floats, omega: Floats, cosine: Any, sine: Any) -> Floats:
+    """Return cosine q + sine q omega, where each component is put into the others that follow it."""
     q = q.copy()
     for i in range(4):
-        q[:, i] += h * _slope(q, before)[:, i]
+        q[:, i] = cosine * q[:, i] + 2 * sine * _slope(q, omega)[:, i]
     return q
+
+
+def _turned_in_place(q: Floats, before: Floats, after: Floats, h: Floats) -> Floats:
+    size = np.linalg.norm(before, axis=1)
+    return _in_turn(q, before, np.cos(h * size / 2), h / 2 * np.sinc(h * size / 2 / np.pi))
 
 
 UPDATES: Final[Mapping[str, tuple[int, _Update]]] = {
@@ -204,5 +210,12 @@ UPDATES: Final[Mapping[str, tuple[int, _Update]]] = {
         1,
         lambda q, before, after, h: q + h * _slope(q, after),
     ),
-    "quaternion updated in place": (1, _updated_in_place),
+    "quaternion updated in place": (
+        1,
+        lambda q, before, after, h: _in_turn(q, before, 1.0, h / 2),
+    ),
+    "quaternion turned by the rate at the begin of the step, updated in place": (
+        1,
+        _turned_in_place,
+    ),
 }

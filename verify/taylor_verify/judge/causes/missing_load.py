@@ -25,7 +25,7 @@ _TIMES: Final = 5
 
 def missing_load(answer: Answer) -> str:
     """Return the load in words; empty where rows are too far apart to tell it, or where it is rounding."""
-    if answer.count < 4 or not answer.moving:
+    if answer.count < 4 or not answer.moving or answer.has_states:
         return ""
     arcs = row_to_row(answer)
     load, slopes, left = _fitted(answer, arcs)

@@ -17,6 +17,7 @@ from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrice
 from taylor_verify.judge.causes.answer import product as times
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.conventions.axes import quaternion_columns
 
 _ROUNDINGS: Final = 10.0
@@ -45,16 +46,21 @@ FACTORS: Final = {
     "thousands": 1e-3,
     "feet": 1 / 0.3048,
 }
+_FRAMES: Final = {
+    "velocity": "is relative to a moving frame, with the velocity",
+    "omega": "is relative to a frame that turns, in space axes, at",
+}
 _NOUNS: Final = {"velocity": "the linear velocity", "centre": "the centre"}
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A convention: the rows that a right file would have by it, and how many numbers were fitted."""
+    """A convention: the rows of a right file by it, the count of fitted numbers, and what it may leave."""
 
     name: str
     count: int
     rows: Floats
+    part: float = _PART
 
 
 def readings(answer: Answer) -> dict[str, Cause]:
@@ -63,22 +69,22 @@ def readings(answer: Answer) -> dict[str, Cause]:
     for name in answer.failed:
         tried = _attitudes(answer) if name == "attitude" else _vectors(answer, name)
         near, least = [], _ROUNDINGS * answer.roundings[name]
-        for reading in tried:
+        for place, reading in enumerate(tried):
             left = _left(answer, name, reading.rows)
-            if left <= max(least, _PART * answer.worst[name]) and left < _MOST * answer.worst[name]:
-                near.append((reading.count, left, reading.name))
+            bound = max(least, reading.part * answer.worst[name])
+            if left <= bound and left < _MOST * answer.worst[name]:
+                # Of two that leave no more than roundings, the simpler one was tried first.
+                near.append((reading.count, max(left, least), place, reading.name))
         if near:
             count = min(each[0] for each in near)
-            # Of those that leave no more than roundings the simplest was tried first.
-            order = [(max(left, least), k) for k, (n, left, _) in enumerate(near) if n == count]
-            same = [near[k] for _, k in sorted(order)]
+            same = sorted(each for each in near if each[0] == count)
             noun = _NOUNS.get(name, name)
             alike = [each for each in same[1:4] if each[1] <= max(10 * same[0][1], least)]
             causes[name] = Cause(
-                f"{noun} {same[0][2]}",
+                f"{noun} {same[0][3]}",
                 "convention",
                 {name: same[0][1] / answer.worst[name]},
-                alike=tuple(f"{noun} {each[2]}" for each in alike),
+                alike=tuple(f"{noun} {each[3]}" for each in alike),
             )
     omega = causes.get("omega")
     is_alone = "attitude" in answer.failed and "attitude" not in causes
@@ -164,14 +170,14 @@ def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -
     p, rows = _best(file, [truth * axis for axis in unit])
     if not (name == "omega" and "attitude" in answer.failed):
         yield Reading(f"has factors {numbers(p)} on its axes", 3, rows)
-    if is_centre or name == "velocity":
+    if is_centre or name in _FRAMES:
         p, rows = _best(file - truth, [R[:, :, i] if is_centre else R[:, i, :] for i in range(3)])
-        words = (
-            "is the path of the body's point"
-            if is_centre
-            else "is relative to a moving frame, with the velocity"
-        )
-        yield Reading(f"{words} {numbers(p)}", 3, truth + rows)
+        words = "is the path of the body's point" if is_centre else _FRAMES[name]
+        p = p if is_centre else -p
+        # The Earth turns under simulators that are right to single precision.
+        part = LEAVES if name == "omega" else _PART
+        yield Reading(f"{words} {numbers(p)}", 3, truth + rows, part)
+    if is_centre or name == "velocity":
         p, rows = _best(file - truth, [axis * answer.times[:, None] for axis in unit])
         yield Reading(f"drifts with the constant velocity {numbers(p)}", 3, truth + rows)
     if name == "velocity":

@@ -109,12 +109,14 @@ def _steps_of(arcs: Arcs, method: Method, stride: int) -> tuple[int, float]:
         error = (ends(steps) - exact) / scale
     for _ in range(_SEARCHES):
         own = float(np.linalg.norm(error))
-        if not 0 < own < np.inf or np.sum(error * defects) < _ALONG * own * size:
+        if not 0 < own < np.inf:
             return 0, np.inf
         further = round(steps * (own / size) ** (1 / method.order))
         if further == steps or not 1 <= further <= limit:
             break
         steps, error = further, (ends(further) - exact) / scale
+    if np.sum(error * defects) < _ALONG * float(np.linalg.norm(error)) * size:
+        return 0, np.inf
     tried = {k: _left(ends(k), arcs) / size for k in {max(1, steps - 1), steps, steps + 1}}
     best = min(tried, key=lambda k: tried[k])
     return best, tried[best]

@@ -6,6 +6,7 @@ or readings.py, its broken twin to tests/judge/test_causes.py, and its line to d
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from typing import Final
@@ -13,12 +14,14 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
-from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.answer import Answer, conjugate, matrices, steady_signs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.own_states import cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import wrong_rows
@@ -44,7 +47,9 @@ def causes_of(answer: Answer) -> list[Cause]:
     if undone:
         return undone
     by_group = readings(answer)
-    undone = _attitude_undone(answer, by_group) or _omega_undone(answer, by_group)
+    if answer.has_states:
+        return list(by_group.values()) or cause_in_states(answer)
+    undone = _undone(answer, by_group)
     if undone:
         return undone
     left = [name for name in answer.failed if name not in by_group]
@@ -56,7 +61,8 @@ def causes_of(answer: Answer) -> list[Cause]:
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
-        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
+        of_motion = _of_motion(answer, moving, "attitude" in left)
+        return of_motion or _in_space(answer) or cause_in_states(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
@@ -165,23 +171,23 @@ def _begins_at_start(answer: Answer) -> bool:
     return is_start and has_left
 
 
-def _attitude_undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
-    """Return a convention of the attitude that its first row shows, with the causes of what is left."""
-    q, start = answer.file.q, answer.start.q
-    if q is None or start is None or "attitude" in by_group or not answer.is_from_start:
-        return []
-    allowed = _ROUNDINGS * answer.roundings["attitude"]
-    if "attitude" not in answer.failed or answer.error["attitude"][0] <= allowed:
-        return []
-    last = np.roll(q, 1, axis=1)
-    for name, rows in (
-        ("is transposed: it takes space to body axes", conjugate(q)),
-        ("is scalar last", last),
-        ("is scalar last and transposed", conjugate(last)),
-    ):
-        if angles(rows[:1], start)[0] <= allowed:
-            read = replace(answer, file=replace(answer.file, q=steady_signs(rows)))
-            return _beside(Cause(f"attitude {name}", "convention", {}), causes_of(read))
+def _undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
+    """Return a convention that the first row shows, with the causes of what is left by it."""
+    if "omega" in by_group and "attitude" in answer.failed and "attitude" not in by_group:
+        read = _with_omega(answer, answer.truth.v[:, answer.groups["omega"]])
+        return _beside(by_group["omega"], _of_motion(read, [], has_wrong_attitude=True))
+    tried = {"attitude": _attitudes(answer), "omega": _rates(answer)}
+    for name, readings_ in tried.items() if answer.is_from_start else ():
+        if name in by_group or name not in answer.failed:
+            continue
+        allowed = _ROUNDINGS * answer.roundings[name]
+        if answer.error[name][0] <= allowed:
+            continue
+        for words, read in readings_:
+            if read.at(np.s_[:1]).error[name][0] <= allowed:
+                convention = Cause(f"{name} {words}", "convention", {})
+                if both := _beside(convention, causes_of(read)):
+                    return both
     return []
 
 
@@ -191,28 +197,6 @@ def _beside(convention: Cause, causes: list[Cause]) -> list[Cause]:
     return [convention, *with_that] if causes else []
 
 
-def _omega_undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
-    """Return a convention of omega that its first row shows, with the causes of what is left by it."""
-    if "omega" not in answer.failed or answer.right.has_momenta or not answer.is_from_start:
-        return []
-    attitude_is_left = "attitude" in answer.failed and "attitude" not in by_group
-    if "omega" in by_group and not attitude_is_left:
-        return []
-    allowed = _ROUNDINGS * answer.roundings["omega"]
-    if "omega" not in by_group and answer.error["omega"][0] <= allowed:
-        return []
-    part = answer.groups["omega"]
-    for name, rows in _conventions(answer, answer.file.v[:, part]):
-        apart = np.linalg.norm(rows[0] - answer.truth.v[0, part]) / answer.sizes[part][0]
-        if apart <= allowed:
-            read = _with_omega(answer, rows)
-            causes = _of_motion(read, list(read.moving), attitude_is_left)
-            first = by_group.get("omega", Cause(f"omega {name}", "convention", {}))
-            if both := _beside(first, causes):
-                return both
-    return []
-
-
 def _with_omega(answer: Answer, rows: Floats) -> Answer:
     v = answer.file.v.copy()
     v[:, answer.groups["omega"]] = rows
@@ -220,22 +204,44 @@ def _with_omega(answer: Answer, rows: Floats) -> Answer:
 
 
 def _in_space(answer: Answer) -> list[Cause]:
-    """Return omega in space axes with the causes that the motion has then, where nothing else is proven."""
-    if answer.file.q is None or answer.n == 6 or "omega" not in answer.failed:
+    """Return causes of a motion whose omega, or whose equations, are in space axes."""
+    q, start = answer.file.q, answer.start.q
+    if q is None or start is None or answer.n == 6 or "omega" not in answer.failed:
         return []
-    name, rows = _conventions(answer, answer.file.v)[0]
-    if np.array_equal(rows, answer.file.v):
+    name, read = next(_rates(answer))
+    convention = Cause(f"omega {name}", "convention", {})
+    if np.array_equal(read.file.v, answer.file.v):
         return []
-    read = _with_omega(answer, rows)
     causes = _of_motion(read, list(read.moving), "attitude" in answer.failed)
-    return _beside(Cause(f"omega {name}", "convention", {}), causes)
+    if causes:
+        return _beside(convention, causes)
+    in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
+    return _beside(convention, in_world(answer, answer.file.v)) or in_world(answer, in_space)
 
 
-def _conventions(answer: Answer, omega: Floats) -> list[tuple[str, Floats]]:
-    tried: list[tuple[str, Floats]] = []
+def _attitudes(answer: Answer) -> Iterator[tuple[str, Answer]]:
+    """Yield conventions of the attitude, with the answer read by them."""
+    q = answer.file.q
+    if q is None:
+        return
+    last = np.roll(q, 1, axis=1)
+    for name, rows in (
+        ("is transposed: it takes space to body axes", conjugate(q)),
+        ("is scalar last", last),
+        ("is scalar last and transposed", conjugate(last)),
+    ):
+        yield name, replace(answer, file=replace(answer.file, q=steady_signs(rows)))
+
+
+def _rates(answer: Answer) -> Iterator[tuple[str, Answer]]:
+    """Yield conventions of omega, with the answer read by them."""
+    if answer.right.has_momenta:
+        return
+    omega = answer.file.v[:, answer.groups["omega"]]
     if answer.file.q is not None:
         in_body = np.einsum("nji,nj->ni", matrices(answer.file.q), omega)
-        tried.append(("is in space axes", in_body))
-    tried += [(f"has other axes: {axes(P)}", omega @ P) for P in SIGNED[1:]]
-    tried += [(f"is in another unit: {unit}", omega / factor) for unit, factor in FACTORS.items()]
-    return tried
+        yield "is in space axes", _with_omega(answer, in_body)
+    for P in SIGNED[1:]:
+        yield f"has other axes: {axes(P)}", _with_omega(answer, omega @ P)
+    for unit, factor in FACTORS.items():
+        yield f"is in another unit: {unit}", _with_omega(answer, omega / factor)

@@ -1,102 +1,88 @@
-"""Families of faults in the terms of the equations: clock, gyroscopic term, wheels, loads, drag."""
+"""Faults and families in the terms of the equations: clock, gyroscopic term, wheels, loads, drag."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import product
+from functools import partial
+from itertools import permutations, product
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.fault import Fault, Sizes, of_coriolis
+from taylor_verify.judge.causes.fault import Fault, Sizes, linear
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
 
-_TERMS: Final = (("Munk moment", "munk"), ("term x x W", "turn"), ("term y x W", "gyro"))
+_WRONG: Final = (("left out", 0.0), ("with the other sign", -1.0))
+_OFTEN_WRONG: Final = (*_WRONG, ("twice", 2.0))
 
 
 def faults_of_terms(right: Equations) -> Iterator[Fault]:
     """Yield terms left out, of the other sign, or in other axes."""
-    nothing = 0 * right.rotor
+    products = coriolis_of(right.mass)
     word = "gyroscopic term" if right.size == 3 else "Coriolis terms"
     for name, factor in ((f"no {word}", 0.0), (f"{word} with the other sign", -1.0)):
-        changes = {**of_coriolis(factor * right.mass), "rotor": factor * right.rotor}
-        yield Fault(name, "gyroscopic term", changes)
+        extra = right.basis.factors(products=(factor - 1) * products)
+        yield Fault(name, "gyroscopic term", {"extra": extra, "rotor": factor * right.rotor})
     if np.any(right.rotor):
-        yield Fault(
-            "gyroscopic term of the wheels alone", "gyroscopic term", {"gyro": 0 * right.gyro}
-        )
-        yield Fault("wheels left out", "wheels", {"rotor": nothing})
-        yield Fault("wheels with the other sign", "wheels", {"rotor": -right.rotor})
-        yield from _single_wheels(right)
-    yield from _faults_of_loads(right)
+        yield from _faults_of_wheels(right)
+    if right.has_loads:
+        yield from _faults_of_loads(right)
     if right.damping:
-        yield Fault("damping left out", "damping", {"damping": 0.0})
-        yield Fault("damping with the other sign", "damping", {"damping": -right.damping})
-        linear = np.full(right.size, float(right.damping))
-        yield Fault("damping of the velocity", "damping", {"damping": 0.0, "linear": linear})
-    if right.size == 6:
-        yield from _fluid_terms(right)
+        for words, factor in _WRONG:
+            yield Fault(f"damping {words}", "damping", {"damping": factor * right.damping})
+        drag = right.basis.factors(velocities=-float(right.damping) * np.eye(right.size))
+        yield Fault("damping of the velocity", "damping", {"damping": 0.0, "extra": drag})
+    for name, rows in _coriolis_terms(right):
+        for words, factor in _OFTEN_WRONG:
+            extra = right.basis.factors(products=(factor - 1) * rows)
+            title = f"no {name}" if not factor else f"{name} {words}"
+            yield Fault(title, "Coriolis terms", {"extra": extra})
 
 
-def _single_wheels(right: Equations) -> Iterator[Fault]:
-    if np.count_nonzero(right.rotor) < 2:
-        return
-    for i in np.flatnonzero(right.rotor):
-        for words, factor in (("left out", 0.0), ("with the other sign", -1.0)):
-            rotor = right.rotor.copy()
-            rotor[i] *= factor
-            yield Fault(f"wheel {i + 1} {words}", "wheels", {"rotor": rotor})
+def _faults_of_wheels(right: Equations) -> Iterator[Fault]:
+    alone = right.basis.factors(products=-coriolis_of(right.mass))
+    yield Fault("gyroscopic term of the wheels alone", "gyroscopic term", {"extra": alone})
+    for words, factor in _WRONG:
+        yield Fault(f"wheels {words}", "wheels", {"rotor": factor * right.rotor})
+    for i, (words, factor) in product(np.flatnonzero(right.rotor), _WRONG):
+        rotor = right.rotor * np.where(np.arange(3) == i, factor, 1.0)
+        yield Fault(f"wheel {i + 1} {words}", "wheels", {"rotor": rotor})
 
 
 def _faults_of_loads(right: Equations) -> Iterator[Fault]:
-    n = right.size
-    if right.acting is None and not np.any(right.load):
-        return
+    n, names = right.size, load_names(right.size)
+    weighted, unit = right.basis.factors, np.eye(n)
     noun = "moment" if n == 3 else "loads"
-    for words, factor in (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0)):
-        yield Fault(f"{noun} {words}", "load", {"weights": np.full(n, factor)})
-    yield Fault(f"{noun} in space axes", "load", {"in_space": 1.0})
-    if n == 6:
-        for (name, part), (words, factor) in product(
-            (("force", np.s_[:3]), ("couple", np.s_[3:])),
-            (("left out", 0.0), ("with the other sign", -1.0)),
-        ):
-            weights = np.ones(6)
-            weights[part] = factor
-            yield Fault(f"{name} {words}", "load", {"weights": weights})
-    if right.acting is None:
-        yield from _faults_of_constant_loads(right)
+    for words, factor in _OFTEN_WRONG:
+        yield Fault(f"{noun} {words}", "load", {"extra": weighted(loads=(factor - 1) * unit)})
+    turned = weighted(loads=-unit, turned_loads=unit)
+    yield Fault(f"{noun} in space axes", "load", {"extra": turned})
+    some = [("force", np.r_[1, 1, 1, 0, 0, 0]), ("couple", np.r_[0, 0, 0, 1, 1, 1])] * (n == 6)
+    for (name, part), (words, factor) in product([*some, *zip(names, unit, strict=True)], _WRONG):
+        yield Fault(
+            f"{name} {words}", "load", {"extra": weighted(loads=(factor - 1) * np.diag(part))}
+        )
+    if n == 3:
+        undivided = weighted(loads=right.mass - unit)
+        yield Fault("moment not divided by the inertia", "load", {"extra": undivided})
+    for first, order in product(range(0, n, 3), [*permutations(range(3))][1:]):
+        places = np.arange(n)
+        places[first : first + 3] = first + np.array(order)
+        title = f"components of the {names[first].split()[0]} exchanged"
+        yield Fault(title, "load", {"extra": weighted(loads=unit[places] - unit)})
 
 
-def _faults_of_constant_loads(right: Equations) -> Iterator[Fault]:
-    names = load_names(right.size)
-    if right.size == 3:
-        load = right.mass @ right.load
-        yield Fault("moment not divided by the inertia", "load", {"load": load})
-    if np.count_nonzero(right.load) > 1:
-        for i, (words, factor) in product(
-            np.flatnonzero(right.load), (("left out", 0.0), ("with the other sign", -1.0))
-        ):
-            load = right.load.copy()
-            load[i] *= factor
-            yield Fault(f"{names[i]} {words}", "load", {"load": load})
-    for first, order in product(range(0, right.size, 3), ((1, 0, 2), (0, 2, 1), (2, 1, 0))):
-        load = right.load.copy()
-        load[first : first + 3] = load[first : first + 3][list(order)]
-        if np.any(load != right.load):
-            noun = names[first].split()[0]
-            yield Fault(f"components of the {noun} exchanged", "load", {"load": load})
-
-
-def _fluid_terms(right: Equations) -> Iterator[Fault]:
-    for name, part in _TERMS:
-        rows = getattr(right, part)
-        yield Fault(f"no {name}", "Coriolis terms", {part: 0 * rows})
-        yield Fault(f"{name} with the other sign", "Coriolis terms", {part: -rows})
-        yield Fault(f"{name} twice", "Coriolis terms", {part: 2 * rows})
+def _coriolis_terms(right: Equations) -> Iterator[tuple[str, Floats]]:
+    """Yield the terms of the Coriolis terms in a fluid, each with its factors of the products."""
+    if right.size == 6:
+        gyro, turn, none = right.mass[3:], right.mass[:3], 0 * right.mass[:3]
+        yield "Munk moment", coriolis(none, none, turn)
+        yield "term x x W", coriolis(none, turn)
+        yield "term y x W", coriolis(gyro)
 
 
 def load_names(n: int) -> list[str]:
@@ -108,101 +94,89 @@ def load_names(n: int) -> list[str]:
 def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     """Yield the families of terms: clock, gyroscopic term, wheels, loads, drag and damping."""
     right, n = answer.right, answer.n
-    yield _family("clock", "clock", "clock", 1.0, 1.0)
+    family, factors = partial(linear, right), right.basis.factors
+    yield family("clock", "clock", 1.0, [1], clock=[1])
     word = "gyroscopic term" if n == 3 else "Coriolis terms"
-    one = np.ones(1)
-
-    def factor(p: Floats) -> Changes:
-        return {**of_coriolis(p[0] * right.mass), "rotor": p[0] * right.rotor}
-
-    yield Family(f"factor of the {word}", "gyroscopic term", one, one, factor)
+    title, extra = f"factor of the {word}", [factors(products=coriolis_of(right.mass))]
+    yield family(title, "gyroscopic term", 1.0, [1], extra=extra, rotor=[right.rotor])
     if np.any(right.rotor):
-        yield from _wheels(right)
-    if right.acting is not None or np.any(right.load):
-        noun = "moment" if n == 3 else "loads"
-        yield _family(f"factor of the {noun}", "load", "weights", np.ones(n), 1.0, np.ones((1, n)))
+        size, unit = float(np.linalg.norm(right.rotor)), np.eye(3)
+        yield family("factor of the wheels", "wheels", 1.0, [1], rotor=right.rotor[None])
+        for i in range(3):
+            yield family(f"wheel {i + 1}", "wheels", size, right.rotor[[i]], rotor=unit[[i]])
+        yield family("wheels", "wheels", size, right.rotor, rotor=unit)
+    if right.has_loads:
+        title = f"factor of the {'moment' if n == 3 else 'loads'}"
+        yield family(title, "load", 1.0, [1], extra=[factors(loads=np.eye(n))])
     if right.acting is not None:
-        yield _family("loads late", "load", "late", 0.0, 0.1 / sizes.pace)
+        yield family("loads late", "load", 0.1 / sizes.pace, late=[1])
     yield from _loads(right, sizes)
-    yield _family("damping", "damping", "damping", right.damping, sizes.pace)
-    yield from _drags(n, sizes)
-    if right.damping:
-        yield from _damping_steps(right)
-    if n == 6:
-        for name, part in _TERMS:
-            rows = getattr(right, part)
-            title = f"factor of the {name}"
-            yield _family(title, "Coriolis terms", part, rows, 1.0, rows[None], np.ones(1))
-
-
-def _family(
-    name: str,
-    kind: str,
-    field: str,
-    base: Any,
-    scale: Any,
-    directions: Floats | None = None,
-    right: Floats | None = None,
-) -> Family:
-    """Return a family that changes one parameter linearly, along one or more directions.
-
-    Without ``right`` the numbers are the components of the ``base`` along the directions.
-    """
-    base = np.asarray(base, dtype=float)
-    along = np.ones((1, *base.shape)) if directions is None else directions
-    if right is None:
-        flat = along.reshape(len(along), -1)
-        right = flat @ base.ravel() / np.sum(flat**2, axis=1)
-    scales = np.broadcast_to(np.asarray(scale, dtype=float), right.shape)
-
-    def changes(p: Floats) -> Changes:
-        return {field: base + np.tensordot(p - right, along, axes=1)}
-
-    return Family(name, kind, right, scales, changes)
-
-
-def _wheels(right: Equations) -> Iterator[Family]:
-    size, unit = np.linalg.norm(right.rotor), np.eye(3)
-    along = right.rotor[None]
-    yield _family("factor of the wheels", "wheels", "rotor", right.rotor, 1.0, along)
-    for i in range(3):
-        yield _family(f"wheel {i + 1}", "wheels", "rotor", right.rotor, size, unit[[i]])
-    yield _family("wheels", "wheels", "rotor", right.rotor, size, unit)
+    yield family("damping", "damping", sizes.pace, [right.damping], damping=[1])
+    yield from _drags(right, sizes)
+    yield from _damping_steps(right)
+    for name, rows in _coriolis_terms(right):
+        extra = [factors(products=rows)]
+        yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
 
 
 def _loads(right: Equations, sizes: Sizes) -> Iterator[Family]:
-    n, unit, names = right.size, np.eye(right.size), load_names(right.size)
-    in_space = (("load", "body axes", right.load), ("space", "space axes", np.zeros(n)))
-    for field, axes, base in in_space:
-        kind = "load" if field == "load" else "load in space axes"
-        for i, name in enumerate(names):
-            yield _family(f"{name}, {axes}", kind, field, base, sizes.load[i], unit[[i]])
-        for first in range(0, n, 3):
-            part, noun = slice(first, first + 3), names[first].split()[0]
-            yield _family(f"{noun} in {axes}", kind, field, base, sizes.load[part], unit[part])
+    n, names, unit = right.size, load_names(right.size), np.eye(right.size)
+    in_body = [right.basis.factors(constants=row[:, None]) for row in unit]
+    in_space = [right.basis.factors(frame=_of_space(n, i)) for i in range(n)]
+    for axes, kind, own, along in (
+        ("body axes", "load", right.load, in_body),
+        ("space axes", "load in space axes", 0 * right.load, in_space),
+    ):
+        for places in _single_and_vectors(n):
+            noun = (
+                names[places[0]] + "," if len(places) == 1 else names[places[0]].split()[0] + " in"
+            )
+            title = f"{noun} {axes}"
+            extra = [along[i] for i in places]
+            yield linear(right, title, kind, sizes.load[places], own[places], extra=extra)
     if n == 6:
-        yield _family("force and couple in body axes", "load", "load", right.load, sizes.load, unit)
-    name, arms = "couple r x R^T e3 (weight and buoyancy)", sizes.load[-3:]
+        name = "force and couple in body axes"
+        yield linear(right, name, "load", sizes.load, right.load, extra=in_body)
+    name, arms = "couple r x R^T e3 (weight and buoyancy)", [_of_arm(n, axis) for axis in np.eye(3)]
     for title, axes_ in ((f"{name}, r along axis 3", [2]), (name, [0, 1, 2])):
-        along = np.eye(3)[axes_]
-        yield _family(title, "restoring couple", "arm", np.zeros(3), arms[axes_], along)
+        extra = [right.basis.factors(frame=arms[i]) for i in axes_]
+        yield linear(right, title, "restoring couple", sizes.load[-3:][axes_], extra=extra)
 
 
-def _drags(n: int, sizes: Sizes) -> Iterator[Family]:
-    zeros, unit, names = np.zeros(n), np.eye(n), load_names(n)
-    turns = np.concatenate([np.zeros(n - 3), np.ones(3)])
+def _single_and_vectors(n: int) -> list[list[int]]:
+    """Return the places of each component, and then of each vector."""
+    return [[i] for i in range(n)] + [[i, i + 1, i + 2] for i in range(0, n, 3)]
+
+
+def _of_space(n: int, i: int) -> Floats:
+    """Return the factors of r11 ... r33 in R^T e for the unit load e of component i, space axes."""
+    rows, k = np.zeros((n, 9)), i % 3
+    rows[i - k : i - k + 3, 3 * k : 3 * k + 3] = np.eye(3)
+    return rows
+
+
+def _of_arm(n: int, axis: Floats) -> Floats:
+    """Return the factors of r11 ... r33 in the couple axis x R^T e3."""
+    rows = np.zeros((n, 9))
+    rows[-3:, 6:] = np.cross(np.eye(3), axis)
+    return rows
+
+
+def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
+    n, names, factors = right.size, load_names(right.size), right.basis.factors
+    turns = np.diag(np.r_[np.zeros(n - 3), np.ones(3)])
     least = sizes.pace * np.min(sizes.inertia[-3:]) ** 2
     name = "one drag on all rates of turn"
-    yield _family(name, "linear drag", "linear", zeros, least, turns[None])
+    yield linear(right, name, "linear drag", least, extra=[factors(velocities=-turns)])
     for field, power in (("linear", 1), ("quadratic", 2)):
         scale, kind = sizes.load / sizes.nu**power, f"{field} drag"
-        for i in range(n):
-            yield _family(f"{kind} on axis {i + 1}", kind, field, zeros, scale[i], unit[[i]])
-        for first in range(0, n, 3):
-            part, noun = slice(first, first + 3), names[first].split()[0]
-            yield _family(f"{kind}, {noun}", kind, field, zeros, scale[part], unit[part])
-        if n == 6:
-            yield _family(kind, kind, field, zeros, scale, unit)
+        group = "velocities" if power == 1 else "squares"
+        along = [factors(**{group: -np.diag(row)}) for row in np.eye(n)]
+        for places in [*_single_and_vectors(n), *[list(range(6))] * (n == 6)]:
+            of_vector = f"{kind}, {names[places[0]].split()[0]}" if len(places) == 3 else kind
+            title = f"{kind} on axis {places[0] + 1}" if len(places) == 1 else of_vector
+            extra = [along[i] for i in places]
+            yield linear(right, title, kind, scale[places], extra=extra)
 
 
 # The factor of one step as a function of x = c h.
@@ -220,9 +194,10 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
     k = c' h/(1 - f) for a factor after the motion, and f times that for one before it. The attitude turns
     by k omega.
     """
-    if np.any(right.load) or np.any(right.rotor) or right.acting is not None:
+    if not right.damping or right.has_loads or np.any(right.rotor):
         return
     h = np.array([0.05 / abs(right.damping)])
+    products = right.basis.factors(products=coriolis_of(right.mass))
     for (name, words, factor), place in product(_FACTORS, ("after", "before")):
 
         def changes(p: Floats, factor: Any = factor, place: str = place) -> Changes:
@@ -231,7 +206,7 @@ def _damping_steps(right: Equations) -> Iterator[Family]:
             damping = -np.log(f) / step if f > 0 else np.nan
             k = damping * step / (1 - f) * (1.0 if place == "after" else f)
             turns = np.array([0.0, k])
-            return {**of_coriolis(k * right.mass), "damping": damping, "turns": turns}
+            return {"extra": (k - 1) * products, "damping": damping, "turns": turns}
 
         title = f"{name}: the momentum times {words} {place} the motion of each step, with h"
         yield Family(title, "damping step", 1e-3 * h, h, changes)

@@ -5,6 +5,8 @@ rotation   rotations in rationals
 reading    numbers of such a file, or faults with their line
 urdf, sdf, mjcf   the links of a file, and the inertia of one
 link       the inertia of a link: mass, centre, tensor, added mass
+water      what water does to a link: added mass, drag, current, weight and buoyancy
+thrusters, volumes, plugins   thrusters, the volume that floats, and which plugin acts on which link
 written    the text of a scene
 """
 
@@ -18,6 +20,7 @@ from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.scenes.imported import mjcf, sdf, urdf
 from taylor_verify.scenes.imported.document import Node, read_document
 from taylor_verify.scenes.imported.link import Candidate, Format
+from taylor_verify.scenes.imported.plugins import surrounded
 from taylor_verify.scenes.imported.reading import Reading
 from taylor_verify.scenes.imported.written import scene_text
 
@@ -34,11 +37,12 @@ _OTHER_ROOTS: Final = {
 
 
 class Imported(NamedTuple):
-    """The text of a scene, with the link and the format that it was made from."""
+    """The text of a scene, with the link and the format that it was made from, and what was left out."""
 
     text: str
     link: str
     form: str
+    warnings: tuple[str, ...] = ()
 
 
 def import_scene(path: Path, link: str | None = None) -> Imported:
@@ -54,9 +58,12 @@ def import_scene(path: Path, link: str | None = None) -> Imported:
     chosen = _chosen(form.candidates(root), link, form, path)
     assert chosen.inertial is not None
     parsed_link = form.link(root, chosen.name, chosen.inertial, reading)
+    if parsed_link is not None:
+        parsed_link = surrounded(parsed_link, root, reading)
     if parsed_link is None or reading.faults.lines:
         raise Refused(reading.faults.lines)
-    return Imported(scene_text(parsed_link, form.name, path.name), parsed_link.name, form.name)
+    text = scene_text(parsed_link, form.name, path.name)
+    return Imported(text, parsed_link.name, form.name, parsed_link.water.left_out)
 
 
 def _format(root: Node, path: Path) -> Format:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -11,6 +11,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.water import Water
 
 
 class Candidate(NamedTuple):
@@ -30,7 +31,7 @@ class Link:
 
     ``centre`` is the centre of mass; ``inertia`` the tensor about it, in the axes of the link, products
     as tensor components; ``added_mass`` the 6x6 matrix of the fluid about the origin of the link, linear
-    rows first; ``remarks`` say how numbers were formed.
+    rows first; ``remarks`` say how numbers were formed; ``water`` acts on the link.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Link:
     inertia: Matrix
     added_mass: Matrix | None = None
     remarks: tuple[str, ...] = ()
+    water: Water = field(default_factory=Water)
 
     @property
     def rigid_matrix(self) -> Matrix:

@@ -14,11 +14,12 @@ from collections.abc import Iterator
 from typing import Final
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.records.faults import shown
+from taylor_verify.records.faults import cut, shown
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
 from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.water import Water
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 
 # Elements that hold bodies without being one.
@@ -62,7 +63,25 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
     turn = _turn(inertial, settings, reading)
     if not is_valid or mass is None or centre is None or tensor is None or turn is None:
         return None
-    return Link(name, mass, centre, turns.turned(tensor, turn[0]), remarks=turn[1])
+    inertia, left_out = turns.turned(tensor, turn[0]), tuple(_fluid(root))
+    return Link(name, mass, centre, inertia, remarks=turn[1], water=Water(left_out=left_out))
+
+
+def _fluid(root: Node) -> Iterator[str]:
+    """Yield what MuJoCo's fluid is, which acts on bodies there and not in the scene."""
+    for node in root.named("option"):
+        for key in ("density", "viscosity", "wind"):
+            if any(word.strip("0.+-e") for word in node.attributes.get(key, "").split()):
+                yield (
+                    f'MuJoCo\'s {key} = "{cut(node.attributes[key])}" acts on the body there: write it as '
+                    "text in `moment`, or take model kirchhoff with `force` and `couple`"
+                )
+    shapes = {n.attributes.get("fluidshape") for n in root.all() if n.name == "geom"}
+    if "ellipsoid" in shapes:
+        yield (
+            'MuJoCo\'s fluidshape = "ellipsoid" gives geoms an added mass and drag: model kirchhoff '
+            "takes an added mass as `added_mass` beside `mass` and `inertia`"
+        )
 
 
 def _takes_inertial(root: Node, settings: dict[str, str], reading: Reading) -> bool:

@@ -18,7 +18,7 @@ from taylor_verify.records.faults import cut, near, shown
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.reading import Reading, is_true
 from taylor_verify.scenes.imported.urdf import COMPONENTS
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 
@@ -48,7 +48,7 @@ def _below(part: Node, scope: str) -> Iterator[Candidate]:
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:
     """Return the inertia of one link; None after a fault."""
     del root
-    if _is_true(inertial.attributes.get("auto")):
+    if is_true(inertial.attributes.get("auto")):
         mend = "write <mass> and <inertia>: geometry is not read"
         reading.fault("an inertia that the file writes", 'auto="true"', inertial, mend)
         return None
@@ -68,10 +68,6 @@ def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None
         reading.fault(expected, "one that is not", added_node, mend)
         return None
     return result
-
-
-def _is_true(text: str | None) -> bool:
-    return (text or "").strip().lower() in ("true", "1")
 
 
 def _tensor(inertial: Node, reading: Reading) -> Matrix | None:
@@ -110,7 +106,7 @@ def _pose(inertial: Node, reading: Reading) -> tuple[Vector, Quaternion, tuple[s
     if form != "euler_rpy":
         reading.fault("rotation_format euler_rpy or quat_xyzw", shown(form), node)
         return None
-    degrees = _is_true(node.attributes.get("degrees"))
+    degrees = is_true(node.attributes.get("degrees"))
     six = reading.vector(node, node.text, "x y z roll pitch yaw", length=6)
     if six is None:
         return None

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import textwrap
-from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
-from fractions import Fraction
 from itertools import chain
 from typing import Final
 
-from taylor_verify.numbers.precision import decimal_text, float_text
+from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes.imported.link import Link
+from taylor_verify.scenes.imported.reading import decimal
+from taylor_verify.scenes.imported.water import Water
 from taylor_verify.scenes.names import escaped
 
 _WIDTH: Final = 100
@@ -36,12 +36,12 @@ def scene_text(link: Link, form: str, file: str) -> str:
         "edited: the body is that of the file, in exact numbers; the start and the times are placeholders. "
         "Units are those of the file (SI by its specification)."
     )
-    if link.added_mass is None:
+    if link.added_mass is None and not link.water.acts:
         model, body, start, end, samples = "euler", _rigid(link), _RIGID_START, 20, 101
     else:
         model, body, start, end, samples = "kirchhoff", _vehicle(link), _VEHICLE_START, 5, 26
     return f"""\
-{_comment(opening)}
+{_comment(opening, *(f"Warning: {sentence}." for sentence in link.water.left_out))}
 title = {json.dumps(f"{name} of {file}", ensure_ascii=False)}
 model = "{model}"
 track = {json.dumps([MAIN[model], *TRACKED[model]])}
@@ -65,7 +65,7 @@ def _rigid(link: Link) -> str:
     comment = (
         "The tensor of inertia about the centre of mass, in the axes of the link; products are tensor "
         "components, -int xy dm. "
-        f"The mass, {_decimal(link.mass)}, and the place of the centre of mass, "
+        f"The mass, {decimal(link.mass)}, and the place of the centre of mass, "
         f"({_listed(link.centre)}), do not enter: the rotation is about the centre of mass."
     )
     return f"{_comment(comment, *link.remarks)}\n{_matrix('inertia', link.inertia)}"
@@ -74,36 +74,62 @@ def _rigid(link: Link) -> str:
 def _vehicle(link: Link) -> str:
     comment = (
         "The inertia of link and fluid together, about the origin of the link and in its axes: "
-        "M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] + fluid_added_mass, with the mass "
-        f"m = {_decimal(link.mass)}, the centre of mass c = ({_listed(link.centre)}) and the tensor I "
+        "M = [[m 1, -m [c]x], [m [c]x, I - m [c]x [c]x]] + the added mass, with the mass "
+        f"m = {decimal(link.mass)}, the centre of mass c = ({_listed(link.centre)}) and the tensor I "
         "about it, whose rows are below.",
         *(f"I: {_listed(row)}" for row in link.inertia),
-        "Left out: drag, weight and buoyancy, thrusters, and every other link.",
+        f"Left out: {', '.join([*_absent(link.water), 'every other link'])}.",
     )
-    return f"{_comment(*comment, *link.remarks)}\n{_matrix('mass_matrix', link.mass_matrix)}"
+    body = f"{_comment(*comment, *link.remarks)}\n{_matrix('mass_matrix', link.mass_matrix)}"
+    return "\n".join([body, *_loads(link.water)])
+
+
+def _absent(water: Water) -> list[str]:
+    """Return what acts on vehicles and on this one does not."""
+    is_there = {
+        "drag": any(water.terms),
+        "weight and buoyancy": bool(water.hanging),
+        "thrusters": bool(water.thrusts),
+    }
+    return [name for name, is_written in is_there.items() if not is_written]
+
+
+def _loads(water: Water) -> list[str]:
+    """Return the lines of [body] for what acts, with [define] for thrusts."""
+    lines = []
+    for key, terms in (("force", water.terms[:3]), ("couple", water.terms[3:])):
+        if any(terms):
+            texts = (" + ".join(each).replace("+ -", "- ") or "0" for each in terms)
+            lines.append(f"{key} = {json.dumps([*texts])}")
+    for key, hung in water.hanging:
+        lines.append(f"{key} = {{ force = [{_exact(hung.force)}], at = [{_exact(hung.at)}] }}")
+    if any(water.current):
+        lines.append(f"current = [{_exact(water.current)}]")
+    if water.thrusts:
+        comment = (
+            "Thrusts of the thrusters, by their joints: zero until you write a number or a text."
+        )
+        lines += ["", "[define]", _comment(comment)]
+        lines += [f"{thrust} = 0  # {_one_line(joint)}" for thrust, joint in water.thrusts]
+    return lines
+
+
+def _exact(vector: Vector) -> str:
+    return ", ".join(decimal(entry) or f'"{entry}"' for entry in vector)
 
 
 def _matrix(key: str, matrix: Matrix) -> str:
     """Return the entries exactly; if some are long fractions, all entries come before as short decimals."""
-    is_long = any(_decimal(entry) is None for row in matrix for entry in row)
+    is_long = any(decimal(entry) is None for row in matrix for entry in row)
     short = [f"#   {', '.join(map(float_text, row))}" for row in matrix]
     # A decimal where it ends, else a fraction.
-    exact = [[_decimal(entry) or f'"{entry}"' for entry in row] for row in matrix]
+    exact = [[decimal(entry) or f'"{entry}"' for entry in row] for row in matrix]
     rows = [f"  [{', '.join(row)}]," for row in exact]
     return "\n".join([*["# In short decimals:", *short] * is_long, f"{key} = [", *rows, "]"])
 
 
 def _listed(vector: Vector) -> str:
-    return ", ".join(_decimal(entry) or float_text(entry) for entry in vector)
-
-
-def _decimal(value: Fraction) -> str | None:
-    """Return the decimal that equals the number; None if it has no end."""
-    digits = len(str(value.numerator)) + value.denominator.bit_length()
-    # A denominator of twos and fives alone has no more digits than bits behind the point.
-    context = Context(prec=digits + 1, Emin=MIN_EMIN, Emax=MAX_EMAX)
-    exact = context.divide(Decimal(value.numerator), Decimal(value.denominator))
-    return decimal_text(exact.normalize(context)) if Fraction(exact) == value else None
+    return ", ".join(decimal(entry) or float_text(entry) for entry in vector)
 
 
 def _one_line(text: str) -> str:

@@ -50,6 +50,7 @@ class Loads:
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
     With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
     follow from rounded numbers. The stairs of floor are known as far as the time ``reach``.
+    ``functions`` are texts that are wanted along the motion, and act on nothing.
     """
 
     model: str
@@ -65,6 +66,7 @@ class Loads:
     states: tuple[State, ...] = ()
     rotor: Entries = ()
     reach: Fraction = Fraction(0)
+    functions: tuple[str, ...] = ()
 
     @property
     def is_written(self) -> bool:
@@ -120,7 +122,13 @@ class Loads:
                 )
 
     def _made(self, reader: PieceReader, begin: Fraction | None, end: Fraction | None) -> Piece:
-        groups = reader.outputs(), reader.rates(), reader.values(), reader.rotor()
+        groups = (
+            reader.outputs(),
+            reader.rates(),
+            reader.values(),
+            reader.rotor(),
+            reader.functions(),
+        )
         places = [place for group in groups for place in group]
         steps, left = finished(reader.steps.steps, places, self.rung)
         in_turn = iter(left)
@@ -144,7 +152,13 @@ class Loads:
     @cached_property
     def _scan(self) -> PieceReader:
         reader = PieceReader(self, is_scan=True)
-        for read in (reader.outputs, reader.rates, reader.values, reader.rotor):
+        for read in (
+            reader.outputs,
+            reader.rates,
+            reader.values,
+            reader.rotor,
+            reader.functions,
+        ):
             read()
         return reader
 

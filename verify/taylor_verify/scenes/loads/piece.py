@@ -15,12 +15,21 @@ from taylor_verify.scenes.loads.grammar import Fault, Grammar, Unread
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
 from taylor_verify.scenes.loads.tables import Kind, Table
-from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entries, Entry, names
+from taylor_verify.scenes.loads.vocabulary import (
+    INERTIA,
+    INVARIANTS,
+    VECTORS,
+    Entries,
+    Entry,
+    names,
+)
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.loads.loads import Loads
 
 MOST_SWITCHES: Final = 10_000
+# The place of a text that is no part of a scene.
+FUNCTION: Final = "event"
 _TOO_MANY: Final = f"at most {MOST_SWITCHES} switches"
 
 
@@ -28,9 +37,9 @@ class Piece(NamedTuple):
     """The steps between two switches, None where there is none, and the places of results among them.
 
     ``outputs`` are the loads, ``rates`` those of all continuous components, ``values`` those of all held
-    components, and ``rotor`` the momentum of the wheels where a text writes it, else empty. Steps of values
-    alone may be "sign", "step", "floor", and "choose", whose operands are a, b and c: b if a >= 0 else c,
-    of which the one that is not chosen may have no value.
+    components, and ``rotor`` the momentum of the wheels where a text writes it, else empty. ``functions``
+    are wanted along the motion. Steps of values alone may be "sign", "step", "floor", and "choose", whose
+    operands are a, b and c: b if a >= 0 else c, of which the one that is not chosen may have no value.
     """
 
     begin: Fraction | None
@@ -40,6 +49,7 @@ class Piece(NamedTuple):
     rates: tuple[int, ...] = ()
     values: tuple[int, ...] = ()
     rotor: tuple[int, ...] = ()
+    functions: tuple[int, ...] = ()
 
 
 class PieceReader:
@@ -92,6 +102,10 @@ class PieceReader:
     def rotor(self) -> list[int]:
         """The steps of the momentum of the wheels; none where no text writes it."""
         return self.entries(self._loads.rotor, "body.rotor")
+
+    def functions(self) -> list[int]:
+        """The steps of functions of the motion."""
+        return self.entries(self._loads.functions, FUNCTION)
 
     def rates(self) -> list[int]:
         """The steps of the rates of all continuous components."""
@@ -186,9 +200,13 @@ class PieceReader:
         if name == "t":
             time, begin = self.steps.input("t"), self.steps.number(self._loads.origin)
             return self.steps.combined("+", time, begin)
-        if name in names(self._loads.model) or name in self._own:
+        if name in names(self._loads.model) or name in self._own or self._is_invariant(name):
             return self.steps.input(name)
         raise NoStep("a known name", f"`{name}`")
+
+    def _is_invariant(self, name: str) -> bool:
+        """Return True for a name that functions of the motion alone may use."""
+        return bool(self._loads.functions) and name in INVARIANTS[self._loads.model]
 
     # Switches.
 

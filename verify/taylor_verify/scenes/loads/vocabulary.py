@@ -19,6 +19,8 @@ QUATERNION: Final = ("q0", "q1", "q2", "q3")
 CENTRE: Final = ("c1", "c2", "c3")
 INERTIA: Final = tuple(f"I{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _RATES: Final = ("w1", "w2", "w3")
+# The model of equations that are no body's: somebody's own rates.
+FIELD: Final = "field"
 _OF_BODY: Final[Mapping[str, tuple[str, ...]]] = {
     "euler": _RATES,
     "kirchhoff": (*_RATES, *(f"{letter}{i}" for letter in "uxy" for i in (1, 2, 3)), *CENTRE),
@@ -27,11 +29,20 @@ _OF_BODY: Final[Mapping[str, tuple[str, ...]]] = {
 VECTORS: Final[Mapping[str, tuple[str, ...]]] = {
     "euler": ("moment",),
     "kirchhoff": ("force", "couple"),
+    FIELD: (),
+}
+# What functions of the motion may name besides, in its order: kinetic energy and squares of momenta.
+INVARIANTS: Final[Mapping[str, tuple[str, ...]]] = {
+    "euler": ("T", "H2"),
+    "kirchhoff": ("T", "F2", "FG"),
+    FIELD: (),
 }
 
 
 def names(model: str) -> frozenset[str]:
     """The names that a scene of this model may use without defining them."""
+    if model == FIELD:
+        return frozenset(("t", "pi"))
     inertia = INERTIA if model == "euler" else ()
     return frozenset(("t", "pi", *_OF_BODY[model], *QUATERNION, *ROTATION, *inertia))
 

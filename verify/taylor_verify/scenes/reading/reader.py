@@ -29,7 +29,7 @@ from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
-from taylor_verify.scenes.reading.hints import hints
+from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.loads import immersed_loads, loaded, rigid_loads
 from taylor_verify.scenes.reading.manufactured import manufactured
@@ -115,7 +115,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     body, loads, initial = _posed(top, model, states or ()) if model else _unread(top)
     time = _part(top, "time", clock)
     body = loaded(body, loads, states, top, folder, time)
-    top.close(hints(""))
+    top.close(advice(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
     if faults.lines or body is None or initial is None or time is None:
@@ -167,7 +167,7 @@ def _part(
     if table is None:
         return None
     part = reader(table)
-    table.close(hints(key, model.name if model else ""))
+    table.close(advice(key, model.name if model else ""))
     return part
 
 
@@ -203,7 +203,7 @@ def _loaded_body(top: Table, model: Model, states: tuple[Own, ...]) -> tuple[Bod
     loads = None if loads is None else replace(loads, states=states)
     body = None if table is None else model.body(table, loads)
     if table is not None:
-        table.close(hints("body", model.name))
+        table.close(advice("body", model.name))
     return body, loads or Loads(model.name, (), states=states)
 
 
@@ -238,7 +238,7 @@ def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | N
             got = "another one beside a manufactured motion"
             start.fault("the start that the motion has", got, name, f"remove `{name}`")
     initial = state(kind, motion.start if motion else None, place(start, kind))
-    start.close(hints("initial", model.name))
+    start.close(advice("initial", model.name))
     values = body.parts() if body else {}
     for name in model.kind.load_names():
         load = values.get(name, ())

@@ -10,7 +10,7 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import shown
 from taylor_verify.records.quantities import RESERVED
 from taylor_verify.scenes.loads.states import Continuous, Held, State
-from taylor_verify.scenes.reading.hints import hints
+from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.loads import ENTRY, is_name
 from taylor_verify.scenes.reading.table import Number, Table, complete, exact_number
 
@@ -37,7 +37,7 @@ def _state(table: Table, name: str) -> State | None:
         return None
     is_held = inner.has("every") or inner.has("value")
     state = _sampled(inner, name) if is_held else _continuous(inner, name)
-    inner.close(hints("held" if is_held else "continuous"))
+    inner.close(advice("held" if is_held else "continuous"))
     return state
 
 

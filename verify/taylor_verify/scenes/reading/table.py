@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
-from types import MappingProxyType
 from typing import Any, Final, NamedTuple, TypeVar
 
 from taylor_verify.numbers import tensors
@@ -82,12 +81,12 @@ class Table:
             return None
         return self._left.pop(key)
 
-    def close(self, hints: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Report every key that was not taken; ``hints`` says for some keys what to write instead."""
-        for key in self._left:
+    def close(self, advice: Callable[[str, object], str] = lambda key, value: "") -> None:
+        """Report every key that was not taken; ``advice`` says for some keys what to write instead."""
+        for key, value in self._left.items():
             if self.faults.is_full:
                 break
-            mend = hints.get(key.lower()) or near(cut(key), self._known)
+            mend = advice(key, value) or near(cut(key), self._known)
             self.fault("a known key", f"`{cut(key)}`", cut(key), mend)
 
     def table(self, key: str) -> Table | None:
@@ -233,7 +232,9 @@ class Table:
         try:
             number: Fraction = reader.read(value)
         except ValueError as error:
-            self.fault(str(error), shown(value), key)
+            parts = quantity(value)
+            mend = f"write {cut(parts[0])}, if {cut(parts[1])} is its unit" if parts else ""
+            self.fault(str(error), shown(value), key, mend)
             return reader.stand_in
         return number
 

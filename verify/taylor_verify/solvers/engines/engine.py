@@ -9,8 +9,8 @@ of solvers makes one.
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,9 +18,10 @@ from typing import Final, final
 
 from taylor_verify.models.problem import Problem, pose, pose_as_stored
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.records.plugins import plugins, say_once, taken
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.launcher import NotMade, Tell
-from taylor_verify.solvers.engines.script import Script, scripts
+from taylor_verify.solvers.engines.script import Script, read_script, scripts
 from taylor_verify.solvers.options import Options, options
 from taylor_verify.solvers.process import process
 from taylor_verify.solvers.solver import Lack, Solver, made_without, not_started, refused
@@ -57,7 +58,8 @@ class Engine:
     @property
     def title(self) -> str:
         about = self.script.about
-        return ": ".join(filter(None, (about.title, about.methods.get(self.method))))
+        title = ": ".join(filter(None, (about.title, about.methods.get(self.method))))
+        return ", ".join(filter(None, (title, self.script.origin)))
 
     @property
     def usage(self) -> str:
@@ -77,12 +79,24 @@ class Engine:
 @cache
 def engines() -> Mapping[str, Engine]:
     """Return all engines by name, including unavailable ones; no environment is made."""
-    every = (
-        Engine(script, method)
-        for script in scripts(SCRIPTS)
-        for method in script.about.methods or [""]
-    )
-    return {engine.name: engine for engine in every}
+    every = (*scripts(SCRIPTS), *_plugged())
+    each = [Engine(script, m) for script in every for m in script.about.methods or [""]]
+    return {engine.name: engine for engine in each}
+
+
+def _plugged() -> Iterator[Script]:
+    """Yield the scripts of other packages; one that cannot be read, or has a known name, is named."""
+    known = {script.library for script in scripts(SCRIPTS)}
+    for plugin in plugins("engines"):
+        try:
+            script = replace(read_script(Path(plugin.content)), origin=plugin.origin)
+            if script.library in known:
+                raise ValueError(taken("engines", script.library, plugin.package))
+        except ValueError as fault:
+            say_once(str(fault))
+        else:
+            known.add(script.library)
+            yield script
 
 
 def usages() -> tuple[str, ...]:

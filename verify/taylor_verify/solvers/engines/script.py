@@ -48,12 +48,16 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 @dataclass(frozen=True)
 class Script:
-    """A script, its block of metadata as TOML, its requirements, and what it says of itself."""
+    """A script, its block of metadata as TOML, its requirements, and what it says of itself.
+
+    ``origin`` says which other package brings it.
+    """
 
     path: Path
     block: str
     requirements: tuple[str, ...]
     about: About
+    origin: str = ""
 
     @property
     def launcher(self) -> Launcher:

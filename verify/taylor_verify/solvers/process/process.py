@@ -21,9 +21,10 @@ from typing import Final, final
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.solvers.callback import of_states
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.process.conversation import LIMIT_VARIABLE, converse
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "process:"
@@ -162,7 +163,7 @@ def _trajectory(answer: bytes, problem: Problem, waited: float) -> Trajectory:
             f"got {claimed} @ seconds"
         )
     # From here on the rows are treated like those of a callback.
-    trajectory = Callback(lambda _: answered.states).solve(problem)
+    trajectory = of_states(answered.states, problem)
     return replace(
         trajectory,
         steps=answered.steps,

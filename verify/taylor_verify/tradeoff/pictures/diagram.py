@@ -1,4 +1,4 @@
-"""Figures of a trade-off: a panel for each group of families, and a strip for failures.
+"""Figures of a trade-off: a panel for each group of families, with failures at its upper border.
 
 In a work-precision diagram x is the work (seconds, evaluations), y the error, both logarithmic:
 further down and to the left is better. Lines join only neighbouring sound settings of one family.
@@ -10,20 +10,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import Limits, number_axes, widened
-from taylor_verify.plotting.named import Named
-from taylor_verify.plotting.palette import INK, PAPER, QUIET, for_text
+from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.sheet import (
-    STRIP,
     Entry,
-    Frame,
     add_axes,
     blank,
     draw_legend,
     foot_of,
     frames_of,
     free_place,
+    name_lines,
 )
-from taylor_verify.plotting.style import SMALL
 from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff.pictures.series import Panel, Series, Spot, front_of
 
@@ -49,15 +46,12 @@ def work_precision(
     ``floors`` are the attainable errors by rung, each drawn in panels with taylor on that rung. ``bars`` is
     True to draw the spread of times. ``note`` is a text below the marks.
     """
-    from taylor_verify.plotting.labels import write_names
-
     front = front_of(series for panel in panels for series in panel.drawn)
-    strips = [[series for series in panel.drawn if series.border] for panel in panels]
     entries = _legend(panels, has_bars=bars, has_floors=bool(floors))
-    frames, height = frames_of([len(strip) for strip in strips], foot_of(entries, note))
+    frames, height = frames_of(len(panels), foot_of(entries, note))
     figure = blank(height)
     shared = _limits_x(p for p in panels if p.yardstick)
-    for panel, strip, frame in zip(panels, strips, frames, strict=True):
+    for panel, frame in zip(panels, frames, strict=True):
         axes = add_axes(figure, frame)
         # The panels with the yardstick have one axis, so that they can be compared. The panel of taylor on
         # all rungs has its own axis, because its times are near each other.
@@ -74,19 +68,19 @@ def work_precision(
             colour = panel.ladder[rung]
             axes.axhline(floor, color=colour, linewidth=0.6, dashes=(1, 2), gid="floor")
         for series in panel.drawn:
-            _draw_series(axes, series, bars)
+            _draw_series(axes, panel, series, bars)
             _draw_exact(axes, series)
-        spread = [((s.x, s.y), (s.x * s.spread, s.y)) for s in panel.sound] if bars else []
-        write_names(axes, _names_of(panel), [stairs, *spread])
-        top = _draw_strip(figure, frame, panel, strip, x_limits) if strip else axes
-        top.set_title(panel.heading, pad=4)
+            _draw_failures(axes, panel, series)
+        name_lines(axes)
+        axes.set_title(panel.heading, pad=4)
     draw_legend(figure, entries, note, free_place(frames))
     return figure
 
 
-def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
+def _draw_series(axes: Axes, panel: Panel, series: Series, bars: bool) -> None:
     """Draw a line through each sequence of sound settings of a family, and bars for the spread of times."""
     look = series.look
+    name: str | None = panel.label(series)
     for piece in series.pieces:
         x, y = [spot.x for spot in piece], [spot.y for spot in piece]
         if bars:
@@ -95,7 +89,9 @@ def _draw_series(axes: Axes, series: Series, bars: bool) -> None:
                 x, y, xerr=beyond, fmt="none", ecolor=look.colour, elinewidth=0.5, alpha=0.6
             )
         # Thick lines below thin ones.
-        axes.plot(x, y, gid=series.family, zorder=4 - look.width / 10, **look.line)
+        axes.plot(x, y, gid=series.family, label=name, zorder=4 - look.width / 10, **look.line)
+        # One of its pieces has the name of a family.
+        name = None
 
 
 def _draw_exact(axes: Axes, series: Series) -> None:
@@ -105,18 +101,6 @@ def _draw_exact(axes: Axes, series: Series) -> None:
     for spot in series.spots:
         if spot.is_exact:
             axes.plot([spot.x], [0.0], transform=place, clip_on=False, gid="exact", **look)
-
-
-def _names_of(panel: Panel) -> list[Named]:
-    """Return the lines of a panel with their names."""
-    return [
-        Named(
-            panel.label(series),
-            series.look.colour,
-            [[(s.x, s.y) for s in p] for p in series.pieces],
-        )
-        for series in panel.drawn
-    ]
 
 
 def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
@@ -130,52 +114,26 @@ def _stairs(front: Sequence[Spot], axes: Axes) -> list[tuple[float, float]]:
     return [*corners, (max(axes.get_xlim()[1], front[-1].x), level)]
 
 
-def _draw_strip(
-    figure: Figure, frame: Frame, panel: Panel, strip: Sequence[Series], limits: Limits
-) -> Axes:
-    """Draw a strip above the panel, with a line for each family with failures, each mark at its work."""
-    above = Frame(frame.left, frame.low + frame.height, frame.width, STRIP * len(strip))
-    axes = add_axes(figure, above)
-    axes.set(xscale="log", xlim=limits, ylim=(len(strip) - 0.5, -0.5), yticks=[])
-    axes.tick_params(which="both", bottom=False, labelbottom=False)
-    axes.set_facecolor("#F4F4F4")
-    axes.set_ylabel("no answer", rotation=0, ha="right", va="center", size=SMALL, color=QUIET)
-    axes.spines["left"].set_visible(False)
-    axes.spines["bottom"].set_visible(False)
-    for line, series in enumerate(strip):
-        colour = series.look.colour
-        for spot in series.border:
-            is_hollow = spot.row["standing"] == Standing.FALSE
-            axes.plot(
-                [spot.x],
-                [line],
-                linestyle="none",
-                marker=series.look.marker if is_hollow else "x",
-                markersize=4.5,
-                markerfacecolor=PAPER if is_hollow else colour,
-                markeredgecolor=colour,
-                markeredgewidth=1.0,
-                gid=spot.row["standing"],
-                clip_on=False,
-            )
-        _name_in_strip(axes, panel.label(series), series, line, limits)
-    return axes
-
-
-def _name_in_strip(axes: Axes, name: str, series: Series, line: int, limits: Limits) -> None:
-    """Write a name right of the last mark if the first one is in the left half, else left of the first."""
-    taken = [spot.x for spot in series.border]
-    after = min(taken) < (limits[0] * limits[1]) ** 0.5
-    axes.annotate(
-        name,
-        (max(taken) if after else min(taken), line),
-        (5 if after else -5, 0),
-        textcoords="offset points",
-        ha="left" if after else "right",
-        va="center_baseline",
-        color=for_text(series.look.colour),
-        size=SMALL,
-    )
+def _draw_failures(axes: Axes, panel: Panel, series: Series) -> None:
+    """Mark what is no answer at the upper border, each at its work."""
+    place, name = axes.get_xaxis_transform(), None if series.sound else panel.label(series)
+    for spot in series.border:
+        is_hollow = spot.row["standing"] == Standing.FALSE
+        axes.plot(
+            [spot.x],
+            [1.0],
+            transform=place,
+            linestyle="none",
+            marker=series.look.marker if is_hollow else "x",
+            markersize=4.5,
+            markerfacecolor=PAPER if is_hollow else series.look.colour,
+            markeredgecolor=series.look.colour,
+            markeredgewidth=1.0,
+            gid=spot.row["standing"],
+            label=name,
+            clip_on=False,
+        )
+        name = None
 
 
 def _legend(panels: Sequence[Panel], has_bars: bool, has_floors: bool) -> list[Entry]:

@@ -21,9 +21,20 @@ from taylor_verify_reports.studies.causes.simulated import (
     rotation,
     stepped,
 )
+from taylor_verify_reports.studies.causes.stepping import (
+    Draw,
+    Make,
+    backward,
+    begin,
+    by,
+    euler,
+    held_rate,
+    heun,
+    in_place,
+    mean,
+    rk4,
+)
 
-Draw = np.random.Generator
-Make = Callable[[Sample, Draw, float], Rows]
 RIGID: Final = ("free", "moment", "wheels")
 FLUID: Final = ("fluid", "momenta")
 
@@ -242,68 +253,26 @@ def _noise(s: Sample, d: Draw, size: float) -> Rows:
     return rows._replace(v=rows.v * (1 + 1e-3 * size * d.standard_normal(rows.v.shape)))
 
 
-# Methods: what a step does, and how the attitude is turned.
+def _coriolis_product(own: Law, s: Sample, d: Draw, size: float) -> None:
+    """Put a product into the row of a force or a couple where a diagonal mass matrix has it."""
+    i, column = int(d.integers(6)), int(d.integers(2))
+    j, k = (i + 1 + column) % 3, 3 + (i + 2 - column) % 3
+    if i > 2:
+        j, k = (3 * column + (i + 1) % 3, 3 * column + (i + 2) % 3)
+    own.loads_of = lambda t, v: size * np.eye(6)[i] * v[j] * v[k]
 
 
-def _euler(f: Callable[[Floats], Floats], v: Floats, h: float) -> Floats:
-    return v + h * f(v)
+def _turning_frame(s: Sample, d: Draw, size: float) -> Rows:
+    rows, rate = _right(s), size * d.uniform(0.3, 1, 3)
+    turns = np.array([rotation(q) for q in rows.q])
+    return _omega(rows, lambda w: w - np.einsum("nij,i->nj", turns, rate))
 
 
-def _heun(f: Callable[[Floats], Floats], v: Floats, h: float) -> Floats:
-    k = f(v)
-    return v + h / 2 * (k + f(v + h * k))
-
-
-def _rk4(f: Callable[[Floats], Floats], v: Floats, h: float) -> Floats:
-    a = f(v)
-    b = f(v + h / 2 * a)
-    c = f(v + h / 2 * b)
-    return v + h / 6 * (a + 2 * b + 2 * c + f(v + h * c))
-
-
-def _backward(f: Callable[[Floats], Floats], v: Floats, h: float) -> Floats:
-    z = v
-    for _ in range(60):
-        z = v + h * f(z)
-    return z
-
-
-def _turn(q: Floats, w: Floats, h: float) -> Floats:
-    half = h * np.linalg.norm(w) / 2
-    u = np.sinc(half / np.pi) * h * w / 2
-    a = np.cos(half)
-    return np.array([q[0] * a - q[1:] @ u, *(q[0] * u + a * q[1:] + np.cross(q[1:], u))])
-
-
-def _begin(q: Floats, before: Floats, after: Floats, h: float) -> Floats:
-    return _turn(q, before, h)
-
-
-def _mean(q: Floats, before: Floats, after: Floats, h: float) -> Floats:
-    return _turn(q, (before + after) / 2, h)
-
-
-def _by(step: Any, update: Any) -> Make:
-    def make(s: Sample, d: Draw, size: float) -> Rows:
-        return stepped(s, step, update, int(d.integers(4, 20)))
-
-    return make
-
-
-def _held_rate(s: Sample, d: Draw, size: float) -> Rows:
-    """Return exact v, and an attitude that is turned by the rate at the begin of each step."""
-    steps = int(d.integers(2, 6))
-    fine = np.concatenate(
-        [
-            np.linspace(a, b, steps, endpoint=False)
-            for a, b in zip(s.times, s.times[1:], strict=False)
-        ]
-        + [s.times[-1:]]
-    )
-    rows, q = _right(s, fine), [s.q0 / np.linalg.norm(s.q0)]
-    for w, h in zip(rows.v[:, -3:], np.diff(fine), strict=False):
-        q.append(_turn(q[-1], w, float(h)))
-    return Rows(s.times, rows.v[::steps], np.array(q)[::steps])
+def _tensor_in_space(s: Sample, d: Draw, size: float) -> Rows:
+    """Return omega in space axes of a body whose tensor does not turn with it."""
+    own = law(s)
+    own.turn = lambda q, w: 0.5 * np.array([-q[1:] @ w, *(q[0] * w - np.cross(q[1:], w))])
+    return integrated(replace(s, v0=rotation(s.q0) @ s.v0), own)
 
 
 def _backwards(s: Sample, d: Draw, size: float) -> Rows:
@@ -330,7 +299,7 @@ def _two(own: Law, s: Sample, d: Draw, size: float) -> None:
 def _fault_and_steps(s: Sample, d: Draw, size: float) -> Rows:
     own = law(s)
     own.load = own.load + _three(s, d, size)
-    return stepped(s, _euler, _begin, int(d.integers(4, 20)), own)
+    return stepped(s, euler, begin, int(d.integers(4, 20)), own)
 
 
 _LOADS: Final = ("force", "couple", "moment", "loads", "factor of the inertia")
@@ -374,11 +343,11 @@ KINDS: Final = (
     Kind("early clock", ("early", "another start"), _at(lambda s, d, e: s.times + 0.3 * e)),
     Kind("row repeated", ("repeat",), _repeated),
     Kind("linear interpolation", ("interpolation",), _interpolated),
-    Kind("explicit Euler", ("explicit Euler", "attitude"), _by(_euler, _begin)),
-    Kind("backward Euler", ("backward Euler", "attitude"), _by(_backward, _begin)),
-    Kind("Heun", ("Heun", "attitude"), _by(_heun, _mean)),
-    Kind("RK4", ("RK4", "attitude"), _by(_rk4, _mean)),
-    Kind("held rate of the attitude", ("attitude turned by",), _held_rate),
+    Kind("explicit Euler", ("explicit Euler", "attitude"), by(euler, begin)),
+    Kind("backward Euler", ("backward Euler", "attitude"), by(backward, begin)),
+    Kind("Heun", ("Heun", "attitude"), by(heun, mean)),
+    Kind("RK4", ("RK4", "attitude"), by(rk4, mean)),
+    Kind("held rate of the attitude", ("attitude turned by",), held_rate),
     Kind("attitude backwards", ("backwards", "turns by"), _backwards, (*RIGID, "fluid")),
     Kind("attitude on the wrong side", ("wrong axes",), _wrong_side, (*RIGID, "fluid")),
     Kind("two faults", ("damping", *_LOADS), _of(_two)),
@@ -387,6 +356,10 @@ KINDS: Final = (
     Kind("growing load", (), _of(_growing)),
     Kind("waving load", (), _of(_waving)),
     Kind("noise", ("contradicts",), _noise),
+    Kind("attitude in place", ("in place",), in_place),
+    Kind("product in the Coriolis terms", ("C_", "Coriolis"), _of(_coriolis_product), FLUID),
+    Kind("frame that turns", ("frame that turns",), _turning_frame, (*RIGID, "fluid")),
+    Kind("tensor in space axes", ("space axes",), _tensor_in_space, ("free",)),
     Kind("RK45 at 1e-4", (), _coarse("RK45", 1e-4)),
     Kind("RK45 at 1e-7", (), _coarse("RK45", 1e-7)),
     Kind("RK23 at 1e-5", (), _coarse("RK23", 1e-5)),

@@ -76,4 +76,6 @@ def _row(defect: Defect) -> DefectRow:
 
 
 def _verdicts(scene: str, solver: Solver) -> Verdicts:
-    return {verdict.quantity: verdict for verdict in run(scene, solver, RUNG).verdicts}
+    return {
+        verdict.quantity: verdict for verdict in run(scene, solver, RUNG, causes=False).verdicts
+    }

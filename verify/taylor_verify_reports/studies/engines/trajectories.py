@@ -17,6 +17,8 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from taylor_verify.records.json_text import DOCUMENT
+from taylor_verify.records.regular_file import bounded_bytes
 from taylor_verify_reports.studies.engines.answer import Answer
 from taylor_verify_reports.studies.engines.document import EngineRow
 from taylor_verify_reports.studies.engines.replay import States
@@ -47,7 +49,8 @@ def load(folder: Path) -> Mapping[str, States]:
     """
     place = folder / TRAJECTORIES
     try:
-        with np.load(place, allow_pickle=False) as file:
+        content = BytesIO(bounded_bytes(place, "an NPZ of trajectories", DOCUMENT))
+        with np.load(content, allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except (BadZipFile, EOFError, AttributeError, ValueError) as error:
         # NumPy takes any other file for a pickle, and refuses to read it.

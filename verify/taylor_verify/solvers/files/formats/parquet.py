@@ -6,8 +6,7 @@ hold no numbers is not read: a page of text may be a thousand times its size in 
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,7 +14,6 @@ from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
-    VALUES,
     Column,
     Table,
     check_size,
@@ -23,8 +21,10 @@ from taylor_verify.solvers.files.formats.column import (
 )
 from taylor_verify.solvers.files.formats.content import Content
 
-# A million decimals of sixty characters.
-_TEXT_BYTES: Final = 2**26
+# Sixty characters of a number, and as many bytes more as some remarks have.
+_WIDEST: Final = 64
+_ROWS_AT_ONCE: Final = 256
+_TEXT_BYTES: Final = 2**24
 
 
 def read(file: Content, path: Path, part: str) -> Table:
@@ -38,7 +38,7 @@ def read(file: Content, path: Path, part: str) -> Table:
         long = _long_texts(footer, texts)
         reader = parquet.ParquetFile(file.binary, read_dictionary=texts)
         wanted = [name for name in names if name not in long]
-        table = _flat(reader.read(wanted, use_threads=False))
+        table = _flat(_in_parts(reader, wanted, path))
         _check_texts(table, texts, path)
         table = _seconds(_without_lists(table, path))
     except MemoryError:
@@ -56,6 +56,20 @@ def read(file: Content, path: Path, part: str) -> Table:
     return Table(columns, tuple(notes))
 
 
+def _in_parts(reader: Any, names: Sequence[str], path: Path) -> Any:
+    """Return the table; one with lists is read in parts, because nothing says how long its lists are."""
+    import pyarrow as pa
+
+    parts, count = [], 0
+    has_lists = any(_is_list(field.type) for field in reader.schema_arrow)
+    options = {"columns": names, "use_threads": False}
+    for part in reader.iter_batches(_ROWS_AT_ONCE, **options) if has_lists else ():
+        count += sum(len(c.flatten()) for c in part.columns if _is_list(c.type))
+        VALUES.check(count, path)
+        parts.append(part)
+    return pa.Table.from_batches(parts) if parts else reader.read(**options)
+
+
 def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
     """Return the names of the columns of numbers, of those of text among them, and of all others.
 
@@ -67,12 +81,6 @@ def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    packing = {group.column(i).compression for group in groups for i in range(group.num_columns)}
-    if "BROTLI" in packing:
-        # It has no bound on what a page becomes, and the sizes in the footer are only said.
-        raise refusal("columns packed by snappy, gzip, lz4 or zstd", "brotli", path)
-    chunks = (group.column(i) for group in groups for i in range(group.num_columns))
-    VALUES.check(sum(chunk.num_values for chunk in chunks), path)
     is_a = pa.types
     numbers = (
         is_a.is_integer,
@@ -102,13 +110,16 @@ def _is_list(kind: Any) -> bool:
     )
 
 
-def _long_texts(footer: Any, texts: Collection[str]) -> set[str]:
-    """Return the names of columns of text that have more bytes than numbers have."""
-    metadata, sizes = footer.metadata, Counter[str]()
-    for group in (metadata.row_group(i) for i in range(metadata.num_row_groups)):
-        for column in (group.column(i) for i in range(group.num_columns)):
-            sizes[column.path_in_schema] += column.total_uncompressed_size
-    return {name for name in texts if sizes[name] > _TEXT_BYTES}
+def _long_texts(footer: Any, texts: Sequence[str]) -> Sequence[str]:
+    """Return the columns of text if they have together more bytes than numbers have.
+
+    The sizes are those of whole groups: pyarrow ends the process where the footer has a fault in what it
+    says of a single column.
+    """
+    metadata = footer.metadata
+    groups = (metadata.row_group(i) for i in range(metadata.num_row_groups))
+    numbers = _WIDEST * metadata.num_rows * metadata.num_columns
+    return texts if sum(g.total_byte_size for g in groups) > _TEXT_BYTES + numbers else ()
 
 
 def _values(column: Any) -> Any:
@@ -149,9 +160,9 @@ def _without_lists(table: Any, path: Path) -> Any:
         if lengths["min"] != lengths["max"] or column.null_count:
             got = f"lists of {lengths['min']} to {lengths['max']}"
             raise refusal("lists of one length", got, f"{path}, column {name}")
+        check_size(len(columns) + (lengths["max"] or 0), len(column), path)
         for k in range(lengths["max"] or 0):
             columns[f"{name}[{k}]"] = pc.list_element(column, k)
-        check_size(len(columns), len(column), path)
     return pa.table(columns)
 
 

@@ -15,9 +15,10 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import refusal
+from taylor_verify.records.plugins import Plugin, free
 from taylor_verify.records.regular_file import regular_file
 from taylor_verify.solvers.files.formats import aem, oem, rosbag
-from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Table
+from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
 
@@ -77,6 +78,8 @@ def read_table(file: str | os.PathLike[str]) -> Table:
     no regular file of bounded size, and for a fault of its format.
     """
     path, part = parted(os.fspath(file))
+    if reader := plugged().get(path.suffix.lower()) if path.suffix not in FORMATS else None:
+        return _read_by(reader, path)
     with needed(path):
         if rosbag.is_folder(path):
             table = rosbag.read_folder(path, part)
@@ -86,6 +89,26 @@ def read_table(file: str | os.PathLike[str]) -> Table:
                 table = _reader(content, path).read(content, path, part)
     ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
+
+
+def plugged() -> dict[str, Plugin]:
+    """Return the readers of other packages by suffix."""
+    sound = free("readers", lambda plugin: iter(plugin.content.suffixes), iter(FORMATS))
+    return {suffix: plugin for plugin in sound for suffix in plugin.content.suffixes}
+
+
+def _read_by(reader: Plugin, path: Path) -> Table:
+    """Return the columns that another package reads. Raises Refused with its name for any error of it."""
+    with regular_file(path, "a trajectory file", BYTES):
+        pass
+    try:
+        table = reader.content.read(path)
+        columns = [Column(str(name), list(table[name])) for name in table]
+    except Exception as error:  # other people's code
+        got = f"{type(error).__name__}: {error}"
+        raise refusal(f"a file that {reader.package} reads", got, path) from error
+    ROWS.check(max((len(column.values) for column in columns), default=0), path)
+    return Table(columns, (f"read by {reader.name} {reader.origin}",))
 
 
 def parted(file: str) -> tuple[Path, str]:
@@ -105,7 +128,7 @@ def _reader(content: Content, path: Path) -> Any:
         return aem
     known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
-        expected = f"a file that ends in {', '.join(FORMATS)}"
+        expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"
         raise refusal(expected, path.suffix or "no suffix", path)
     return import_module(f"{__package__}.{known.module}")
 

@@ -10,9 +10,8 @@ from math import inf
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.named import Named
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.sheet import sheet
+from taylor_verify.plotting.sheet import name_lines, sheet
 from taylor_verify.plotting.style import look_of_line
 from taylor_verify.plotting.wording import plain
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
@@ -104,8 +103,6 @@ def _sentence(sweep: Sweep) -> str:
 
 
 def _figure(drawn: Sequence[Sweep]) -> Figure:
-    from taylor_verify.plotting.labels import write_names
-
     figure, places = sheet(len(drawn), [], height=_HEIGHT)
     for axes, sweep in zip(places, drawn, strict=True):
         axes.set_title(f"{sweep.title}, step {sweep.step}", pad=4)
@@ -115,14 +112,12 @@ def _figure(drawn: Sequence[Sweep]) -> Figure:
         axes.set(xlim=(0.6, len(sweep.versions) + 0.7))
         number_axes(axes)
         axes.set_xticks(positions, sweep.versions, rotation=45, ha="right")
-        named = []
         for number, (name, line) in enumerate(sweep.lines.items()):
             look = look_of_line(number)
             pairs = zip(positions, line, strict=True)
             points = [(float(k), e) for k, e in pairs if e is not None]
-            axes.plot(*zip(*points, strict=True), gid=name, zorder=3, **look.line)
-            named.append(Named(name, look.colour, [points]))
-        write_names(axes, named)
+            axes.plot(*zip(*points, strict=True), gid=name, label=name, zorder=3, **look.line)
+        name_lines(axes)
     return figure
 
 

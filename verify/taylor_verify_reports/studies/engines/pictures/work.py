@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from math import inf
-from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.named import Named
 from taylor_verify.plotting.picture import Picture
-from taylor_verify.plotting.sheet import sheet
+from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import DASHED, Look, look_of_line
 from taylor_verify.plotting.wording import plain
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
@@ -24,8 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _HEIGHT: Final = 3.9
-# In characters. A longer name would cross its neighbours' lines, and is written in two rows.
-_WIDEST: Final = 22
 _ERROR: Final = "largest error of omega and attitude"
 _DOUBLE, _SINGLE = "float64", "float32"
 
@@ -126,13 +122,11 @@ def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Pictur
 
 
 def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
-    from taylor_verify.plotting.labels import write_names
-
-    entries = [
-        ({"color": "#1A1A1A", "linewidth": 1.1}, "engine, its best setting"),
-        ({"color": "#1A1A1A", "linewidth": 1.1, "linestyle": (0, DASHED)}, "plain solver, float64"),
-    ]
-    figure, places = sheet(len(drawn), entries, height=_HEIGHT)
+    styles = {line.name: line.look.line for panel in drawn for line in panel.lines}
+    # What carries an engine, behind the comma, is left out.
+    entries: list[Entry] = [(look, name.partition(",")[0]) for name, look in styles.items()]
+    note = "Each engine by its best setting; dashed: a plain solver, in float64."
+    figure, places = sheet(len(drawn), entries, note, _HEIGHT)
     spots = [point for panel in drawn for line in panel.lines for point in line.points]
     limits = {
         "xlim": widened([x for x, _ in spots], 0.08, 0.12),
@@ -144,8 +138,4 @@ def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
         number_axes(axes)
         for line in panel.lines:
             axes.plot(*zip(*line.points, strict=True), gid=line.name, zorder=3, **line.look.line)
-        named = [
-            Named(fill(line.name, _WIDEST), line.look.colour, [line.points]) for line in panel.lines
-        ]
-        write_names(axes, named)
     return figure

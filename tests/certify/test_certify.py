@@ -1,0 +1,229 @@
+"""A certificate bounds the error of a dense answer for all times, and names what is wrong with it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Final
+
+import numpy as np
+import pytest
+from mpmath import mp, mpf
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline, CubicSpline, PPoly, make_interp_spline
+
+from taylor_verify.certify import certify
+from taylor_verify.certify.answer import pieces_of
+from taylor_verify.cli import main
+from taylor_verify.exact import exact
+from taylor_verify.exact.rows import quaternions
+from taylor_verify.models.problem import pose_as_stored
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.certificate import Fault, GapKind
+from taylor_verify.records.faults import Refused
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
+
+END: Final = 4
+
+
+def until(name: str, end: int = END) -> Scene:
+    """A shipped scene, as a float64 program has it, over a short span."""
+    scene = pose_as_stored(load(name), rung("f64")).given
+    return replace(scene, clock=Clock(Fraction(0), (Fraction(0), Fraction(end))))
+
+
+SCENE: Final = until("euler/generic")
+INERTIA: Final = np.array([float(row[i]) for i, row in enumerate(SCENE.body.energy_matrix)])
+
+
+def rates(_: float, omega: Any) -> Any:
+    return np.cross(INERTIA * omega, omega) / INERTIA
+
+
+# Times that no short binary number is.
+NODES: Final = np.concatenate([[0], (np.arange(1, 32) + np.sin(np.arange(1, 32)) / 4) / 8, [END]])
+VALUES: Final = exact(SCENE, [Fraction(t) for t in NODES], 18)["omega"].astype(float)
+SLOPES: Final = np.array([rates(0, row) for row in VALUES])
+SPLINE: Final = CubicHermiteSpline(NODES, VALUES, SLOPES)
+DOCUMENT: Final = {
+    "breaks": NODES.tolist(),
+    "quantities": {"omega": np.moveaxis(SPLINE.c[::-1], 0, 2).tolist()},
+}
+TABLE: Final = {"t": NODES, **{f"w{i + 1}": VALUES[:, i] for i in range(3)}}
+
+
+@pytest.mark.parametrize("method", ["RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"])
+def test_the_bound_is_above_every_probe_and_near_the_largest(method: str) -> None:
+    """No probe by 40 digits exceeds the bound of SciPy's dense output; one comes near to it."""
+    dense = solve_ivp(rates, (0, END), VALUES[0], method, rtol=1e-7, atol=1e-9, dense_output=True)
+    certificate = certify(SCENE, dense)
+    pieces = pieces_of(dense, SCENE)
+    near, spread = certificate.at["omega"], np.random.default_rng(1).uniform(0, END, 30)
+    times = [Fraction(t) for t in (near, *spread)]
+    with mp.workdps(50):
+        truth = exact(SCENE, times, 40)["omega"]
+        scale = max(mp.norm(list(row)) for row in truth)
+        errors = []
+        for time, row in zip(times, truth, strict=True):
+            (piece,) = list(pieces.between(time, time))[:1]
+            values = [piece.value(column, time) for column in ("w1", "w2", "w3")]
+            off = [mpf(v.numerator) / v.denominator - w for v, w in zip(values, row, strict=True)]
+            errors.append(mp.norm(off) / scale)
+        assert max(errors) <= certificate.bound["omega"] <= mpf("1.1") * errors[0]
+    assert np.allclose(dense.sol(float(spread[0])), _double(pieces, spread[0]), rtol=1e-13)
+
+
+def _double(pieces: Any, time: float) -> list[float]:
+    piece = pieces.between(Fraction(time), Fraction(time))[0]
+    return [float(piece.value(column, Fraction(time))) for column in ("w1", "w2", "w3")]
+
+
+@pytest.mark.parametrize(
+    ("answer", "more"),
+    [
+        ({"omega": SPLINE}, {}),
+        (DOCUMENT, {}),
+        (lambda t: SPLINE(t), {"degree": 3, "nodes": NODES}),
+        (TABLE, {"interpolation": "hermite"}),
+        # heyoka's continuous output: powers of the time since each step began.
+        (SimpleNamespace(times=NODES, tcs=np.moveaxis(SPLINE.c[::-1], 0, 2)), {}),
+    ],
+    ids=["by name", "pieces", "callable", "samples", "Taylor series"],
+)
+def test_one_interpolant_has_one_bound(answer: Any, more: dict[str, Any]) -> None:
+    """However the same cubics are handed over, the bound is the same but for the rounding of doubles."""
+    bound = certify(SCENE, SPLINE).bound["omega"]
+    assert certify(SCENE, answer, **more).bound["omega"] == pytest.approx(bound, rel=1e-6)
+
+
+def test_a_spline_is_taken_exactly() -> None:
+    """De Boor's recursion in rationals is the spline that SciPy evaluates in doubles."""
+    spline = make_interp_spline(NODES, VALUES, k=5)
+    assert np.allclose(_double(pieces_of(spline, SCENE), 1.234), spline(1.234), rtol=1e-13)
+
+
+def _quadratic() -> Any:
+    h = np.diff(NODES)[:, None]
+    c = np.stack([(VALUES[1:] - VALUES[:-1] - h * SLOPES[:-1]) / h**2, SLOPES[:-1], VALUES[:-1]])
+    return PPoly(c, NODES)
+
+
+def _wrong_node() -> Any:
+    c = SPLINE.c.copy()
+    pair = CubicHermiteSpline(NODES[9:11], VALUES[[9, 12]], SLOPES[9:11])
+    c[:, 9] = pair.c[:, 0]
+    return PPoly(c, NODES)
+
+
+BUGS: Final[dict[str, tuple[Callable[[], Any], Fault]]] = {
+    "a wrong order between steps": (_quadratic, Fault.BETWEEN),
+    "a node shared wrongly": (_wrong_node, Fault.NODES),
+    "slopes of the step before": (
+        lambda: CubicHermiteSpline(NODES, VALUES, np.vstack([SLOPES[:1], SLOPES[:-1]])),
+        Fault.SLOPES,
+    ),
+    "an abscissa in float32": (
+        lambda: CubicHermiteSpline(NODES.astype(np.float32).astype(float), VALUES, SLOPES),
+        Fault.ABSCISSA,
+    ),
+}
+
+
+@pytest.mark.parametrize("bug", BUGS)
+def test_a_seeded_bug_is_named(bug: str) -> None:
+    """Each fault of an interpolant is beyond the bound of the right one, and has its name."""
+    answer, fault = BUGS[bug]
+    certificate = certify(SCENE, answer(), tolerance=2e-6)
+    assert fault in {finding.fault for finding in certificate.findings}
+    assert "the interpolant, not the steps" in str(certificate)
+
+
+def test_steps_that_are_wrong_are_no_interpolant() -> None:
+    """A dense output as good as its steps has no finding, however wrong both are."""
+    dense = solve_ivp(rates, (0, END), VALUES[0], "BDF", rtol=1e-5, dense_output=True)
+    certificate = certify(SCENE, dense)
+    assert not certificate.findings
+    assert certificate.passed
+
+
+def test_gaps_are_named_with_their_places() -> None:
+    """A jump and a span without pieces are found where they are, and do not pass."""
+    jump = certify(SCENE, _wrong_node()).gaps
+    assert [(gap.kind, gap.at) for gap in jump] == [(GapKind.JUMP, NODES[10])]
+    short = certify(SCENE, PPoly(SPLINE.c[:, :9], NODES[:10]), tolerance=1e-3)
+    assert [(gap.kind, gap.at, gap.end) for gap in short.gaps] == [
+        (GapKind.NOT_COVERED, NODES[9], END)
+    ]
+    assert short.bound["omega"] <= 1e-3
+    assert not short.passed
+    assert short.is_undecided
+
+
+@pytest.mark.parametrize("name", ["kirchhoff/displaced-origin", "loads/pd-wheels"])
+def test_every_tracked_quantity_has_a_bound(name: str) -> None:
+    """Attitude, centre and impulse of a spline through exact samples are as right as sampling says."""
+    scene = until(name, 1)
+    times = np.linspace(0, 1, 33)
+    motion = exact(scene, [Fraction(t) for t in np.linspace(0, 1, 65)], 18)
+    rows = {
+        group.name: quaternions(motion["attitude"].astype(float))
+        if group.name == "quaternion"
+        else motion[group.name].astype(float).reshape(65, -1)
+        for group in scene.groups
+    }
+    answer = {key: CubicSpline(times, values[::2]) for key, values in rows.items()}
+    # The sign of a quaternion is free.
+    if "quaternion" in answer:
+        answer["quaternion"] = CubicSpline(times, -rows["quaternion"][::2])
+    certificate = certify(scene, answer)
+    assert set(certificate.bound) == {quantity.name for quantity in scene.tracked}
+    for quantity in scene.tracked:
+        reached, bound = certificate.largest[quantity.name], certificate.bound[quantity.name]
+        assert 0 < reached <= bound <= 1.05 * reached
+    if "attitude" in certificate.bound:
+        halves = answer["quaternion"](np.linspace(0, 1, 65)[1::2]), rows["quaternion"][1::2]
+        unit = halves[0] / np.linalg.norm(halves[0], axis=1)[:, None]
+        angles = 2 * np.arccos(np.minimum(1, np.abs((unit * halves[1]).sum(axis=1))))
+        assert angles.max() <= certificate.bound["attitude"] + 1e-7
+
+
+@pytest.mark.parametrize(
+    ("answer", "more", "why"),
+    [
+        (lambda t: SPLINE(t), {}, "degree and nodes with a callable"),
+        (lambda t: SPLINE(t), {"degree": 2, "nodes": NODES}, "a polynomial of degree 2"),
+        (lambda t: SPLINE(t), {"degree": 61, "nodes": NODES}, "a degree from 0 to 60"),
+        ({**DOCUMENT, "breaks": NODES[::-1].tolist()}, {}, "breaks that rise"),
+        ({**DOCUMENT, "quantities": {"omega": [[[1.0]]]}}, {}, "3 components"),
+        (PPoly(SPLINE.c * 180 / np.pi, NODES), {}, "in degrees per unit of time"),
+        (TABLE, {"interpolation": "quintic"}, "linear, cubic, hermite"),
+        (TABLE, {}, "a dense answer"),
+        (SPLINE, {"tolerance": -1.0}, "a positive number"),
+    ],
+)
+def test_what_is_no_dense_answer_is_refused(answer: Any, more: dict[str, Any], why: str) -> None:
+    """One sentence says what was expected."""
+    with pytest.raises((Refused, ValueError), match=why):
+        certify(SCENE, answer, **more)
+
+
+@pytest.mark.parametrize(("tolerance", "status"), [("1e-5", 3), ("1e-9", 1)])
+def test_the_verb_says_what_is_proven(
+    tolerance: str, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file that covers a part is undecided, and wrong where it is beyond the tolerance."""
+    file = tmp_path / "pieces.json"
+    file.write_text(json.dumps(DOCUMENT))
+    arguments = ["certify", str(file), "--scene", "euler/generic", "--json"]
+    assert main([*arguments, "--tolerance", tolerance]) == status
+    content = json.loads(capsys.readouterr().out)
+    assert content["gaps"][0] | {"size": 0} == {
+        "kind": "not covered", "quantity": "time", "at": 4.0, "end": 100.0, "size": 0,
+    }  # fmt: skip
+    assert content["passed"] is False

@@ -1,0 +1,97 @@
+"""The command line in a pipe: standard input, quiet, colours, and nothing that was not asked for."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from taylor_verify.cli import main, standard_input
+from taylor_verify.records.limit import Limit
+
+SCENE = "euler/rest"
+TIMES = [k / 5 for k in range(51)]
+ROWS = {"t": TIMES, **{name: [0.0] * 51 for name in ("w1", "w2", "w3")}}
+CSV = "\n".join(["t,w1,w2,w3", *(f"{t},0,0,0" for t in TIMES)]).encode()
+
+Captured = pytest.CaptureFixture[str]
+
+
+def packed() -> bytes:
+    file = io.BytesIO()
+    np.savez(file, **{name: np.array(column) for name, column in ROWS.items()})
+    return file.getvalue()
+
+
+CONTENTS = {
+    "csv": CSV,
+    "blanks": CSV.replace(b",", b" "),
+    "json": json.dumps(ROWS).encode(),
+    "npz": packed(),
+}
+
+
+@pytest.fixture
+def pipe(monkeypatch: pytest.MonkeyPatch) -> io.BytesIO:
+    content = io.BytesIO()
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(content))
+    return content
+
+
+def fill(pipe: io.BytesIO, content: bytes) -> None:
+    pipe.write(content)
+    pipe.seek(0)
+
+
+@pytest.mark.parametrize("content", CONTENTS.values(), ids=CONTENTS)
+def test_standard_input_is_judged_as_a_file_is(
+    content: bytes, pipe: io.BytesIO, capsys: Captured
+) -> None:
+    """Its format is seen by its first bytes; its name is `-`; quiet prints the last line alone."""
+    fill(pipe, content)
+    assert main(["check", "-", "--scene", SCENE, "-q"]) == 0
+    out, error = capsys.readouterr()
+    assert out == "4 pass: passed (exit status 0)\n"
+    assert error == ""
+
+
+def test_what_is_wrong_with_standard_input_is_said(
+    pipe: io.BytesIO, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing, and more than the limit of a file, end with status 2, also when quiet."""
+    assert main(["check", "-", "--scene", SCENE, "-q"]) == 2
+    assert "got nothing @ -" in capsys.readouterr().err
+    fill(pipe, CSV)
+    monkeypatch.setattr(standard_input, "BYTES", Limit(10, "bytes", "a test"))
+    assert main(["check", "-", "--scene", SCENE, "-q"]) == 2
+    assert "expected at most 10 bytes" in capsys.readouterr().err
+
+
+def test_a_named_pipe_stays_refused_and_names_the_dash(tmp_path: Path, capsys: Captured) -> None:
+    """It would wait for a writer; `-` reads what is there."""
+    os.mkfifo(tmp_path / "pipe.csv")
+    assert main(["check", str(tmp_path / "pipe.csv"), "--scene", SCENE]) == 2
+    assert "(name it -, and hand it over on standard input)" in capsys.readouterr().err
+
+
+def test_colours_are_printed_where_they_are_asked_for(capsys: Captured) -> None:
+    """`always` in a pipe too, `auto` and `never` not; the words are the same."""
+    shown = {}
+    for colour in ("always", "auto", "never"):
+        assert main(["exact", SCENE, "--at", "1", "--color", colour]) == 0
+        shown[colour] = capsys.readouterr().out
+    assert "\x1b[1m" in shown["always"]
+    assert "\x1b" not in shown["auto"] == shown["never"]
+
+
+@pytest.mark.parametrize(
+    "words", ["question euler/rest --csv", "question euler/rest", "exact euler/rest --at 1"]
+)
+def test_a_question_prints_nothing_else(words: str, capsys: Captured) -> None:
+    """No message is mixed with what the next program reads."""
+    assert main(words.split()) == 0
+    assert capsys.readouterr().err == ""

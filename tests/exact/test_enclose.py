@@ -1,0 +1,127 @@
+"""Anybody's equations are enclosed as bodies are, or refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+import pytest
+from mpmath import cos, mp, mpf, odefun, sin, sqrt
+
+from taylor_verify import enclose
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.records.faults import Refused
+
+DIGITS: Final = 24
+END: Final = "1/5"
+Rule = Callable[[Any, Sequence[Any]], list[Any]]
+
+# Rates as texts, the start, and the same equations in Python.
+FIELDS: Final[dict[str, tuple[dict[str, str], dict[str, Any], Rule]]] = {
+    "Lorenz": (
+        {"x": "10*(y - x)", "y": "x*(28 - z) - y", "z": "x*y - 8/3*z"},
+        {"x": 1, "y": 1, "z": 1},
+        lambda t, s: [
+            10 * (s[1] - s[0]),
+            s[0] * (28 - s[2]) - s[1],
+            s[0] * s[1] - mpf(8) / 3 * s[2],
+        ],
+    ),
+    "Henon-Heiles": (
+        {"x": "p", "y": "q", "p": "-x - 2*x*y", "q": "-y - x^2 + y^2"},
+        {"x": "1/10", "y": "-1/4", "p": "0.3", "q": 0},
+        lambda t, s: [s[2], s[3], -s[0] - 2 * s[0] * s[1], -s[1] - s[0] ** 2 + s[1] ** 2],
+    ),
+    "Kepler (DETEST D)": (
+        {"x": "u", "y": "v", "u": "-x/norm(x, y)^3", "v": "-y/(x^2 + y^2)^(3/2)"},
+        {"x": "0.9", "y": 0, "u": 0, "v": "1.1"},
+        lambda t, s: [
+            s[2],
+            s[3],
+            -s[0] / sqrt(s[0] ** 2 + s[1] ** 2) ** 3,
+            -s[1] / sqrt(s[0] ** 2 + s[1] ** 2) ** 3,
+        ],
+    ),
+    "van der Pol (DETEST E2)": (
+        {"x": "v", "v": "(1 - x^2)*v - x"},
+        {"x": 2, "v": 0},
+        lambda t, s: [s[1], (1 - s[0] ** 2) * s[1] - s[0]],
+    ),
+    "DETEST A2": ({"y": "-y^3/2"}, {"y": 1}, lambda t, s: [-(s[0] ** 3) / 2]),
+    "DETEST A3": ({"y": "y*cos(t)"}, {"y": 1}, lambda t, s: [s[0] * cos(t)]),
+    "DETEST A5": ({"y": "(y - t)/(y + t)"}, {"y": 4}, lambda t, s: [(s[0] - t) / (s[0] + t)]),
+    "DETEST B1": (
+        {"a": "2*(a - a*b)", "b": "-(b - a*b)"},
+        {"a": 1, "b": 3},
+        lambda t, s: [2 * (s[0] - s[0] * s[1]), -(s[1] - s[0] * s[1])],
+    ),
+    "SciML's rigid body": (
+        {"w1": "-2*w2*w3", "w2": "1.25*w1*w3", "w3": "-w1*w2/2 + sin(t)^2/4"},
+        {"w1": 1, "w2": 0, "w3": "0.9"},
+        lambda t, s: [
+            -2 * s[1] * s[2],
+            mpf(5) / 4 * s[0] * s[2],
+            -s[0] * s[1] / 2 + sin(t) ** 2 / 4,
+        ],
+    ),
+    "driven pendulum": (
+        {"angle": "rate", "rate": "-sin(angle) + 0.1*cos(t)"},
+        {"angle": 2, "rate": 0},
+        lambda t, s: [s[1], -sin(s[0]) + cos(t) / 10],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_the_true_motion_lies_within_the_errors(name: str) -> None:
+    """An independent recursion at another precision is inside the proven bounds, which are narrow."""
+    rates, start, rule = FIELDS[name]
+    motion = enclose(rates, start, [END], DIGITS)
+    with mp.workdps(DIGITS + 12):
+        begin = [_number(start[key]) for key in rates]
+        truth = odefun(rule, 0, begin, tol=mpf(10) ** -(DIGITS + 8))(_number(END))
+        for key, value in zip(rates, truth, strict=True):
+            assert abs(motion[key][0] - value) <= motion.errors[key][0] + mpf(10) ** -(DIGITS + 6)
+            assert motion.radii[key][0] <= mpf(10) ** -DIGITS
+
+
+def _number(text: Any) -> mpf:
+    above, _, below = str(text).partition("/")
+    return mpf(above) / mpf(below or 1)
+
+
+def test_the_clock_may_begin_anywhere() -> None:
+    """A time-dependent field reads the clock: y' = 2 t from t = 3 is t^2, forwards and backwards."""
+    motion = enclose({"y": "2*t"}, {"y": 9}, [5, 1], DIGITS, begin=3)
+    assert [int(y) for y in motion["y"]] == [25, 1]
+    assert not any(motion.radius)
+
+
+def test_a_switch_by_the_time_is_no_loss() -> None:
+    """A rate that jumps at a time, and one with a kink, keep all digits."""
+    motion = enclose({"y": "1 if t < 1/3 else abs(t - 2/3)"}, {"y": 0}, [1], DIGITS)
+    with mp.workdps(DIGITS + 30):
+        assert abs(motion["y"][0] - (mpf(1) / 3 + mpf(1) / 9)) <= motion.errors["y"][0]
+
+
+def test_a_motion_that_ends_says_how_far_it_came() -> None:
+    """y' = y^2 ends at t = 1: the row before is proven, and the reason has the time that was reached."""
+    with pytest.raises(Unsettled, match=r"to reach t = 2 from t = (0\.9|1\.0)") as doubt:
+        enclose({"y": "y^2"}, {"y": 1}, ["1/2", 2], 6)
+    assert doubt.value.places == (0,)
+    assert doubt.value.motion is not None
+    assert abs(doubt.value.motion["y"][0] - 2) <= doubt.value.motion.errors["y"][0]
+
+
+def test_all_faults_are_named_at_once() -> None:
+    """Faults of names, texts and numbers come together, each with its place."""
+    with pytest.raises(Refused) as refused:
+        enclose({"t": "1", "x": "y + ", "z": "1"}, {"t": 0, "x": "1 m", "z": 1}, [1])
+    assert [fault.rpartition(" @ ")[2].partition(" ")[0] for fault in refused.value.faults] == [
+        "rates.t",
+        "start.x",
+    ]
+    with pytest.raises(Refused, match=r"rates\.x, column 3"):
+        enclose({"x": "2*y", "z": "1"}, {"x": 1, "z": 1}, [1])
+    with pytest.raises(Refused, match="the start of `x`"):
+        enclose({"x": "1"}, {"y": 1}, [1])

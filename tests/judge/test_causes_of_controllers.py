@@ -1,0 +1,89 @@
+"""Likely causes of an answer to a scene with a sampled controller, and near misses that have none."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from builders.turns import by_turns
+from builders.wrong_dynamics import failure
+
+from taylor_verify import exact
+from taylor_verify.judge.causes.answer import Motion
+from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+
+BODY = """
+title = "Sampled controller"
+model = "euler"
+[body]
+inertia = [1.2, 0.9, 1.6]
+moment = ["a1", "a2", "a3"]
+[define]
+kp = "0.8"
+[states]
+m = { every = "1/10", value = ["-kp*w1 + 0.1*w2", "-kp*w2", "-kp*w3"] }
+a = { every = "1/10", offset = "1/20", start = [0, 0, 0], value = ["m1", "m2", "m3"] }
+[initial]
+omega = [0.3, -0.5, 0.4]
+[time]
+end = 0.7
+samples = 15
+"""
+TENTH, DELAY = 'every = "1/10"', 'offset = "1/20", start = [0, 0, 0], '
+CONTINUOUS = BODY[BODY.index("[states]") : BODY.index("[initial]")]
+
+
+@cache
+def scene(text: str = BODY) -> Scene:
+    return read(text, "controller")
+
+
+def names(changed: str) -> list[str]:
+    """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
+    rows = exact(scene(changed), times=list(scene().clock.instants), digits=15)["omega"]
+    v = np.array([[float(f"{float(x):.10g}") for x in row] for row in rows])
+    given = adopt(scene(), rung("f64"), list(scene().clock.instants)).given
+    noise = (np.full(3, 0.5e-10), 0.0, 0.0)
+    answer = material(given, Motion(v), False, noise, [failure(scene(), "omega")])
+    assert answer is not None
+    return [cause.name for cause in explained(answer).causes]
+
+
+@pytest.mark.parametrize(
+    ("changed", "name"),
+    by_turns(
+        [
+            (
+                BODY.replace(TENTH, 'every = "1/5"').replace("1/20", "1/10"),
+                "m and a taken every 0.2 and 0.2, 2 times the scene's time",
+            ),
+            (BODY.replace('["m1", "m2", "m3"]', '["-kp*w1 + 0.1*w2", "-kp*w2", "-kp*w3"]'), None),
+            (BODY.replace('"a1", "a2", "a3"', '"m1", "m2", "m3"'), "a without its delay"),
+            (
+                BODY.replace('"a1", "a2", "a3"', '"b1", "b2", "b3"').replace(
+                    "[initial]",
+                    'b = { every = "1/10", offset = "1/20", start = [0, 0, 0], '
+                    'value = ["a1", "a2", "a3"] }\n[initial]',
+                ),
+                "a is used one sample late, by 0.1",
+            ),
+            (
+                BODY.replace(CONTINUOUS, "").replace(
+                    '"a1", "a2", "a3"', '"-kp*w1 + 0.1*w2", "-kp*w2", "-kp*w3"'
+                ),
+                "m and a continuous, where the scene samples",
+            ),
+            (BODY.replace('kp = "0.8"', 'kp = "0.81"'), None),
+        ],
+        2,
+    ),
+    ids=["rate", "taken later", "no delay", "late", "continuous", "gain"],
+)
+def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
+    """Another rate, a sample more or no delay has its name; another instant or gain has none."""
+    assert names(changed) == ([] if name is None else [name])

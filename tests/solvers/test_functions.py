@@ -1,0 +1,189 @@
+"""A function of a user is a solver everywhere: by its name, as an object, whatever it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import taylor_verify
+from taylor_verify.models.problem import Problem, pose
+from taylor_verify.numbers.precision import rung
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.trajectory import Outcome
+
+TOP = """title = "A top that spins about axis 3"
+model = "euler"
+[body]
+inertia = [1, 1, 2]
+[initial]
+omega = [0.5, 0, 2]
+[time]
+end = 1
+samples = 5
+"""
+
+
+@cache
+def scene() -> Scene:
+    return read(TOP, "top")
+
+
+def omega(t: Any) -> Any:
+    """omega of a symmetric top in closed form: it precesses by (I3 - I1)/I1 omega3 = 2."""
+    t = np.asarray(t)
+    return np.array([0.5 * np.cos(2 * t), 0.5 * np.sin(2 * t), np.full_like(t, 2.0)])
+
+
+def times(problem: Problem) -> Any:
+    return np.array([float(t) for t in problem.given.clock.instants])
+
+
+def rows(problem: Problem) -> Any:
+    return omega(times(problem)).T
+
+
+def result(problem: Problem, **more: Any) -> Any:
+    return SimpleNamespace(t=times(problem), y=omega(times(problem)), **more)
+
+
+def other_times(problem: Problem) -> dict[str, Any]:
+    del problem
+    t = np.linspace(0, 1, 8)
+    return {"t": t, "omega": omega(t).T}
+
+
+ANSWERS: dict[str, Callable[[Problem], Any]] = {
+    "(t, y) with a row for each time": lambda p: (times(p), rows(p)),
+    "(t, y) with a row for each state": lambda p: (times(p), rows(p).T),
+    "a result": result,
+    "a result at steps, with a dense output": lambda p: SimpleNamespace(
+        t=np.array([0.0, 1.0]), y=omega([0.0, 1.0]), sol=omega
+    ),
+    "a dense output": lambda p: omega,
+    "a dict": lambda p: {"t": times(p), "omega": rows(p)},
+    "a dict without times": lambda p: {"omega": rows(p)},
+    "columns by name": lambda p: dict(
+        zip(("t", "w1", "w2", "w3"), (times(p), *rows(p).T), strict=True)
+    ),
+    "nested lists": lambda p: rows(p).tolist(),
+}
+
+
+@pytest.mark.parametrize("answer", ANSWERS.values(), ids=ANSWERS)
+def test_whatever_a_function_returns_is_the_same_answer(answer: Callable[[Problem], Any]) -> None:
+    """The states at the scene's times are those of the array, number by number."""
+    problem = pose(scene(), rung("f64"))
+    expected, got = (Callback(each).solve(problem) for each in (rows, answer))
+    assert got.outcome is Outcome.FINISHED
+    assert np.array_equal(got.quantities["omega"], expected.quantities["omega"])
+
+
+WRONG: dict[str, tuple[Callable[[Problem], Any], Outcome, str]] = {
+    "as many states as times": (
+        lambda p: ([0, 1, 2], np.zeros((3, 3))),
+        Outcome.MISSHAPEN,
+        "hand over y alone",
+    ),
+    "a result without success": (
+        lambda p: result(p, success=False, message="step size too small"),
+        Outcome.INTERRUPTED,
+        "step size too small",
+    ),
+    "a dict of nothing": (lambda p: {}, Outcome.MISSHAPEN, "expected"),
+    "masked numbers": (
+        lambda p: np.ma.masked_less(rows(p), 0),
+        Outcome.MISSHAPEN,
+        "without a mask",
+    ),
+    "None": (lambda p: None, Outcome.MISSHAPEN, "expected states of shape (5, 3), got ()"),
+    "sys.exit": (lambda p: exit(0), Outcome.RAISED, "SystemExit"),
+}
+
+
+@pytest.mark.parametrize(("answer", "outcome", "sentence"), WRONG.values(), ids=WRONG)
+def test_what_is_no_answer_is_an_outcome(
+    answer: Callable[[Problem], Any], outcome: Outcome, sentence: str
+) -> None:
+    """The run is not scored, and the sentence says what came."""
+    trajectory = Callback(answer).solve(pose(scene(), rung("f64")))
+    assert trajectory.outcome is outcome
+    assert sentence in trajectory.detail
+
+
+def test_rows_at_times_of_their_own_are_judged_there() -> None:
+    """They pass where they are right, a wrong one fails, and names that mean nothing are misshapen."""
+    judged = taylor_verify.run(scene(), other_times, tolerance=1e-12)
+    assert judged.passed
+    assert judged.verdicts[0].solver == "other_times"
+    late = taylor_verify.run(
+        scene(), lambda p: {**other_times(p), "t": np.linspace(0, 1.1, 8)}, tolerance=1e-9
+    )
+    assert not late.passed
+    (named,) = taylor_verify.run(scene(), lambda p: {"a": [1.0, 2.0]}).verdicts
+    assert "expected w1 w2 w3" in named.because
+
+
+SOURCE = """
+import numpy as np
+class Top:
+    def __call__(self, problem, rate=2.0):
+        t = np.array([float(t) for t in problem.given.clock.instants])
+        return np.array([np.cos(rate * t) / 2, np.sin(rate * t) / 2, 0 * t + 2]).T
+top = Top()
+"""
+
+
+def test_a_name_finds_a_function_in_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Settings behind ? are keyword arguments: with the wrong rate the same function fails."""
+    (tmp_path / "top_of_a_test.py").write_text(SOURCE)
+    monkeypatch.chdir(tmp_path)
+    right, wrong = (
+        taylor_verify.check(scene(), f"python:top_of_a_test:top{query}", tolerance=1e-9)
+        for query in ("", "?rate=2.5")
+    )
+    assert right.passed
+    assert not wrong.passed
+    assert {v.solver for v in wrong.verdicts} == {"python:top_of_a_test:top?rate=2.5"}
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("python:", "expected python:package.module:function, got python:"),
+        ("python:nowhere_at_all:f", "No module named 'nowhere_at_all'"),
+        ("python:math:nothing", "has no attribute 'nothing'"),
+        ("python:math:pi", "expected a callable, got a float"),
+        ("python:math:sin?step", "expected KEY=VALUE behind"),
+    ],
+)
+def test_a_name_of_no_function_is_refused(name: str, sentence: str) -> None:
+    """The sentence says what was looked for, and where."""
+    with pytest.raises(ValueError, match=sentence):
+        solver_named(name)
+
+
+def test_several_scenes_are_judged_by_a_function_in_one_call() -> None:
+    """`check` of a list is `run_many`, whose solver may be an object."""
+    judged = taylor_verify.check([scene()], rows, tolerance=1e-9)
+    assert judged.passed
+    assert [each.verdicts[0].scene for each in judged] == ["top"]
+    assert judged.solver == "rows"
+
+
+@pytest.mark.slow
+def test_a_function_without_a_name_goes_to_every_process() -> None:
+    """A lambda is sent by cloudpickle; a script needs no guard, because no process imports it."""
+    judged = taylor_verify.check([scene(), read(TOP, "again")], lambda p: rows(p), tolerance=1e-9)
+    assert judged.passed
+    assert [each.verdicts[0].scene for each in judged] == ["top", "again"]

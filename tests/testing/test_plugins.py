@@ -1,0 +1,189 @@
+"""Plug-ins of other packages: one of each kind is shown and used, a broken one harms nobody."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import taylor_verify
+from taylor_verify.cli import main
+from taylor_verify.records import plugins
+from taylor_verify.scenes.library import named
+from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.engines.engine import engines
+from taylor_verify.solvers.registry import remarks, solver_named
+from taylor_verify.testing.contract import BrokenContract, check_reader, keeps_contract
+
+EXAMPLE = Path(__file__).parent / "example"
+# Files of a package with a fault in each plug-in, and the words that name it.
+BROKEN = {
+    "solvers": ("gone = no_such_module:solve", "No module named 'no_such_module'"),
+    "readers": ("csv = tv_broken:Csv", "the reader .csv of tv-broken is left out: there is one"),
+    "scenes": ("mine = tv_broken:Csv", "to be the path of a folder"),
+    "engines": ("none = tv_broken:missing", "to be the path of a script (.py, .mjs)"),
+    "causes": ("half = tv_broken", "to have candidates, got none"),
+}
+SOURCE = """
+missing = "/nowhere/with_none.py"
+class Csv:
+    suffixes = (".csv",)
+    read = print
+"""
+
+Captured = pytest.CaptureFixture[str]
+Install = Callable[[str, dict[str, str]], None]
+
+
+def forget() -> None:
+    for cached in (plugins.plugins, plugins.say_once, engines):
+        cached.cache_clear()
+    for name in [name for name in sys.modules if name.startswith("tv_")]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
+    """Put a distribution on the path: its name, and the lines of its entry points by kind."""
+
+    def installed(name: str, points: dict[str, str]) -> None:
+        info = tmp_path / f"{name.replace('-', '_')}-1.0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+        groups = (f"[taylor_verify.{kind}]\n{lines}\n" for kind, lines in points.items())
+        (info / "entry_points.txt").write_text("".join(groups))
+        forget()
+
+    monkeypatch.syspath_prepend(str(tmp_path))
+    yield installed
+    forget()
+
+
+@pytest.fixture
+def example(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(EXAMPLE))
+    project = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())["project"]
+    points = {
+        group.removeprefix("taylor_verify."): "\n".join(f"{k} = {v}" for k, v in entry.items())
+        for group, entry in project["entry-points"].items()
+    }
+    install(project["name"], points)
+
+
+def test_the_example_is_short() -> None:
+    """One plug-in of each kind takes at most 80 lines."""
+    files = (file for file in EXAMPLE.rglob("*") if file.suffix in (".py", ".toml"))
+    assert sum(len(file.read_text().splitlines()) for file in files) <= 80
+
+
+@pytest.mark.usefixtures("example")
+def test_each_plugin_keeps_its_contract() -> None:
+    """The author's own call uses each of them once, and a distribution without plug-ins is a fault."""
+    assert keeps_contract("tv-example") == [
+        *(
+            "solvers tops",
+            "readers rows",
+            "scenes mine",
+            "engines still",
+            "causes jet",
+            "verbs hello",
+        )
+    ]
+    with pytest.raises(BrokenContract, match="got none"):
+        keeps_contract("no-such-distribution")
+
+
+@pytest.mark.usefixtures("example")
+def test_list_names_what_is_installed_and_its_package(capsys: Captured) -> None:
+    """Each plug-in stands beside ours, with its package; --json has both."""
+    assert main(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    for name in ("tops", ".rows", "mine/top", "outside:still"):
+        assert any(line.split()[:1] == [name] for line in lines), name
+    assert sum("of the package tv-example" in line for line in lines) >= 9
+    assert main(["list", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["plugins"]["readers"] == {"rows": "tv-example"}
+    assert document["added"] == ["mine/top"]
+    assert not {"mine/top"} & {*document["scenes"]}
+
+
+@pytest.mark.usefixtures("example")
+def test_its_solver_answers_its_scene(capsys: Captured) -> None:
+    """`run NAME/stem --solver NAME` judges it; a folder stands for its scenes."""
+    assert named("mine") == ("mine/top",)
+    assert main(["run", "mine/top", "--solver", "tops", "--tolerance", "1e-9"]) == 0
+    assert main(["hello", "you"]) == 0
+    assert capsys.readouterr().out.endswith("hello you\n")
+
+
+@pytest.mark.usefixtures("example")
+def test_its_reader_reads_a_file_and_its_cause_is_proven(tmp_path: Path) -> None:
+    """Rows that move as the changed scene does are explained by its title, and by no other of its."""
+    scene = load("mine/top")
+    jet = (Fraction(0), Fraction(0), Fraction(1, 64))
+    motion = taylor_verify.exact(replace(scene, body=replace(scene.body, moment=jet)), range(3), 20)
+    rows = np.column_stack([range(3), motion["omega"].astype(float)])
+    file = tmp_path / "mine.rows"
+    file.write_text("t w1 w2 w3\n" + "\n".join(" ".join(map(repr, row)) for row in rows.tolist()))
+    import tv_example
+
+    check_reader(tv_example, file)
+    judged = taylor_verify.check("mine/top", file, tolerance=1e-9)
+    assert not judged.passed
+    assert "read by rows of the package tv-example" in judged.notes
+    assert "the jet was on" in [cause.name for cause in judged.causes]
+
+
+def test_a_broken_plugin_is_named_in_one_line_and_harms_nobody(
+    install: Install, tmp_path: Path, capsys: Captured, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Each fault is one line with the package, once, and `list` goes on with all of ours."""
+    (tmp_path / "tv_broken.py").write_text(SOURCE)
+    install("tv-broken", {kind: line for kind, (line, _) in BROKEN.items()})
+    assert main(["list", "--json"]) == 0
+    assert "taylor" in json.loads(capsys.readouterr().out)["solvers"]
+    remarks()
+    messages = [record.getMessage() for record in caplog.records]
+    for _, words in BROKEN.values():
+        (line,) = (message for message in messages if words in message)
+        assert "tv-broken" in line
+        assert "\n" not in line
+    with pytest.raises(BrokenContract, match="No module named"):
+        keeps_contract("tv-broken")
+
+
+def test_of_two_packages_with_one_name_the_first_counts(
+    install: Install, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Packages come in the order of their names; a name of ours is never taken."""
+    install("tv-one", {"solvers": "same = math:sin\ntaylor = math:cos"})
+    install("tv-two", {"solvers": "same = math:cos"})
+    (same,) = (plugin for plugin in plugins.plugins("solvers") if plugin.name == "same")
+    assert same.package == "tv-one"
+    assert "the solver same of tv-two is left out" in caplog.text
+    assert "same" in remarks()
+    assert type(solver_named("taylor")).__name__ == "Taylor"
+    assert "the solver taylor of tv-one is left out" in caplog.text
+
+
+@pytest.mark.slow
+def test_the_example_is_installed_by_pip(tmp_path: Path) -> None:
+    """An environment of its own has the package, and `list` there names it."""
+    folder = tmp_path / "site"
+    command = ["uv", "pip", "install", "--no-deps", "--target", str(folder), str(EXAMPLE)]
+    subprocess.run([sys.executable, "-m", *command], check=True, capture_output=True)
+    paths = f"import sys; sys.path[:0] = [{str(folder)!r}]; "
+    call = "from taylor_verify.testing.contract import keeps_contract; print(keeps_contract('tv-example'))"
+    shown = subprocess.run(
+        [sys.executable, "-c", paths + call], check=True, capture_output=True, text=True
+    )
+    assert shown.stdout.count("'") == 12

@@ -1,0 +1,227 @@
+"""Dense answers of programs as exact pieces: SciPy's and heyoka's, and pieces in JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+from flint import fmpq_poly
+
+from taylor_verify.certify.pieces import Piece, Pieces, merged, polynomial, rational
+from taylor_verify.records.faults import Refused, brief, refusal
+from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.scenes.reading.table import exact_number
+from taylor_verify.scenes.scene import Scene
+
+Polynomials = list[fmpq_poly]
+
+
+def columns_of(scene: Scene, count: int) -> list[str]:
+    """Return the columns of a state of so many numbers: the first groups of the scene's order."""
+    order = ["quaternion", *(["centre"] if scene.model == "kirchhoff" else [])]
+    groups = {group.name: group.columns for group in scene.groups}
+    main = [name for name in groups if name not in order and name in COLUMNS]
+    own = [name for name in groups if name not in COLUMNS]
+    columns: list[str] = []
+    sizes = []
+    for name in (*main, *order, *own):
+        columns += groups.get(name, COLUMNS.get(name, ()))
+        sizes.append(len(columns))
+        if len(columns) == count:
+            return columns
+    tracked = [column for group in scene.groups for column in group.columns]
+    if len(tracked) == count:
+        return tracked
+    raise refusal(f"{' or '.join(map(str, sizes))} components", count, "answer")
+
+
+def is_piecewise(answer: Any) -> bool:
+    """Return True for SciPy's polynomials on pieces, and its splines."""
+    return hasattr(answer, "c") and (hasattr(answer, "x") or hasattr(answer, "k"))
+
+
+def named(names: Sequence[str], breaks: Sequence[Any], rows: Iterator[Polynomials]) -> Pieces:
+    """Return pieces between breaks, with a row of polynomials for each."""
+    times = [_number(t, "breaks") for t in breaks]
+    pairs = zip(pairwise(times), rows, strict=True)
+    return Pieces.of(_piece(names, *ends, row) for ends, row in pairs)
+
+
+def _piece(names: Sequence[str], begin: Fraction, end: Fraction, row: Polynomials) -> Piece:
+    """Return one piece, which a motion backwards in time gives from its later end on."""
+    piece = Piece(begin, end, dict(zip(names, row, strict=True)))
+    return piece if begin <= end else piece.shifted(end, begin)
+
+
+def _number(value: Any, place: str) -> Fraction:
+    try:
+        return Fraction(float(value))
+    except (TypeError, ValueError, OverflowError):
+        raise refusal("finite numbers", brief(value), place) from None
+
+
+# SciPy's OdeSolution: polynomials of x = (t - t_old)/h, by the class of the interpolant.
+
+
+def _runge_kutta(dense: Any) -> Polynomials:
+    h = Fraction(float(dense.h))
+    return [
+        polynomial([Fraction(y), *(h * Fraction(q) for q in row)], h)
+        for y, row in zip(dense.y_old.tolist(), dense.Q.tolist(), strict=True)
+    ]
+
+
+def _radau(dense: Any) -> Polynomials:
+    pairs = zip(dense.y_old.tolist(), dense.Q.tolist(), strict=True)
+    return [polynomial([y, *row], Fraction(float(dense.h))) for y, row in pairs]
+
+
+def _dop853(dense: Any) -> Polynomials:
+    x = polynomial([0, 1], Fraction(float(dense.h)))
+    rows = []
+    for place, y in enumerate(dense.y_old.tolist()):
+        total = fmpq_poly([])
+        for i, f in enumerate(dense.F[::-1, place].tolist()):
+            total = (total + rational(Fraction(f))) * (1 - x if i % 2 else x)
+        rows.append(total + rational(Fraction(y)))
+    return rows
+
+
+def _backward_differences(dense: Any) -> Polynomials:
+    """D_0 + sum of D_k times the product of (t - t_shift)/denom."""
+    begin, product, powers = Fraction(float(dense.t_old)), fmpq_poly([1]), []
+    for shift, denominator in zip(dense.t_shift.tolist(), dense.denom.tolist(), strict=True):
+        factor = [begin - Fraction(shift), 1]
+        product = product * polynomial(factor) / rational(Fraction(denominator))
+        powers.append(product)
+    rows = []
+    for first, *rest in dense.D[: len(powers) + 1].T.tolist():
+        terms = (rational(Fraction(d)) * p for d, p in zip(rest, powers, strict=True))
+        rows.append(sum(terms, polynomial([first])))
+    return rows
+
+
+def _nordsieck(dense: Any) -> Polynomials:
+    shift = fmpq_poly([rational(Fraction(float(dense.t_old)) - Fraction(float(dense.t))), 1])
+    return [polynomial(row, Fraction(float(dense.h)))(shift) for row in dense.yh.tolist()]
+
+
+_INTERPOLANTS: Final[Mapping[str, Callable[[Any], Polynomials]]] = {
+    "RkDenseOutput": _runge_kutta,
+    "Dop853DenseOutput": _dop853,
+    "RadauDenseOutput": _radau,
+    "BdfDenseOutput": _backward_differences,
+    "LsodaDenseOutput": _nordsieck,
+    "ConstantDenseOutput": lambda dense: [polynomial([y]) for y in dense.value.tolist()],
+}
+
+
+def of_ode_solution(answer: Any, scene: Scene) -> Pieces:
+    """Return the pieces of SciPy's OdeSolution."""
+    kinds = {type(dense).__name__ for dense in answer.interpolants}
+    if unknown := sorted(kinds - set(_INTERPOLANTS)):
+        raise refusal(f"interpolants ({', '.join(_INTERPOLANTS)})", unknown[0], "answer")
+    rows = [_INTERPOLANTS[type(dense).__name__](dense) for dense in answer.interpolants]
+    return named(columns_of(scene, len(rows[0])), answer.ts.tolist(), iter(rows))
+
+
+def of_taylor(answer: Any, scene: Scene) -> Pieces:
+    """Return the pieces of heyoka's continuous output: powers of the time since each step began."""
+    rows = ([polynomial(c) for c in step.tolist()] for step in np.asarray(answer.tcs))
+    return named(columns_of(scene, answer.tcs.shape[1]), list(answer.times), rows)
+
+
+def of_scipy(answer: Any, names: Sequence[str]) -> Pieces:
+    """Return the pieces of a PPoly, or of a spline by its knots, with a column for each component."""
+    if hasattr(answer, "k"):
+        return _of_spline(answer, names)
+    c = np.asarray(answer.c, dtype=float)
+    c = c.reshape(*c.shape[:2], -1)
+    rows = ([polynomial(p[::-1]) for p in c[:, k].T.tolist()] for k in range(c.shape[1]))
+    return named(names, np.asarray(answer.x).tolist(), rows)
+
+
+def _of_spline(answer: Any, names: Sequence[str]) -> Pieces:
+    k, t = int(answer.k), [Fraction(x) for x in np.asarray(answer.t).tolist()]
+    c = np.asarray(answer.c, dtype=float)
+    columns = c.reshape(len(c), -1).T.tolist()
+    places = [j for j in range(k, len(t) - k - 1) if t[j] < t[j + 1]]
+    return Pieces.of(
+        Piece(
+            t[j],
+            t[j + 1],
+            dict(zip(names, [_de_boor(t, col, k, j) for col in columns], strict=True)),
+        )
+        for j in places
+    )
+
+
+def _de_boor(t: Sequence[Fraction], c: Sequence[float], k: int, j: int) -> fmpq_poly:
+    """The polynomial of a spline between two knots, by de Boor's recursion."""
+    d = [polynomial([c[i]]) for i in range(j - k, j + 1)]
+    for r in range(1, k + 1):
+        for i in range(k, r - 1, -1):
+            low, high = t[i + j - k], t[i + 1 + j - r]
+            share = polynomial([(t[j] - low) / (high - low), 1 / (high - low)])
+            d[i] = d[i - 1] + share * (d[i] - d[i - 1])
+    return d[k]
+
+
+def components(answer: Any) -> int:
+    """Return the number of components of a PPoly or a spline."""
+    shape = np.asarray(answer.c).shape
+    return int(np.prod(shape[1:] if hasattr(answer, "k") else shape[2:], dtype=int))
+
+
+def of_mapping(answer: Mapping[str, Any], scene: Scene) -> Pieces:
+    """Return the pieces of piecewise polynomials by the names of groups or columns."""
+    parts = []
+    for name, each in answer.items():
+        if not is_piecewise(each):
+            raise refusal("a piecewise polynomial or a spline", brief(each), name)
+        columns = _columns(scene, name, components(each))
+        parts.append(of_scipy(each, columns))
+    return merged(parts)
+
+
+def _columns(scene: Scene, name: str, count: int) -> Sequence[str]:
+    """Return the columns of a quantity or a group, or of a single column."""
+    if name == "attitude" and count == len(COLUMNS["quaternion"]):
+        name = "quaternion"
+    if name == "impulse":
+        return [column for group in MOMENTA["kirchhoff"] for column in COLUMNS[group]]
+    columns = {n: group.columns for n, group in scene.known_groups.items()}.get(name, (name,))
+    if len(columns) != count:
+        raise refusal(f"{len(columns)} components", count, name)
+    return columns
+
+
+def of_document(document: Mapping[str, Any], scene: Scene) -> Pieces:
+    """Return the pieces of ``{"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}``."""
+    try:
+        breaks = [_exact(t) for t in document["breaks"]]
+        groups = {
+            n: _columns(scene, n, len(pieces[0])) for n, pieces in document["quantities"].items()
+        }
+        names = [column for columns in groups.values() for column in columns]
+        rows = []
+        for k in range(len(breaks) - 1):
+            each = [p for n in groups for p in document["quantities"][n][k]]
+            rows.append([polynomial(map(_exact, p)) for p in each])
+        lengths = {len(pieces) for pieces in document["quantities"].values()}
+        if lengths != {len(breaks) - 1} or any(len(row) != len(names) for row in rows):
+            raise ValueError("as many pieces as there are between breaks, each with all components")
+    except Refused:
+        raise
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        form = '{"breaks": [..], "quantities": {NAME: [[[c0, c1, ..], ..], ..]}}'
+        raise refusal(f"pieces as {form}", f"{type(error).__name__}: {error}", "answer") from None
+    ends = zip(pairwise(breaks), rows, strict=True)
+    return Pieces.of(Piece(a, b, dict(zip(names, row, strict=True))) for (a, b), row in ends)
+
+
+def _exact(value: Any) -> Fraction:
+    return Fraction(value) if isinstance(value, float) else exact_number(value)

@@ -1,0 +1,226 @@
+"""The error of pieces against the enclosed motion, as polynomials on the intervals that both have.
+
+On an interval t = middle + half v, |v| <= 1, the error of a column is a polynomial in v and a bound of what
+it is off by: the truth's own error, and the rounding of the coefficients to float64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, Final
+
+import numpy as np
+from flint import arb, arb_poly
+
+from taylor_verify.certify.pieces import Piece, Pieces
+from taylor_verify.exact.balls import ball
+from taylor_verify.exact.enclosure.along import Part
+from taylor_verify.exact.event_times import parts_of, system
+from taylor_verify.exact.written import as_written
+from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
+from taylor_verify.scenes.reading.event import loads_of
+from taylor_verify.scenes.scene import Scene
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+QUATERNION: Final = COLUMNS["quaternion"]
+ROTATION: Final = COLUMNS["attitude"]
+# Coefficients that are together below this share of a polynomial are a part of its bound.
+_NEGLIGIBLE: Final = 2.0**-36
+# A rounding to float64, and what keeps squares from underflow.
+_ROUNDED: Final = 2.0**-50
+_LEAST: Final = 1e-140
+_SHARES: Final = tuple(arb(k) / 8 for k in range(9))
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A quantity, with the groups of columns in which an answer has it; each has a scale of its own."""
+
+    quantity: Quantity
+    groups: Sequence[Sequence[str]]
+
+    @property
+    def columns(self) -> list[str]:
+        return [column for group in self.groups for column in group]
+
+
+def measured_of(scene: Scene, columns: Sequence[str]) -> tuple[list[Measured], list[Quantity]]:
+    """Return the quantities that a scene tracks and the columns have, and those that they lack."""
+    known = {name: group.columns for name, group in scene.known_groups.items()}
+    measured, missing = [], []
+    for quantity in scene.tracked:
+        groups = [known[name] for name in quantity.groups]
+        if quantity.measure is Measure.ANGLE and not set(QUATERNION) <= set(columns):
+            groups = [ROTATION]
+        if all(column in columns for group in groups for column in group):
+            measured.append(Measured(quantity, groups))
+        else:
+            missing.append(quantity)
+    return measured, missing
+
+
+@dataclass
+class Interval:
+    """Errors on one interval of time, by group: a row of coefficients for each component, and bounds."""
+
+    middle: float
+    half: float
+    rows: Floats
+    beside: Floats
+    scale: float = 1.0
+
+
+@dataclass
+class Errors:
+    """The intervals of one group of columns, and how large the truth is: at most, and along its way."""
+
+    intervals: list[Interval] = field(default_factory=list)
+    largest: float = 0.0
+    way: float = 0.0
+    last: list[arb] | None = None
+
+
+def errors_of(
+    scene: Scene, pieces: Pieces, measured: Sequence[Measured], until: Fraction, bits: int
+) -> Mapping[tuple[str, int], Errors]:
+    """Return the errors of each group of each quantity between the start of a scene and a time.
+
+    At the ambient precision. Raises Coarse, Unreached and Domain.
+    """
+    columns = [column for each in measured for column in each.columns]
+    loads = replace(loads_of(scene), functions=tuple(columns))
+    begin = scene.clock.start
+    motion = system(as_written(scene), loads, until - begin, orders=0)
+    errors = {(m.quantity.name, k): Errors() for m in measured for k, _ in enumerate(m.groups)}
+    for part in parts_of(motion, until - begin, begin, bits):
+        _Part(part, begin, columns).add(pieces, measured, errors)
+    return errors
+
+
+class _Part:
+    """A part of the enclosed motion."""
+
+    def __init__(self, part: Part, origin: Fraction, columns: Sequence[str]) -> None:
+        self._begin, self._length = origin + part.begin, part.length
+        self._functions = dict(zip(columns, part.functions, strict=True))
+
+    def add(
+        self,
+        pieces: Pieces,
+        measured: Sequence[Measured],
+        errors: Mapping[tuple[str, int], Errors],
+    ) -> None:
+        groups = [
+            (each, group, errors[each.quantity.name, k])
+            for each in measured
+            for k, group in enumerate(each.groups)
+        ]
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[:1])
+        low, high = sorted((self._begin, self._begin + self._length))
+        for piece in pieces.between(low, high):
+            a, b = max(low, piece.begin), min(high, piece.end)
+            for each, group, entry in groups:
+                entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+        # What comes later in this part is no size so far of its intervals.
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[1:])
+
+    def _measure(self, group: Sequence[str], errors: Errors, shares: Sequence[arb]) -> None:
+        """Bound how large the truth is, from below, by its values at a few times."""
+        for share in shares:
+            values = [self._functions[column].over(share) for column in group]
+            size = sum((v.abs_lower() ** 2 for v in values), arb(0)).sqrt().lower()
+            errors.largest = max(errors.largest, float(size) * (1 - _ROUNDED))
+            if errors.last is not None:
+                moved = [(v - w).abs_lower() ** 2 for v, w in zip(values, errors.last, strict=True)]
+                errors.way += float(sum(moved, arb(0)).sqrt().lower()) * (1 - _ROUNDED)
+            errors.last = values
+
+    def _interval(
+        self,
+        piece: Piece,
+        group: Sequence[str],
+        of: Measured,
+        a: Fraction,
+        b: Fraction,
+        so_far: Errors,
+    ) -> Interval:
+        middle, half = (a + b) / 2, (b - a) / 2
+        ours = arb_poly([ball((middle - self._begin) / self._length), ball(half / self._length)])
+        theirs = arb_poly([ball(middle - piece.begin), ball(half)])
+        truth = [arb_poly(list(self._functions[c].polynomial))(ours) for c in group]
+        answer = [arb_poly(piece.polynomials[c])(theirs) for c in group]
+        beside = [self._functions[c].beside for c in group]
+        scale = 1.0
+        if tuple(group) == QUATERNION:
+            differences, beside, scale = _turned(truth, answer, beside)
+        else:
+            differences = [y - z for y, z in zip(answer, truth, strict=True)]
+        if of.quantity.measure is Measure.SO_FAR:
+            scale = so_far.largest or 1.0
+        rows, bounds = _rounded(differences, beside)
+        return Interval(float(middle), float(half), rows, bounds, scale)
+
+
+def _turned(
+    truth: Sequence[arb_poly], answer: Sequence[arb_poly], beside: Sequence[arb]
+) -> tuple[list[arb_poly], list[arb], float]:
+    """The vector part of q* p for the true quaternion q and the answer p, and the least scalar part.
+
+    The turn between both frames is 2 atan of their quotient.
+    """
+    a, b, c, d = truth
+    w, x, y, z = answer
+    scalar = a * w + b * x + c * y + d * z
+    vector = [
+        a * x - b * w - c * z + d * y,
+        a * y + b * z - c * w - d * x,
+        a * z - b * y + c * x - d * w,
+    ]
+    length = sum((_size(p) for p in answer), arb(0))
+    missed = (sum(beside, arb(0)) * length).abs_upper()
+    entries = scalar.coeffs() or [arb(0)]
+    rest = sum((e.abs_upper() for e in entries[1:]), missed)
+    least = float((entries[0].abs_lower() - rest).lower())
+    return vector, [missed] * 3, max(least, 0.0)
+
+
+def _size(polynomial: arb_poly) -> arb:
+    return sum((entry.abs_upper() for entry in polynomial.coeffs()), arb(0))
+
+
+def _rounded(polynomials: Sequence[arb_poly], beside: Sequence[arb]) -> tuple[Floats, Floats]:
+    """The coefficients that count in float64, and bounds of all that these leave out."""
+    coefficients = [p.coeffs() or [arb(0)] for p in polynomials]
+    sizes = [[float(e.abs_upper()) for e in row] for row in coefficients]
+    count = max(_counting(row) for row in sizes)
+    rows, bounds = np.zeros((len(sizes), count)), np.zeros(len(sizes))
+    for i, (row, size) in enumerate(zip(coefficients, sizes, strict=True)):
+        leading = row[:count]
+        rows[i, : len(leading)] = [float(e.mid()) for e in leading]
+        radii = sum((e.rad() for e in leading), beside[i])
+        bounds[i] = float(arb(radii).abs_upper()) + sum(size[count:]) + _ROUNDED * sum(size)
+    return rows, bounds * (1 + _ROUNDED) + _LEAST
+
+
+def _counting(sizes: Sequence[float]) -> int:
+    """The number of coefficients that count."""
+    left, rest = len(sizes), 0.0
+    while left > 1 and rest + sizes[left - 1] <= _NEGLIGIBLE * sum(sizes):
+        left -= 1
+        rest += sizes[left]
+    return left
+
+
+def between(pieces: Pieces, begin: Fraction, end: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
+    """Yield the parts of a span that no piece covers."""
+    reached = begin
+    for piece in pieces.between(begin, end):
+        if piece.begin > reached:
+            yield reached, piece.begin
+        reached = max(reached, piece.end)
+    if reached < end:
+        yield reached, end

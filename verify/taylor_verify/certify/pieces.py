@@ -1,0 +1,109 @@
+"""A dense answer as polynomials on pieces of time, its coefficients exact."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, Final
+
+from flint import fmpq, fmpq_poly
+
+from taylor_verify.records.faults import Faults, Refused
+
+MOST_DEGREE: Final = 60
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Polynomials by column, in powers of t - ``begin``, from one time to a later one."""
+
+    begin: Fraction
+    end: Fraction
+    polynomials: Mapping[str, fmpq_poly]
+
+    def value(self, column: str, time: Fraction) -> Fraction:
+        return fraction(self.polynomials[column](rational(time - self.begin)))
+
+    def sizes(self, column: str) -> list[float]:
+        """The sizes of the terms at the end of the piece."""
+        whole = self.polynomials[column](fmpq_poly([0, rational(self.end - self.begin)]))
+        return [abs(float(fraction(entry))) for entry in whole.coeffs()]
+
+    def shifted(self, begin: Fraction, end: Fraction) -> Piece:
+        """The polynomials on a part of the piece."""
+        inner = fmpq_poly([rational(begin - self.begin), 1])
+        return Piece(begin, end, {name: p(inner) for name, p in self.polynomials.items()})
+
+
+def rational(value: Fraction) -> fmpq:
+    return fmpq(value.numerator, value.denominator)
+
+
+def fraction(value: fmpq) -> Fraction:
+    return Fraction(int(value.p), int(value.q))
+
+
+def polynomial(coefficients: Iterable[Any], unit: Fraction = Fraction(1)) -> fmpq_poly:
+    """Return the polynomial of exact numbers, or of binary ones as they are, in powers of u/unit."""
+    entries, power = [], Fraction(1)
+    for coefficient in coefficients:
+        entries.append(rational(Fraction(coefficient) / power))
+        power *= unit
+    return fmpq_poly(entries)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Pieces in the order of time, which do not overlap; all have the same columns."""
+
+    each: Sequence[Piece]
+
+    @classmethod
+    def of(cls, pieces: Iterable[Piece]) -> Pieces:
+        """Return the pieces, sorted. Raises Refused for pieces that overlap, and degrees over sixty."""
+        every = sorted(pieces, key=lambda piece: piece.begin)
+        faults = Faults()
+        if not every:
+            faults.add("one piece at least", "none", "answer")
+        for k, piece in enumerate(every):
+            if not piece.begin < piece.end:
+                faults.add("breaks that rise", f"{float(piece.begin):g}", f"breaks[{k}]")
+            degree = max((p.degree() for p in piece.polynomials.values()), default=0)
+            if degree > MOST_DEGREE:
+                faults.add(f"degrees of at most {MOST_DEGREE}", str(degree), f"piece {k}")
+        for k, (before, after) in enumerate(pairwise(every)):
+            if after.begin < before.end:
+                got = f"two at t = {float(after.begin):g}"
+                faults.add("pieces that do not overlap", got, f"piece {k + 1}")
+        if faults.lines:
+            raise Refused(faults.lines)
+        return cls(every)
+
+    @property
+    def columns(self) -> list[str]:
+        return list(self.each[0].polynomials)
+
+    def between(self, begin: Fraction, end: Fraction) -> Sequence[Piece]:
+        """The pieces that have a part of a span."""
+        first = max(0, bisect_right(self.each, begin, key=lambda piece: piece.begin) - 1)
+        last = bisect_right(self.each, end, key=lambda piece: piece.begin)
+        return [p for p in self.each[first:last] if p.end > begin and p.begin < end]
+
+
+def merged(answers: Sequence[Pieces]) -> Pieces:
+    """Return the pieces of several answers as one, on the times that all of them have."""
+    if len(answers) == 1:
+        return answers[0]
+    breaks = sorted({t for a in answers for p in a.each for t in (p.begin, p.end)})
+    every = []
+    for begin, end in pairwise(breaks):
+        parts = [part for a in answers for part in a.between(begin, end)]
+        if len(parts) == len(answers):
+            polynomials: dict[str, fmpq_poly] = {}
+            for part in parts:
+                polynomials |= part.shifted(begin, end).polynomials
+            every.append(Piece(begin, end, polynomials))
+    return Pieces.of(every)

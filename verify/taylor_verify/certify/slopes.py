@@ -1,0 +1,79 @@
+"""The rates of a scene at the rows of an answer: the slopes of a Hermite interpolation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from flint import arb, ctx
+
+from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.enclosure.box import Box
+from taylor_verify.exact.enclosure.image import Image
+from taylor_verify.exact.event_times import system
+from taylor_verify.exact.rotation import product
+from taylor_verify.records.faults import refusal
+from taylor_verify.records.quantities import COLUMNS, MOMENTA
+from taylor_verify.scenes.loads.states import Held
+from taylor_verify.scenes.reading.event import loads_of
+from taylor_verify.scenes.scene import Scene
+
+_BITS = 106
+
+
+def slopes_of(
+    scene: Scene,
+    names: Sequence[str],
+    times: Sequence[Fraction],
+    rows: Sequence[Sequence[Fraction]],
+) -> list[list[Fraction]]:
+    """Return the rate of each column at every row, by the equations of the scene."""
+    loads = replace(loads_of(scene), functions=tuple(names))
+    elapsed = [time - scene.clock.start for time in times]
+    rates = system(scene, loads, max(elapsed, key=abs), orders=1)
+    needed = _state_columns(scene, rates.size)
+    missing = [column for column in needed if column not in names]
+    if rates.begin is not None or missing:
+        got = ", ".join(missing) or "a rotor of texts"
+        raise refusal("all states of the scene for slopes by its equations", got, "interpolation")
+    slopes = []
+    with ctx.workprec(_BITS):
+        for time, row in zip(elapsed, rows, strict=True):
+            by_name = dict(zip(names, row, strict=True))
+            point = [ball(by_name[column]) for column in needed]
+            turned = _since_start(scene, point)
+            functions = rates.pieces(time, time >= 0).functions
+            assert functions is not None
+            values = Image(functions, Box.about(turned), time).outputs().values
+            slopes.append([_fraction(value) for value in values[len(names) :]])
+    return slopes
+
+
+def _state_columns(scene: Scene, size: int) -> list[str]:
+    """The columns of a state of this size: of the body, then the frame, then own states, held ones last."""
+    columns = [column for group in MOMENTA[scene.model] for column in COLUMNS[group]]
+    states = sorted(scene.own_states, key=lambda state: isinstance(state, Held))
+    own = [column for state in states for column in state.components]
+    frame = size - len(columns) - len(own)
+    if frame:
+        columns += COLUMNS["quaternion"]
+    if frame > len(COLUMNS["quaternion"]):
+        columns += COLUMNS["centre"]
+    return [*columns, *own]
+
+
+def _since_start(scene: Scene, point: list[arb]) -> list[arb]:
+    """The point with the quaternion since the start in place of the quaternion."""
+    body = len(scene.initial.moving)
+    if len(point) < body + 4:
+        return point
+    a, b, c, d = balls(scene.initial.attitude)
+    length = (a * a + b * b + c * c + d * d).sqrt()
+    turn = product([a, -b, -c, -d], point[body : body + 4])
+    return [*point[:body], *(entry / length for entry in turn), *point[body + 4 :]]
+
+
+def _fraction(value: arb) -> Fraction:
+    mantissa, exponent = value.mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -1,0 +1,63 @@
+"""The verb `certify`: a proven bound of the error of a dense answer."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from typing import Any
+
+from taylor_verify.certify import certify
+from taylor_verify.certify.certificate import Certificate
+from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.inputs import parse_tolerance, read_scene
+from taylor_verify.cli.progress import working
+from taylor_verify.words.certificate import certificate_lines, finding_sentence
+
+
+def answer(options: argparse.Namespace) -> Answer:
+    """Print the certificate of a file."""
+    scene = read_scene(options.scene)
+    with wrong_calls():
+        tolerance = parse_tolerance(options.tolerance)
+        if isinstance(tolerance, dict):
+            raise WrongCall("expected one number for all quantities, got several @ --tolerance")
+        with working(f"certify {options.file}"):
+            certificate = certify(
+                scene, options.file, tolerance, interpolation=options.interpolation
+            )
+    messages = [certificate.because] if certificate.because else []
+    text = partial(_text, options.file, certificate)
+    return Answer(_status(certificate), document(certificate), text, messages)
+
+
+def _status(certificate: Certificate) -> int:
+    if certificate.passed:
+        return PASS
+    return UNDECIDED if certificate.is_undecided else FAIL
+
+
+def _text(file: str, certificate: Certificate) -> str:
+    page = Page()
+    page.line(bold(file), f" against {certificate.scene}")
+    for line in certificate_lines(certificate):
+        page.line(line)
+    return page.text()
+
+
+def document(certificate: Certificate) -> dict[str, Any]:
+    """Return the certificate as JSON has it."""
+    return {
+        "scene": certificate.scene,
+        "bound": dict(certificate.bound),
+        "at": dict(certificate.at),
+        "largest": dict(certificate.largest),
+        "rounding": dict(certificate.rounding),
+        "gaps": [
+            {"kind": g.kind.value, "quantity": g.quantity, "at": g.at, "end": g.end, "size": g.size}
+            for g in certificate.gaps
+        ],
+        "findings": [finding_sentence(finding) for finding in certificate.findings],
+        "tolerance": certificate.tolerance,
+        "passed": certificate.passed,
+    } | ({"because": certificate.because} if certificate.because else {})

@@ -1,0 +1,134 @@
+"""The judgement of a solver's own events: against all events of the scene, each enclosed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import floor, inf, log10
+from typing import Any, Final, NamedTuple
+
+from mpmath import mp, mpf
+
+from taylor_verify.exact.event_times import Events, EventTime, events_of
+from taylor_verify.exact.printed_events import event_row
+from taylor_verify.models.problem import pose_as_stored
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.records.faults import brief, refusal
+from taylor_verify.scenes.scene import Scene
+
+_DIGITS: Final = 30
+# A time answers an event if it is nearer than this share of the distance to the next one.
+_NEAR: Final = 4
+
+
+class Answered(NamedTuple):
+    """An event and the time that was given for it: off by ``error``, right to so many ``digits``."""
+
+    event: EventTime
+    given: Fraction
+    error: float
+    digits: int
+
+
+@dataclass(frozen=True)
+class EventsJudgement:
+    """The times of an event that were given, against ``true``: answered, missed, invented."""
+
+    scene: str
+    true: Events
+    answered: tuple[Answered, ...]
+    missed: tuple[EventTime, ...]
+    invented: tuple[Fraction, ...]
+    tolerance: float | None = None
+
+    @property
+    def is_wrong(self) -> bool:
+        """True if an event is missed, invented, or off by more than the tolerance, relative to its time."""
+        limit = inf if self.tolerance is None else self.tolerance
+        is_off = any(not a.error <= limit * abs(float(a.event.t) or 1.0) for a in self.answered)
+        return bool(self.missed or self.invented or is_off)
+
+    @property
+    def passed(self) -> bool:
+        """True if every event is answered, no other time is, and nothing is undecided."""
+        return self.true.passed and not self.is_wrong
+
+    def document(self) -> dict[str, Any]:
+        """Return what `check --event --json` prints."""
+        digits = self.true.digits
+        return {
+            "scene": self.scene,
+            "event": self.true.text,
+            "events": [
+                event_row(a.event, digits)
+                | {"given": float(a.given), "error": a.error, "digits": a.digits}
+                for a in self.answered
+            ],
+            "missed": [event_row(event, digits) for event in self.missed],
+            "invented": [float(time) for time in self.invented],
+            "undecided": [event_row(event, digits) for event in self.true.undecided],
+            "passed": self.passed,
+        }
+
+
+def judge_events(
+    scene: Scene, text: str, times: Sequence[Fraction], rung: Rung, tolerance: float | None = None
+) -> EventsJudgement:
+    """Judge the times of an event over the whole span of a scene.
+
+    Raises Refused for a text or a time that cannot be read, and Unsettled where the events are not known.
+    """
+    given = pose_as_stored(scene, rung).given
+    true = events_of(given, text, given.clock.instants[-1], _DIGITS)
+    left, answered, missed = sorted(times), list[Answered](), list[EventTime]()
+    windows = _windows(true)
+    for event in true.undecided:
+        # It is not known how many events there are.
+        limit = event.radius + windows[event.t]
+        left = [time for time in left if not _distance(time, event) <= limit]
+    for event in true.times:
+        near = [time for time in left if _distance(time, event) < windows[event.t]]
+        if not near:
+            missed.append(event)
+            continue
+        best = min(near, key=lambda time: _distance(time, event))
+        left.remove(best)
+        answered.append(_answered(event, best))
+    return EventsJudgement(scene.name, true, tuple(answered), tuple(missed), tuple(left), tolerance)
+
+
+def _windows(true: Events) -> dict[mpf, mpf]:
+    """Return the distance by event within which a time answers it."""
+    every = sorted(event.t for event in (*true.times, *true.undecided))
+    gaps = [b - a for a, b in pairwise(every)] or [_mpf(abs(true.until) or Fraction(1))]
+    return {t: min(gaps[max(0, k - 1) : k + 1]) / _NEAR for k, t in enumerate(every)}
+
+
+def _answered(event: EventTime, time: Fraction) -> Answered:
+    error = float(_distance(time, event))
+    relative = error / abs(float(event.t)) if event.t else error
+    return Answered(event, time, error, floor(-log10(relative)) if relative else _DIGITS)
+
+
+def _distance(time: Fraction, event: EventTime) -> mpf:
+    with mp.workdps(2 * _DIGITS):
+        return abs(_mpf(time) - event.t)
+
+
+def _mpf(value: Fraction) -> mpf:
+    return mpf(value.numerator) / value.denominator
+
+
+def given_times(answer: Any) -> list[Any]:
+    """Return the times of one event that an object holds: a list, or the t_events of an OdeResult."""
+    times = getattr(answer, "t_events", answer)
+    if times is not answer and times is not None and len(times) == 1:
+        times = times[0]
+    elif times is not answer:
+        got = "none" if times is None else f"those of {len(times)}"
+        raise refusal("the times of one event, as in result.t_events[0]", got, "t_events")
+    if not hasattr(times, "__iter__"):
+        raise refusal("a list of times", brief(times), "events")
+    return list(times)
