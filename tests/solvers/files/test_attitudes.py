@@ -11,8 +11,11 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.answered import MisshapenAnswer, answer_of
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
@@ -237,3 +240,10 @@ def test_units_that_an_object_states_are_read_or_refused(kind: Any) -> None:
     assert float(file.groups["omega"][0][0]) == pytest.approx(np.pi / 180)
     with pytest.raises(Refused, match="furlong"):
         of_object(omega=kind(rates, "furlong"))
+
+
+def test_a_unit_of_a_callables_states_is_refused() -> None:
+    """A state has quantities of several units, so that one unit of all is never dropped."""
+    problem = pose(load("euler/with-attitude"), rung("f64"))
+    with pytest.raises(MisshapenAnswer, match="expected states without a unit, got deg / s"):
+        answer_of(Quantity(np.ones((3, 7)), "deg / s"), problem)
