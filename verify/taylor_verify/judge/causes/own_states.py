@@ -21,7 +21,6 @@ from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.proof import ROUNDINGS, may_leave
 from taylor_verify.judge.causes.terms import faults_of_terms
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.loads.grammar import Fault
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
@@ -70,7 +69,7 @@ def cause_in_states(answer: Answer) -> list[Cause]:
 def _leaves(answer: Answer, changed: _Changed) -> dict[str, float]:
     """Return what a changed scene leaves of each error; empty where it is not proven."""
     assert answer.scene is not None
-    if any(isinstance(each, Fault) for each in changed.loads.faults()):
+    if next(changed.loads.faults(), None):
         return {}
     exact = ExactMotion(replace(answer.scene, body=changed.body), answer.file.c is not None)
 
