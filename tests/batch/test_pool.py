@@ -115,6 +115,42 @@ def test_a_worker_is_deaf_to_interrupts_from_its_start(tmp_path: Path) -> None:
     assert done.stdout.split() == ["True", "True", "False"], done.stderr
 
 
+# A script without a main guard; its second call has a function that is written in it.
+_BARE = """
+import sys
+from taylor_verify.batch import pickling
+from taylor_verify.batch.pool import LocalPool
+
+pickling._has_cloudpickle = lambda: sys.argv[1] == "cloudpickle"
+print("begins")
+
+def twice(number):
+    return 2 * number
+
+with LocalPool(1) as pool:
+    print(pool.submit(len, "abc").result())
+    print(pool.submit(twice, 3).exception() or pool.submit(twice, 3).result())
+"""
+
+
+@pytest.mark.parametrize(
+    ("package", "answer"),
+    [("cloudpickle", "6"), ("pickle", 'expected the call under `if __name__ == "__main__":`')],
+)
+def test_a_script_without_a_guard_works_or_is_told_in_one_sentence(
+    package: str, answer: str, tmp_path: Path
+) -> None:
+    """No process runs the script again; only a function in it needs that, where cloudpickle is missing."""
+    script = tmp_path / "bare.py"
+    script.write_text(_BARE)
+    command = [sys.executable, str(script), package]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+    begins, three, *rest = done.stdout.splitlines()
+    assert (begins, three) == ("begins", "3")
+    assert rest[-1].startswith(answer)
+    assert done.stderr == ""
+
+
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="needs Linux's list of threads")
 def test_a_worker_computes_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside it is the one that watches the parent; a solver's program inherits nothing of it."""

@@ -24,6 +24,7 @@ from builders.turns import by_turns
 import taylor_verify
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
+from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
@@ -70,10 +71,12 @@ def test_list_names_what_there_is(capsys: Captured) -> None:
         "rungs": list(LADDER),
         "guide": dict(GUIDE),
         "formats": list(FORMATS),
+        "plugins": {kind: {p.name: p.package for p in plugins(kind)} for kind in KINDS},
     }
     assert main(["list"]) == 0
     text = capsys.readouterr().out
-    assert all(name in text for names in document.values() for name in names)
+    brought = document.pop("plugins").values()
+    assert all(name in text for names in [*document.values(), *brought] for name in names)
 
 
 def test_the_guide_is_short_and_names_scenes_that_are_there(capsys: Captured) -> None:

@@ -13,7 +13,7 @@ from mpmath import mp
 
 from taylor_verify.cli import main
 from taylor_verify.exact import events, exact
-from taylor_verify.exact.events import Events, EventTime
+from taylor_verify.exact.event_times import Events, EventTime
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 
@@ -94,9 +94,9 @@ def test_a_zero_that_is_touched_is_undecided() -> None:
 @pytest.mark.parametrize("text", ["T = 0.9745", "extremum H2"])
 def test_what_is_conserved_has_no_event_or_is_undecided(text: str) -> None:
     """A constant is beside a value, or no time is distinguished."""
-    found = events(GENERIC, text, 3, DIGITS)
-    assert not found.times
-    assert found.passed is (not found.undecided)
+    answer = events(GENERIC, text, 3, DIGITS)
+    assert not answer.times
+    assert answer.passed is (not answer.undecided)
 
 
 def test_the_start_is_known_exactly() -> None:

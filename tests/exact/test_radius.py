@@ -16,7 +16,6 @@ from mpmath import mp, mpf
 from taylor_verify.exact import balls, proving
 from taylor_verify.exact.printed import _printed, document
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import _distance
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 
@@ -68,23 +67,6 @@ def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits:
             for other in ROUTES:
                 room = radius + Fraction(sharp[other][k]["radius"])
                 assert max(errors(row, sharp[other][k]).values()) <= room**2
-
-
-@pytest.mark.parametrize("scene", SCENES)
-def test_routes_overlap_within_the_sum_of_their_radii(scene: str) -> None:
-    """Vector by vector and to the last bit held: no rounding of a print lies between."""
-    asked = load(scene)
-    elapsed = [Fraction(text) for text in TIMES]
-    motions = [solution(asked, route).motion(elapsed, 25) for route in ROUTES]
-    with mp.workdps(80):
-        for one in motions:
-            for other in motions:
-                for name in one.quantities:
-                    apart = [_distance(*pair) for pair in zip(one[name], other[name], strict=True)]
-                    sums = one.radius_of(name) + other.radius_of(name)
-                    # A radius is by the norm of the truth, which is within a radius of either norm.
-                    assert all(a <= s * (1 + s) for a, s in zip(apart, sums, strict=True))
-                    assert all(one.radius >= one.radius_of(name))
 
 
 def test_both_routes_in_balls_measure_alike() -> None:

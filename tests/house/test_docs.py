@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 from builders.pages import table_rows
+from builders.processes import on_one_core
 from builders.worked import DOCS, ROOT, blocks, work
 
 import taylor_verify
@@ -101,7 +102,8 @@ def test_every_path_that_is_named_exists(page: Path) -> None:
 def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
     """The blocks that a page executes print what it shows."""
     assert any(block.language in {"console", "python"} for block in blocks(text_of(page)))
-    work(DOCS / page, tmp_path)
+    with on_one_core():
+        work(DOCS / page, tmp_path)
 
 
 # What the pages tell.

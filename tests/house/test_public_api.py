@@ -29,6 +29,7 @@ NAMES = [name for name in taylor_verify.__all__ if name not in ("__version__", *
 FUNCTIONS = [getattr(taylor_verify, name) for name in NAMES]
 PROMISED = {
     *("load", "exact", "solve", "run", "run_many", "check", "explain", "tradeoff", "recommend"),
+    *("certify", "enclose", "events"),
     "sweep",
 }
 SCENES = ("euler/spherical", "euler/rest")

@@ -159,3 +159,11 @@ def test_no_address_is_invented(name: str) -> None:
     text = text_of(name)
     assert re.findall(r"https?://|[\w.]+@[\w-]+\.\w+", text) == []
     assert set(re.findall(r"10\.\d{4,}/\S+", text)) <= {"10.1093/mnras/stab1032"}
+
+
+def test_the_hook_of_pre_commit_is_our_program() -> None:
+    """It calls the console script, and hands it no names of changed files."""
+    (hook,) = read(ROOT / ".pre-commit-hooks.yaml")
+    assert hook["entry"] == hook["id"] == "taylor-verify"
+    assert hook["language"] == "python"
+    assert hook["pass_filenames"] is False

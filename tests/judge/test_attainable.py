@@ -13,6 +13,7 @@ import pytest
 from builders.numbers import rationals
 from builders.scenes import CLEBSCH, TENSOR, spun, vector
 from builders.scenes import LOADED as SOLID
+from builders.turns import by_turns
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -182,7 +183,9 @@ def _change(
     return changes
 
 
-@pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
+@pytest.mark.parametrize(
+    "asked", by_turns([RIGID, LOADED, REVOLVED]), ids=["tensor", "loaded", "clebsch"]
+)
 def test_two_routes_add_up_to_the_same(asked: Scene) -> None:
     """Differences and variational equations give one answer, attitude and centre too."""
     times, flow = path(asked).elapsed, Flow.of(asked)

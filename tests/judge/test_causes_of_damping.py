@@ -70,7 +70,7 @@ def test_damping_of_the_velocity_is_named(scene: str) -> None:
     assert set(sentences) == {"damping of the velocity"}
 
 
-@pytest.mark.parametrize("first", [False, True])
+@pytest.mark.parametrize("first", by_turns([False, True], 2))
 @pytest.mark.parametrize(
     ("factor", "name", "words"),
     [

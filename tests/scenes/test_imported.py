@@ -566,6 +566,10 @@ ACTING = {
         "current = [1, 0, -2]",
     ),
     "a weight": (plugged(world=BUOYANCY), "weight = { force = [0, 0, -39.2], at = [0, 0, -0.5] }"),
+    "a gravity of the world": (
+        plugged(world=f"<gravity>0 0 -2</gravity>{BUOYANCY}"),
+        "weight = { force = [0, 0, -8], at = [0, 0, -0.5] }",
+    ),
     "a volume": (plugged(world=BUOYANCY), "buoyancy = { force = [0, 0, 1225], at = [0, 0, 0.25] }"),
     "a thruster": (plugged(model=THRUSTER), 'force = ["0", "0", "thrust1"]'),
     "its arm": (plugged(model=THRUSTER), 'couple = ["0.5*thrust1", "thrust1", "0"]'),

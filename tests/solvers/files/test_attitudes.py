@@ -58,6 +58,14 @@ FORMS_OF = {
 }
 
 
+def test_a_quaternion_by_its_first_word_is_no_habit_of_a_program() -> None:
+    """quaternion=att takes att[0] ... att[3], scalar first."""
+    names = " ".join(f"att[{k}]" for k in range(4))
+    file = of_rows(np.roll(TURNS.as_quat(), 1, axis=1), names, "quaternion=att")
+    assert is_the_turn(file)
+    assert not any("habit" in note for note in file.notes)
+
+
 @pytest.mark.parametrize("wanted", FORMS_OF)
 def test_vectors_by_request(wanted: str) -> None:
     """Rotation vectors, and Rodrigues parameters of either branch, are the turn."""
@@ -93,7 +101,7 @@ def test_rodrigues_parameters_are_exact() -> None:
     [
         ("zyx=2:3", "expected 3 columns, got 2 from 2 to 3"),
         ("mrp_deg=2:4", "expected the name of one of our columns or groups, got `mrp_deg`"),
-        ("zyx=2:9", "expected columns"),
+        ("zyx=2:9", "expected a column of the file, by its name or by a number up to 4, got `9`"),
     ],
 )
 def test_a_request_that_cannot_be_met_says_so(wanted: str, fault: str) -> None:

@@ -44,14 +44,10 @@ def answer(options: argparse.Namespace) -> Answer:
         "solvers": list(solver_names()),
         "rungs": list(LADDER),
         "formats": list(formats),
-        "plug-ins": [f"{name} ({kind})" for kind in packages for name in packages[kind]],
     }
-    origins = {
-        f"{n} ({k})": f"of the package {p}" for k in packages for n, p in packages[k].items()
-    }
-    shown = partial(
-        _text, names_by_group, {**titles, **families, **remarks(), **formats, **origins}, GUIDE
-    )
+    origins = {f"{p.name} ({kind})": p.origin for kind in KINDS for p in plugins(kind)}
+    sentences = {**titles, **families, **remarks(), **formats, **origins}
+    shown = partial(_text, {**names_by_group, "plug-ins": list(origins)}, sentences, GUIDE)
     document = {**names_by_group, "guide": dict(GUIDE), "plugins": packages}
     return Answer(PASS, document, shown)
 

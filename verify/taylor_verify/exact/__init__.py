@@ -151,7 +151,7 @@ def events(
 
     Returns
     -------
-    exact.events.Events
+    exact.event_times.Events
         The enclosed times, in the order of the motion. Each has ``t`` and ``radius``, an absolute bound:
         there is exactly one event within it. ``undecided`` are intervals in which a zero may be touched,
         or several may lie. ``passed`` says that there are none of these.
@@ -165,7 +165,7 @@ def events(
     ValueError
         For what is no finite time, and no number of digits up to ten thousand.
     """
-    from taylor_verify.exact.events import events_of
+    from taylor_verify.exact.event_times import events_of
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.scenes.reading.reader import as_scene
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -85,9 +86,8 @@ class Sampled:
 
     def __str__(self) -> str:
         """Return a line that says what it is, and each row with all digits."""
-        lines = [repr(self)[1:-1]]
+        lines, names = [repr(self)[1:-1]], [name for name, _ in self._columns()]
         for k, row in enumerate(self._rows()):
-            names = [name for name, _ in self._columns()]
             pairs = (f"{name} = {value}" for name, value in zip(names, row, strict=True))
             lines.append(f"{'' if self.times else f'row {k}: '}{', '.join(pairs)}")
         return "\n".join(lines)
@@ -95,7 +95,7 @@ class Sampled:
     def _repr_html_(self) -> str:
         """Return a picture of the quantities against time, and a table of the first rows."""
         names = [name for name, _ in self._columns()]
-        rows = [[str(value) for value in row] for row in list(self._rows())[:_MOST_SHOWN]]
+        rows = [[str(value) for value in row] for row in islice(self._rows(), _MOST_SHOWN)]
         curves = {name: column for name, column in self._columns() if name != "t"}
         drawn = picture(self.times, curves) if len(self.times) > 1 else ""
         return html_table(repr(self)[1:-1], names, rows) + drawn

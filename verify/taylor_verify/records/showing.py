@@ -49,6 +49,7 @@ def html_table(
     return f"<p>{escape(title)}</p>{listed}{shown}"
 
 
+_MOST_POINTS: Final = 500
 _COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 
 
@@ -56,8 +57,10 @@ def picture(
     times: Sequence[Any], curves: Mapping[str, Sequence[Any]], title: str = "", log: bool = False
 ) -> str:
     """Return an SVG of curves against time; a number that is not finite, or has no logarithm, is a gap."""
-    t = [float(time) for time in times]
-    heights = {name: [_height(value, log) for value in curve] for name, curve in curves.items()}
+    # No screen shows more points than these.
+    some = slice(None, None, max(1, len(times) // _MOST_POINTS))
+    t = [float(time) for time in times[some]]
+    heights = {name: [_height(v, log) for v in curve[some]] for name, curve in curves.items()}
     known = [y for curve in heights.values() for y in curve if y is not None]
     if not known or t[0] == t[-1]:
         return ""

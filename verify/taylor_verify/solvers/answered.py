@@ -57,7 +57,9 @@ def _has_names(answered: Any) -> bool:
 
 
 def _has_states(answered: Any) -> bool:
-    return hasattr(answered, "t") and getattr(getattr(answered, "y", None), "ndim", 0) == 2
+    """Return True for SciPy's result, a dict itself; a data set may have variables t and y."""
+    is_set = hasattr(answered, "data_vars") or not hasattr(answered, "t")
+    return not is_set and getattr(getattr(answered, "y", None), "ndim", 0) == 2
 
 
 def _pair(t: Any, y: Any) -> Any:

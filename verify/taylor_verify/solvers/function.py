@@ -42,12 +42,6 @@ def solver_of(answer: Any, name: str, query: str = "") -> Solver:
     return Callback(answer, "?".join(filter(None, (name, query))), settings)
 
 
-def file_of(name: str) -> str:
-    """Return the file of the module that a name says; empty where it has none."""
-    module = name.removeprefix(PREFIX).partition(":")[0]
-    return getattr(sys.modules.get(module), "__file__", None) or ""
-
-
 def _looked_up(module: str, attribute: str) -> Any:
     try:
         return reduce(getattr, attribute.split("."), _imported(module))

@@ -35,7 +35,9 @@ def keeps_contract(distribution: str) -> list[str]:
                 continue
             checked.append(f"{kind} {entry.name}")
             try:
-                check_plugin(kind, load(kind, entry))
+                content = load(kind, entry)
+                if use := _USES.get(kind):
+                    use(content)
             except Exception as error:
                 faults.append(f"{kind} {entry.name}: {error}")
     if not checked:
@@ -43,16 +45,6 @@ def keeps_contract(distribution: str) -> list[str]:
     if faults:
         raise BrokenContract("\n".join(faults))
     return checked
-
-
-def check_plugin(kind: str, content: Any) -> None:
-    """Use a plug-in once, as taylor_verify uses it. Raises an error with what was expected."""
-    from taylor_verify.records.plugins import lacks
-
-    if lack := lacks(kind, content):
-        raise BrokenContract(f"expected the plug-in {lack}")
-    if use := _USES.get(kind):
-        use(content)
 
 
 def check_reader(reader: Any, example: str | PathLike[str]) -> None:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, NamedTuple
 
+from taylor_verify.numbers.precision import float_text
 from taylor_verify.scenes.imported import volumes
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Link
@@ -38,12 +39,12 @@ class Scoped(NamedTuple):
 
 
 def scoped(part: Node, scope: str = "") -> Iterator[Scoped]:
-    """Yield every link, joint and plugin with the models around it."""
+    """Yield every link, joint and plugin with the models around it, and the gravity of a world."""
     for node in part.children:
         if node.name in ("model", "world", "gazebo"):
             inner = f"{scope}{node.attributes.get('name', '')}::" if node.name == "model" else scope
             yield from scoped(node, inner)
-        elif node.name in ("link", "joint", "plugin"):
+        elif node.name in ("link", "joint", "plugin", "gravity"):
             yield Scoped(scope, node)
 
 
@@ -124,8 +125,9 @@ def _with_buoyancy(
 ) -> Water:
     """Return the water with weight and buoyancy from the collision shapes of the link."""
     density = plugin.child("uniform_fluid_density")
+    links = [i for i in everything if i.node.name == "link"]
     node = next(
-        i.node for i in everything if _is_called(link, i.scope, i.node.attributes.get("name", ""))
+        i.node for i in links if _is_called(link, i.scope, i.node.attributes.get("name", ""))
     )
     shape = None if plugin.child("graded_buoyancy") else volumes.displaced(node, reading)
     if shape is None:
@@ -136,6 +138,10 @@ def _with_buoyancy(
         return replace(water, left_out=(*water.left_out, sentence))
     heavy = reading.number(density, density.text, density.name) if density else Fraction(1000)
     mass = shape.volume * (heavy or 0)
-    hanging = balance(link.mass, link.centre, mass, shape.centre, volumes.GRAVITY)
-    remark = f"Weight and buoyancy: {shape.sentence}, gravity (0, 0, {float(volumes.GRAVITY[2])})."
+    written = next((i.node for i in everything if i.node.name == "gravity"), None)
+    own = None if written is None else reading.vector(written, written.text, "gravity")
+    gravity = own or volumes.GRAVITY
+    hanging = balance(link.mass, link.centre, mass, shape.centre, gravity)
+    text = ", ".join(map(float_text, gravity))
+    remark = f"Weight and buoyancy: {shape.sentence}, and gravity is ({text})."
     return replace(water, hanging=hanging, remarks=(*water.remarks, remark))
