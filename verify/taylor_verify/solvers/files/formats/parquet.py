@@ -14,6 +14,7 @@ from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
+    VALUES,
     Column,
     Table,
     check_size,
