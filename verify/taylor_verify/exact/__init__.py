@@ -77,6 +77,7 @@ def exact(
         raise
 
 
+@in_turn
 def enclose(
     rates: Mapping[str, Any],
     start: Mapping[str, Any],
@@ -131,6 +132,7 @@ def enclose(
     return Field(field_of(rates, start, first)).motion(elapsed, digits)
 
 
+@in_turn
 def events(
     scene: types.Scene | str | os.PathLike[str], text: str, until: Any, digits: int = 30
 ) -> types.Events:
