@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.certify.motion import QUATERNION, Errors, Interval, Measured
 from taylor_verify.certify.pieces import Piece, Pieces, fraction
-from taylor_verify.records.certificate import Fault, Finding
+from taylor_verify.records.certificate import Fault, InterpolantFinding
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -112,7 +112,7 @@ def findings(
     nodes: Nodes,
     bound: Mapping[str, float],
     scales: Mapping[str, Sequence[float]],
-) -> tuple[Finding, ...]:
+) -> tuple[InterpolantFinding, ...]:
     """Return the faults that the errors at the nodes show."""
     faults = []
     for m in measured:
@@ -120,7 +120,7 @@ def findings(
         for k, scale in enumerate(scales[name]):
             each = nodes[name, k]
             if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                faults.append(Finding(name, fault, _at_nodes(each) / scale, bound[name]))
+                faults.append(InterpolantFinding(name, fault, _at_nodes(each) / scale, bound[name]))
     return tuple(dict.fromkeys(faults))
 
 

@@ -37,7 +37,7 @@ class Fault(Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class InterpolantFinding:
     """A fault of a quantity: its errors at the nodes, and between them."""
 
     quantity: str
@@ -63,7 +63,7 @@ class Certified:
     largest: Mapping[str, float] = field(default_factory=dict)
     rounding: Mapping[str, float] = field(default_factory=dict)
     gaps: tuple[Gap, ...] = ()
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[InterpolantFinding, ...] = ()
     tolerance: float | None = None
     because: str = ""
 
