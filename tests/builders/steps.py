@@ -14,7 +14,8 @@ from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.observed_order import Convergence, convergence
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.solver import Callback, Solver
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Trajectory
 
 Answer = Callable[[Problem, float], Any]

@@ -31,7 +31,7 @@ def bad_beginnings(source: str) -> Iterator[str]:
     """Yield the place of every docstring that begins with a word of BEGINNING."""
     for docstring in BEGINNING.finditer(source):
         line = source.count("\n", 0, docstring.start(1)) + 1
-        yield f"{line}: {docstring[0].strip()}"
+        yield f"{line}: {source.splitlines()[line - 1].strip()}"
 
 
 def nameless(source: str) -> Iterator[str]:
