@@ -44,12 +44,12 @@ def by_step(
     problem = pose(scene, rung_named(rung))
     solvers = [AtStep(answer, step) for step in steps]
     judged = [by_quantity(judgement(problem, s, s.solve(problem))) for s in solvers]
-    convergences = {}
+    orders = {}
     for name in dict.fromkeys(
         n for rows in judged for n, row in rows.items() if row.at is not None
     ):
         rows = [each.get(name) for each in judged]
         errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]
         floors = [(row.attainable or 0.0) if row else 0.0 for row in rows]
-        convergences[name] = convergence(steps, errors, floors, expected or None)
-    return convergences
+        orders[name] = convergence(steps, errors, floors, expected or None)
+    return orders

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Final
 
 import numpy as np
@@ -90,8 +91,10 @@ def _double(pieces: Any, time: float) -> list[float]:
         (DOCUMENT, {}),
         (lambda t: SPLINE(t), {"degree": 3, "nodes": NODES}),
         (TABLE, {"interpolation": "hermite"}),
+        # heyoka's continuous output: powers of the time since each step began.
+        (SimpleNamespace(times=NODES, tcs=np.moveaxis(SPLINE.c[::-1], 0, 2)), {}),
     ],
-    ids=["by name", "pieces", "callable", "samples"],
+    ids=["by name", "pieces", "callable", "samples", "Taylor series"],
 )
 def test_one_interpolant_has_one_bound(answer: Any, more: dict[str, Any]) -> None:
     """However the same cubics are handed over, the bound is the same but for the rounding of doubles."""

@@ -13,7 +13,7 @@ from mpmath import mp
 
 from taylor_verify.cli import main
 from taylor_verify.exact import events, exact
-from taylor_verify.exact.events import Events, EventTime
+from taylor_verify.exact.event_times import Events, EventTime
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 

@@ -19,7 +19,7 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 
 SCENE: Final = replace(load("euler/generic"), clock=Clock(Fraction(0), (Fraction(0), Fraction(20))))
-TIMES: Final = [float(event.t) for event in events(SCENE, "w2 = 0", 20)]
+TIMES: Final = [float(event) for event in events(SCENE, "w2 = 0", 20)]
 
 
 @pytest.mark.parametrize(

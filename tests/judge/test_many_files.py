@@ -30,7 +30,13 @@ from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.step import FileStep, Source, step_in_name, step_of_rows
+from taylor_verify.solvers.files.step import (
+    FileStep,
+    Source,
+    knob_of,
+    step_in_name,
+    step_of_rows,
+)
 
 Floats = np.ndarray[Any, Any]
 Method = Callable[..., tuple[Floats, Floats]]
@@ -158,6 +164,49 @@ def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> Non
 
 
 # The steps.
+
+
+@pytest.mark.parametrize(
+    ("name", "knob", "number"),
+    [
+        ("run_rtol1e-6.csv", "rtol", 1e-6),
+        ("run-rtol=1e-06.csv", "rtol", 1e-6),
+        ("RTOL_1e-6/run.csv", "rtol", 1e-6),
+        ("h0.1_substeps16.csv", "substeps", 16.0),
+        ("run_n4.csv", "n", 4.0),
+        ("run4.csv", "n", None),
+        ("run_atol1e-6.csv", "tol", None),
+        ("run_rtol.csv", "rtol", None),
+    ],
+)
+def test_a_name_states_the_number_of_a_knob(
+    name: str, knob: str, number: float | None, tmp_path: Path
+) -> None:
+    """Any word before a number in the name of a file, or of its folder; not the end of another word."""
+    file = tmp_path / name
+    file.parent.mkdir(exist_ok=True)
+    file.write_text("t,w1,w2,w3\n")
+    stated = knob_of(str(file), knob)
+    assert (stated.value if stated else None) == number
+
+
+def test_a_knob_orders_files_in_place_of_the_step(
+    scene: Path, files: list[str], tmp_path: Path
+) -> None:
+    """Substeps are as good as steps, in 1/substeps; a knob that no name states gives no order."""
+    named = [tmp_path / f"run_substeps{round(1 / step)}.csv" for step in STEPS]
+    for file, copy in zip(files, named, strict=True):
+        copy.write_text(Path(file).read_text())
+    judgement = taylor_verify.check(scene, named, partial=True, knob="substeps")
+    omega = order_of(judgement, "omega")
+    assert omega.order == pytest.approx(4, abs=0.2)
+    assert "from 1/substeps = 0.25 to 0.03125" in omega.sentence
+    assert "substeps is from the names of the files; --steps says others" in judgement.notes
+    other = taylor_verify.check(scene, named[:2], partial=True, knob="rtol")
+    assert other.order == ()
+    assert any("rtol of the files is not known" in note for note in other.notes)
+    with pytest.raises(ValueError, match="a list of files with knob, got one answer @ knob"):
+        taylor_verify.check(scene, named[0], knob="rtol")
 
 
 @pytest.mark.parametrize(

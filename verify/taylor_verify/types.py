@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from taylor_verify.batch.judging import Progress as Progress
     from taylor_verify.batch.selection import Selection as Selection
     from taylor_verify.certify.certificate import Certificate as Certificate
-    from taylor_verify.exact.events import Events as Events
+    from taylor_verify.exact.event_times import Events as Events
     from taylor_verify.judge.events import EventsJudgement as EventsJudgement
     from taylor_verify.judge.judgement import Judgement as Judgement
     from taylor_verify.judge.series.files import FilesJudgement as FilesJudgement
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 else:
     _PLACES = {
         "Certificate": "taylor_verify.certify.certificate",
-        "Events": "taylor_verify.exact.events",
+        "Events": "taylor_verify.exact.event_times",
         "EventsJudgement": "taylor_verify.judge.events",
         "Executor": "concurrent.futures",
         "FilesJudgement": "taylor_verify.judge.series.files",

@@ -11,8 +11,11 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.models.problem import pose
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.solvers.answered import MisshapenAnswer, answer_of
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
@@ -58,6 +61,14 @@ FORMS_OF = {
 }
 
 
+def test_a_quaternion_by_its_first_word_is_no_habit_of_a_program() -> None:
+    """quaternion=att takes att[0] ... att[3], scalar first."""
+    names = " ".join(f"att[{k}]" for k in range(4))
+    file = of_rows(np.roll(TURNS.as_quat(), 1, axis=1), names, "quaternion=att")
+    assert is_the_turn(file)
+    assert not any("habit" in note for note in file.notes)
+
+
 @pytest.mark.parametrize("wanted", FORMS_OF)
 def test_vectors_by_request(wanted: str) -> None:
     """Rotation vectors, and Rodrigues parameters of either branch, are the turn."""
@@ -93,7 +104,7 @@ def test_rodrigues_parameters_are_exact() -> None:
     [
         ("zyx=2:3", "expected 3 columns, got 2 from 2 to 3"),
         ("mrp_deg=2:4", "expected the name of one of our columns or groups, got `mrp_deg`"),
-        ("zyx=2:9", "expected columns"),
+        ("zyx=2:9", "expected a column of the file, by its name or by a number up to 4, got `9`"),
     ],
 )
 def test_a_request_that_cannot_be_met_says_so(wanted: str, fault: str) -> None:
@@ -229,3 +240,10 @@ def test_units_that_an_object_states_are_read_or_refused(kind: Any) -> None:
     assert float(file.groups["omega"][0][0]) == pytest.approx(np.pi / 180)
     with pytest.raises(Refused, match="furlong"):
         of_object(omega=kind(rates, "furlong"))
+
+
+def test_a_unit_of_a_callables_states_is_refused() -> None:
+    """A state has quantities of several units, so that one unit of all is never dropped."""
+    problem = pose(load("euler/with-attitude"), rung("f64"))
+    with pytest.raises(MisshapenAnswer, match="expected states without a unit, got deg / s"):
+        answer_of(Quantity(np.ones((3, 7)), "deg / s"), problem)

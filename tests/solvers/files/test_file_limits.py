@@ -7,15 +7,12 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
-from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from pyarrow import parquet
 
 import taylor_verify
@@ -243,16 +240,3 @@ def test_pipes_and_devices_are_never_opened(name: str, tmp_path: Path) -> None:
     device.symlink_to("/dev/zero")
     with pytest.raises(Refused, match="expected a trajectory file, got a device @"):
         read(device)
-
-
-@given(
-    content=st.binary(max_size=200), name=st.sampled_from(["a.csv", "a.json", "a.npz", "a.parquet"])
-)
-def test_any_bytes_are_read_or_refused(
-    content: bytes, name: str, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    """No content whatever raises anything but a refusal."""
-    file = tmp_path_factory.getbasetemp() / name
-    file.write_bytes(content)
-    with suppress(Refused):
-        assert read(file).times

@@ -8,6 +8,7 @@ from __future__ import annotations
 import struct
 import tomllib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -89,6 +90,16 @@ def test_degrees_of_stk_are_radians(scene: Scene, tmp_path: Path) -> None:
     first = read(written(layout, tmp_path), (), scene).groups["omega"][0]
     assert [float(w) for w in first] == [np.pi, 0, -np.pi / 2]
     assert first[0] == -2 * first[2] != Fraction(np.pi)
+
+
+def test_times_of_a_long_scene_are_no_clock(scene: Scene, tmp_path: Path) -> None:
+    """Times of 10^9 are those of a clock only where the scene ends before them."""
+    file = tmp_path / "mine.csv"
+    file.write_text("t,w1,w2,w3\n1000000000,1,2,3\n1000000001,1,2,3\n")
+    instants = tuple(k * Fraction(10**8) for k in range(21))
+    long = replace(scene, clock=replace(scene.clock, instants=instants))
+    assert read(file, (), scene).times == (0, 1)
+    assert read(file, (), long).times == (10**9, 10**9 + 1)
 
 
 # Binary formats.
@@ -278,3 +289,34 @@ def test_planar_names_mean_nothing_to_a_rigid_body(scene: Scene, tmp_path: Path)
     file = tmp_path / "mine.csv"
     file.write_text("t,u,v,r\n0,1,2,3\n1,1,2,3\n")
     assert read(file, (), scene).groups == {}
+
+
+@pytest.mark.parametrize(
+    ("omega", "quaternion", "rows"),
+    [
+        ("......", "......", (6, 6)),
+        ("......", ".n.n.n", (6, 3)),
+        ("......", "n.nn.n", (6, 2)),
+        (".n..n.", "n.nn.n", (4, 2)),
+        ("......", "...nnn", (6, 6)),
+        ("......", "..n...", (6, 6)),
+        ("......", ".nn.nn", (6, 2)),
+        ("......", ".n.nnn", (6, 6)),
+        ("..n...", "n.nn.n", (6, 2)),
+        ("nnnnnn", "......", (6, 6)),
+    ],
+)
+def test_nan_is_an_answer_unless_it_is_the_row_of_another_rate(
+    omega: str, quaternion: str, rows: tuple[int, int], tmp_path: Path
+) -> None:
+    """NaN that is rare, or that lasts to the end, stays in its group, whose error it then is."""
+    cells = {".": "1", "n": "nan"}
+    lines = [
+        ",".join([str(k), *[cells[w]] * 3, *[cells[q]] * 4])
+        for k, (w, q) in enumerate(zip(omega, quaternion, strict=True))
+    ]
+    file = tmp_path / "mine.csv"
+    file.write_text("\n".join(["t,w1,w2,w3,q0,q1,q2,q3", *lines]))
+    table = read(file)
+    has = [len(part_with(table, group).times) for group in ("omega", "quaternion")]
+    assert tuple(has) == rows

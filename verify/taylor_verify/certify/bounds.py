@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import asin, atan, pi, sqrt
+from math import asin, atan, hypot, pi, sqrt
 from typing import Final
 
 from flint import ctx
@@ -55,19 +55,19 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
     if until == scene.clock.start:
         return Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
     try:
-        errors, found, nodes = _settled(scene, pieces, measured, until)
+        errors, worst, nodes = _settled(scene, pieces, measured, until)
     except (Unsettled, Domain) as doubt:
         because = f"undecided: {doubt} @ {scene.name}"
         return Certificate(
             scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance, because=because
         )
     gaps += list(_jumps(measured, nodes, errors))
-    bound = {name: each.bound for name, each in found.items()}
+    bound = {name: each.bound for name, each in worst.items()}
     return Certificate(
         scene.name,
         bound,
-        {name: each.at for name, each in found.items()},
-        {name: each.reached for name, each in found.items()},
+        {name: each.at for name, each in worst.items()},
+        {name: each.reached for name, each in worst.items()},
         {m.quantity.name: _rounding(pieces, m, errors) for m in measured},
         tuple(gaps),
         findings(measured, nodes, bound, {m.quantity.name: _scales(m, errors) for m in measured}),
@@ -84,16 +84,16 @@ def _settled(
         try:
             with ctx.workprec(bits):
                 errors = errors_of(scene, pieces, measured, until, bits)
-                found = {m.quantity.name: _largest(m, errors) for m in measured}
+                worst = {m.quantity.name: _largest(m, errors) for m in measured}
                 nodes = nodes_of(scene, pieces, measured, errors)
         except Coarse as reason:
             if bits > _MOST_BITS or (stuck and reason.stuck is not None):
                 raise Unsettled(reason.because or "the motion is lost before its end") from None
             bits, stuck = reason.bits, reason.stuck is not None
             continue
-        is_narrow = all(f.bound <= max(_NARROW * f.reached, _NOTHING) for f in found.values())
+        is_narrow = all(f.bound <= max(_NARROW * f.reached, _NOTHING) for f in worst.values())
         if is_narrow or bits > _MOST_BITS:
-            return errors, found, nodes
+            return errors, worst, nodes
         bits *= 2
 
 
@@ -109,16 +109,9 @@ def _largest(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> Largest:
     """The largest error of a quantity, in its measure."""
     every = []
     for k, (group, scale) in enumerate(zip(of.groups, _scales(of, errors), strict=True)):
-        entry = errors[of.quantity.name, k]
-        found = largest(entry.intervals)
-        every.append(
-            Largest(
-                _measure(group, found.bound / scale),
-                _measure(group, found.reached / scale),
-                found.at,
-            )
-        )
-    return max(every, key=lambda found: found.bound)
+        bound, reached, at = largest(errors[of.quantity.name, k].intervals)
+        every.append(Largest(_measure(group, bound / scale), _measure(group, reached / scale), at))
+    return max(every)
 
 
 def _measure(group: Sequence[str], error: float) -> float:
@@ -131,16 +124,14 @@ def _measure(group: Sequence[str], error: float) -> float:
 
 
 def _scales(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> list[float]:
-    """What the errors of each group are relative to; 1 where nothing moves."""
-    measure, entries = (
-        of.quantity.measure,
-        [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)],
-    )
-    if measure is Measure.VECTORS:
-        return [entry.largest or 1.0 for entry in entries]
-    if measure is Measure.PATH:
-        return [entry.way or 1.0 for entry in entries]
-    return [1.0 for _ in entries]
+    """The size of each group by which its errors are counted; 1 where nothing moves."""
+    entries = [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)]
+    match of.quantity.measure:
+        case Measure.VECTORS:
+            return [entry.largest or 1.0 for entry in entries]
+        case Measure.PATH:
+            return [entry.way or 1.0 for entry in entries]
+    return [1.0] * len(entries)
 
 
 def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Errors]) -> float:
@@ -148,15 +139,9 @@ def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Err
     worst = 0.0
     for group, scale in zip(of.groups, _scales(of, errors), strict=True):
         for piece in pieces.each:
-            length = float(piece.end - piece.begin)
-            total = 0.0
-            for column in group:
-                p = piece.polynomials[column]
-                sizes = [
-                    abs(float(p[k].p) / float(p[k].q)) * length**k for k in range(p.degree() + 1)
-                ]
-                total += (sum((3 * k + 2) * size for k, size in enumerate(sizes)) * 2.0**-53) ** 2
-            worst = max(worst, sqrt(total) / scale)
+            columns = [enumerate(piece.sizes(column)) for column in group]
+            lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
+            worst = max(worst, hypot(*lost) * 2.0**-53 / scale)
     return worst
 
 

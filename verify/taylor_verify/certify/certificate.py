@@ -18,7 +18,7 @@ _HEADINGS = ("quantity", "bound", "near t", "reached", "rounding")
 
 @dataclass(frozen=True, repr=False)
 class Certificate(Certified):
-    """What is proven of a dense answer, and what is wrong with it; true if it passed."""
+    """Proven bounds of the error of a dense answer, and its faults; true if it passed."""
 
     def __bool__(self) -> bool:
         return self.passed

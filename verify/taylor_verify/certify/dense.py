@@ -51,7 +51,7 @@ def named(names: Sequence[str], breaks: Sequence[Any], rows: Iterator[Polynomial
 
 
 def _piece(names: Sequence[str], begin: Fraction, end: Fraction, row: Polynomials) -> Piece:
-    """One piece, which a motion backwards in time gives from its later end on."""
+    """Return one piece, which a motion backwards in time gives from its later end on."""
     piece = Piece(begin, end, dict(zip(names, row, strict=True)))
     return piece if begin <= end else piece.shifted(end, begin)
 

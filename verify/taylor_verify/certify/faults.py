@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 from itertools import pairwise
+from math import hypot
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from taylor_verify.certify.motion import QUATERNION, Errors, Interval, Measured
-from taylor_verify.certify.pieces import Piece, Pieces, rational
-from taylor_verify.records.certificate import Fault, Finding
+from taylor_verify.certify.pieces import Piece, Pieces, fraction
+from taylor_verify.records.certificate import Fault, InterpolantFinding
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -67,13 +67,13 @@ def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Nod
         left, right = ends.near(time), starts.near(time)
         if before.end != after.begin or left is None or right is None:
             continue
-        values = [(_at(before, c, after.begin), _at(after, c, after.begin)) for c in group]
-        jump = float(np.sqrt(sum(float(q - p) ** 2 for p, q in values)))
-        size = max(abs(float(p)) for p, _ in values)
+        values = [(before.value(c, after.begin), after.value(c, after.begin)) for c in group]
+        jump = hypot(*(float(q - p) for p, q in values))
+        size = sum(sum(piece.sizes(c)) for piece in (before, after) for c in group)
         slope = np.array([_slope(after, c) for c in group])
         error, derived = _ends(right, -1)
         yield Node(
-            time, jump, _ROUNDINGS * max(size, _size(after, group)), error, _ends(left, 1)[0],
+            time, jump, _ROUNDINGS * size, error, _ends(left, 1)[0],
             slope - derived if tuple(group) != QUATERNION else slope * np.nan, slope,
         )  # fmt: skip
 
@@ -95,24 +95,8 @@ class _Ends:
         return interval if abs(self._times[close] - time) <= interval.half / 2 else None
 
 
-def _at(piece: Piece, column: str, time: Fraction) -> Fraction:
-    value = piece.polynomials[column](rational(time - piece.begin))
-    return Fraction(int(value.p), int(value.q))
-
-
 def _slope(piece: Piece, column: str) -> float:
-    entry = piece.polynomials[column][1]
-    return float(Fraction(int(entry.p), int(entry.q)))
-
-
-def _size(piece: Piece, group: Sequence[str]) -> float:
-    """The sizes of the terms of a piece."""
-    length = float(piece.end - piece.begin)
-    total = 0.0
-    for column in group:
-        p = piece.polynomials[column]
-        total += sum(abs(float(Fraction(str(p[k])))) * length**k for k in range(p.degree() + 1))
-    return total
+    return float(fraction(piece.polynomials[column][1]))
 
 
 def _ends(interval: Interval, v: int) -> tuple[Floats, Floats]:
@@ -128,16 +112,16 @@ def findings(
     nodes: Nodes,
     bound: Mapping[str, float],
     scales: Mapping[str, Sequence[float]],
-) -> tuple[Finding, ...]:
+) -> tuple[InterpolantFinding, ...]:
     """Return the faults that the errors at the nodes show."""
-    found = []
+    faults = []
     for m in measured:
         name = m.quantity.name
         for k, scale in enumerate(scales[name]):
             each = nodes[name, k]
             if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                found.append(Finding(name, fault, _at_nodes(each) / scale, bound[name]))
-    return tuple(dict.fromkeys(found))
+                faults.append(InterpolantFinding(name, fault, _at_nodes(each) / scale, bound[name]))
+    return tuple(dict.fromkeys(faults))
 
 
 def _at_nodes(nodes: Sequence[Node]) -> float:

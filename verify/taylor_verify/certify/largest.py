@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import comb
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,7 @@ _ROUNDS: Final = 14
 _SLACK: Final = 2.0**-40
 
 
-@dataclass(frozen=True)
-class Largest:
+class Largest(NamedTuple):
     """The norm is at most ``bound``, near the time ``at``; somewhere it is at least ``reached``."""
 
     bound: float

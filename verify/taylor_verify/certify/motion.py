@@ -14,10 +14,10 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, arb_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, rational
+from taylor_verify.certify.pieces import Piece, Pieces
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.along import Part
-from taylor_verify.exact.events import parts_of, system
+from taylor_verify.exact.event_times import parts_of, system
 from taylor_verify.exact.written import as_written
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
@@ -49,16 +49,16 @@ class Measured:
 def measured_of(scene: Scene, columns: Sequence[str]) -> tuple[list[Measured], list[Quantity]]:
     """Return the quantities that a scene tracks and the columns have, and those that they lack."""
     known = {name: group.columns for name, group in scene.known_groups.items()}
-    found, missing = [], []
+    measured, missing = [], []
     for quantity in scene.tracked:
         groups = [known[name] for name in quantity.groups]
         if quantity.measure is Measure.ANGLE and not set(QUATERNION) <= set(columns):
             groups = [ROTATION]
         if all(column in columns for group in groups for column in group):
-            found.append(Measured(quantity, groups))
+            measured.append(Measured(quantity, groups))
         else:
             missing.append(quantity)
-    return found, missing
+    return measured, missing
 
 
 @dataclass
@@ -112,20 +112,25 @@ class _Part:
         measured: Sequence[Measured],
         errors: Mapping[tuple[str, int], Errors],
     ) -> None:
-        for each in measured:
-            for k, group in enumerate(each.groups):
-                self._measure(group, errors[each.quantity.name, k])
+        groups = [
+            (each, group, errors[each.quantity.name, k])
+            for each in measured
+            for k, group in enumerate(each.groups)
+        ]
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[:1])
         low, high = sorted((self._begin, self._begin + self._length))
         for piece in pieces.between(low, high):
             a, b = max(low, piece.begin), min(high, piece.end)
-            for each in measured:
-                for k, group in enumerate(each.groups):
-                    entry = errors[each.quantity.name, k]
-                    entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+            for each, group, entry in groups:
+                entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+        # What comes later in this part is no size so far of its intervals.
+        for _, group, entry in groups:
+            self._measure(group, entry, _SHARES[1:])
 
-    def _measure(self, group: Sequence[str], errors: Errors) -> None:
+    def _measure(self, group: Sequence[str], errors: Errors, shares: Sequence[arb]) -> None:
         """Bound how large the truth is, from below, by its values at a few times."""
-        for share in _SHARES:
+        for share in shares:
             values = [self._functions[column].over(share) for column in group]
             size = sum((v.abs_lower() ** 2 for v in values), arb(0)).sqrt().lower()
             errors.largest = max(errors.largest, float(size) * (1 - _ROUNDED))
@@ -194,15 +199,15 @@ def _rounded(polynomials: Sequence[arb_poly], beside: Sequence[arb]) -> tuple[Fl
     count = max(_counting(row) for row in sizes)
     rows, bounds = np.zeros((len(sizes), count)), np.zeros(len(sizes))
     for i, (row, size) in enumerate(zip(coefficients, sizes, strict=True)):
-        kept = row[:count]
-        rows[i, : len(kept)] = [float(e.mid()) for e in kept]
-        radii = sum((e.rad() for e in kept), beside[i])
+        leading = row[:count]
+        rows[i, : len(leading)] = [float(e.mid()) for e in leading]
+        radii = sum((e.rad() for e in leading), beside[i])
         bounds[i] = float(arb(radii).abs_upper()) + sum(size[count:]) + _ROUNDED * sum(size)
     return rows, bounds * (1 + _ROUNDED) + _LEAST
 
 
 def _counting(sizes: Sequence[float]) -> int:
-    """How many coefficients count."""
+    """The number of coefficients that count."""
     left, rest = len(sizes), 0.0
     while left > 1 and rest + sizes[left - 1] <= _NEGLIGIBLE * sum(sizes):
         left -= 1
@@ -219,8 +224,3 @@ def between(pieces: Pieces, begin: Fraction, end: Fraction) -> Iterator[tuple[Fr
         reached = max(reached, piece.end)
     if reached < end:
         yield reached, end
-
-
-def value(piece: Piece, column: str, time: Fraction) -> arb:
-    """A ball of the value of a piece."""
-    return arb(piece.polynomials[column](rational(time - piece.begin)))

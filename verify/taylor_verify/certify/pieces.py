@@ -27,6 +27,11 @@ class Piece:
     def value(self, column: str, time: Fraction) -> Fraction:
         return fraction(self.polynomials[column](rational(time - self.begin)))
 
+    def sizes(self, column: str) -> list[float]:
+        """The sizes of the terms at the end of the piece."""
+        whole = self.polynomials[column](fmpq_poly([0, rational(self.end - self.begin)]))
+        return [abs(float(fraction(entry))) for entry in whole.coeffs()]
+
     def shifted(self, begin: Fraction, end: Fraction) -> Piece:
         """The polynomials on a part of the piece."""
         inner = fmpq_poly([rational(begin - self.begin), 1])

@@ -11,7 +11,7 @@ from flint import arb, ctx
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.image import Image
-from taylor_verify.exact.events import system
+from taylor_verify.exact.event_times import system
 from taylor_verify.exact.rotation import product
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Final
 
 from taylor_verify.certify.pieces import Pieces
@@ -24,16 +23,12 @@ def check_conventions(scene: Scene, pieces: Pieces, certificate: Certified) -> N
     from taylor_verify.solvers.files.objects import trajectory
 
     every = pieces.each[:: max(1, len(pieces.each) // _MOST_ROWS)]
-    table = {"t": [_double(piece.begin) for piece in every]}
+    table = {"t": [float(piece.begin) for piece in every]}
     for column in pieces.columns:
-        table[column] = [_double(piece.value(column, piece.begin)) for piece in every]
+        table[column] = [float(piece.value(column, piece.begin)) for piece in every]
     if len(every) < 2:
         return
     judgement = judge_file(trajectory(table, scene), scene, rung("f64"), partial=True)
     if judgement.conventions:
         got = "; ".join(finding.sentence for finding in judgement.conventions)
         raise Refused([f"expected the conventions of the scene, got others: {got} @ answer"])
-
-
-def _double(value: Fraction) -> float:
-    return float(value)

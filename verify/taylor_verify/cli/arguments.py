@@ -34,7 +34,6 @@ COLOURS: Final = ("auto", "always", "never")
 _OWN_PACKAGE: Final = "taylor-verify"
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
-_TIMES: Final = ("--at", "--until")
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
 
 
@@ -63,9 +62,7 @@ _VERBS: Final = {
     "list": (
         "list the shipped scenes, families, solvers, precisions and file formats",
         "list --json",
-        """
---schema  print the JSON schema of what `run --json` and `check --json` print
-""",
+        "--schema  print the JSON schema of what `run --json` and `check --json` print",
     ),
     "scene": (
         "write a scene from a URDF, SDF or MJCF file",
@@ -108,9 +105,8 @@ scenes* SCENE  scene files, names of shipped scenes, patterns ('euler/*') or fol
         f"""
 scene {_SCENE}
 --at* T,T,...  the times: decimals or a/b, in any order, on the clock of the scene; may be repeated
---event TEXT  in place of --at: all times at which `EXPRESSION = VALUE` or `extremum EXPRESSION` happens, in
-  the names of the scene's loads, T, H2, F2 and x.y: "w2 = 0", "extremum r33"
---until T  the end of the span in which the events are, which begins at the start of the scene
+--event TEXT  in place of --at: all times of "w2 = 0", "extremum r33" or the like, by the names of loads
+--until T  the end of the span of --event, from the start of the scene
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
   there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
@@ -132,8 +128,7 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
   its first and last one (zyx_deg=5:7, mrp=2:4, rotvec=2:4); commas are part of it unless NAME= follows
 --scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
 {_RUNG_OF_FILES}
---event TEXT  judge the times of an event, the column or list `events` of the file, in place of its states:
-  how many digits are right, which are missed, which are invented; TEXT as in `exact`: "w2 = 0"
+--event TEXT  judge the column or list `events` of the file, times of "w2 = 0" or the like, not its states
 --accept-conventions  correct the conventions that the file does not share with the scene (order of the
   quaternion, axes, units, time, ...), then judge; without this option the file is judged as it stands
 --partial  accept a file that lacks tracked columns or a part of the time; without this option the answer
@@ -148,22 +143,16 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
     "certify": (
         "bound the error of a dense answer for all times",
         "certify dense.json --scene euler/generic --tolerance 1e-6",
-        """
-file FILE  pieces of polynomials as JSON, {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..] for each
-  component] for each piece]}} with powers of t - break; or a trajectory file, with --interpolation
---scene! SCENE  the scene that the file answers: a scene file, or the name of a shipped scene
---tolerance E  the error that is allowed: relative, and in radians for the attitude
---interpolation linear|cubic|hermite  what the program of the file makes of its samples: lines, the cubic
-  spline of SciPy's CubicSpline, or cubics with the slopes of the scene's equations
+        """file FILE  pieces {"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}, or samples
+--scene! SCENE  the scene that the file answers
+--tolerance E  the error that is allowed, as in `check`
+--interpolation linear|cubic|hermite  what the program of the file makes of its samples
 """,
     ),
     "explain": (
         "show the equations of a scene, its orbit in numbers, and how each bound is computed",
         "explain kirchhoff/screw --rung f80",
-        f"""
-scene {_SCENE}
-{_RUNG}
-""",
+        f"scene {_SCENE}\n{_RUNG}",
     ),
     "tradeoff": (
         "measure the time and the error of every setting of every solver",
@@ -280,7 +269,7 @@ def _with_times_attached(arguments: Sequence[str]) -> list[str]:
     """Write ``--at -5,3`` as ``--at=-5,3``: argparse takes a leading minus for an option."""
     attached: list[str] = []
     for word in arguments:
-        if attached and attached[-1] in _TIMES and _NEGATIVE_TIME.match(word):
+        if attached and attached[-1] in ("--at", "--until") and _NEGATIVE_TIME.match(word):
             attached[-1] += f"={word}"
         else:
             attached.append(word)

@@ -11,7 +11,7 @@ from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
-from taylor_verify.exact.events import events_of
+from taylor_verify.exact.event_times import events_of
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.printed_events import events_document
 from taylor_verify.exact.request import MOST_DIGITS

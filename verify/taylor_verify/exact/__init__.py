@@ -77,6 +77,7 @@ def exact(
         raise
 
 
+@in_turn
 def enclose(
     rates: Mapping[str, Any],
     start: Mapping[str, Any],
@@ -131,6 +132,7 @@ def enclose(
     return Field(field_of(rates, start, first)).motion(elapsed, digits)
 
 
+@in_turn
 def events(
     scene: types.Scene | str | os.PathLike[str], text: str, until: Any, digits: int = 30
 ) -> types.Events:
@@ -151,7 +153,7 @@ def events(
 
     Returns
     -------
-    exact.events.Events
+    exact.event_times.Events
         The enclosed times, in the order of the motion. Each has ``t`` and ``radius``, an absolute bound:
         there is exactly one event within it. ``undecided`` are intervals in which a zero may be touched,
         or several may lie. ``passed`` says that there are none of these.
@@ -165,7 +167,7 @@ def events(
     ValueError
         For what is no finite time, and no number of digits up to ten thousand.
     """
-    from taylor_verify.exact.events import events_of
+    from taylor_verify.exact.event_times import events_of
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.scenes.reading.reader import as_scene
 

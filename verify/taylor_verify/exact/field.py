@@ -21,6 +21,8 @@ from taylor_verify.exact.proving import Proving, SoFar, Times, rows_of
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.loads import Piece as Texts
 
+# Minutes of work. Beside the end of a motion steps become short before anything else shows it.
+_MOST_STEPS: Final = 20_000
 _NO_FORM: Final = np.full((0, 0), Fraction(0), dtype=object)
 
 
@@ -50,7 +52,8 @@ class Field(Proving):
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         system = self._system_until(max(times.values(), key=abs))
         course = Course.of(system, system.start_balls(), None, bits, most_bits)
-        yield from rows_of(replace(course, begin=self.loads.origin), times)
+        course = replace(course, begin=self.loads.origin, most_steps=_MOST_STEPS)
+        yield from rows_of(course, times)
 
     def _before(self, times: Times, unreached: Fraction) -> Times:
         return {place: t for place, t in times.items() if abs(t) < abs(unreached)}

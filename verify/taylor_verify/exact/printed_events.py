@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from taylor_verify.exact.events import Events, EventTime
+from taylor_verify.exact.event_times import Events, EventTime
 from taylor_verify.exact.printed import enclosed_number
 
 # Digits of the middle of an interval that proves none.

@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.events import Events, EventTime, events_of
+from taylor_verify.exact.event_times import Events, EventTime, events_of
 from taylor_verify.exact.printed_events import event_row
 from taylor_verify.models.problem import pose_as_stored
 from taylor_verify.numbers.precision import Rung
@@ -100,7 +100,7 @@ def judge_events(
 
 
 def _windows(true: Events) -> dict[mpf, mpf]:
-    """How near a time must be to answer each event."""
+    """Return the distance by event within which a time answers it."""
     every = sorted(event.t for event in (*true.times, *true.undecided))
     gaps = [b - a for a, b in pairwise(every)] or [_mpf(abs(true.until) or Fraction(1))]
     return {t: min(gaps[max(0, k - 1) : k + 1]) / _NEAR for k, t in enumerate(every)}

@@ -129,22 +129,15 @@ def _table(form: Form, parameters: Floats) -> Floats:
     J comes from steps into the complex plane, so small that nothing is neglected and nothing cancels.
     The factor of e0 in the rate of the quaternion is (0, omega)/2.
     """
-    n, others = momenta(form), [float(name == "e0") for name in form.states[momenta(form) :]]
+    n = momenta(form)
+    others = [float(name == "e0") for name in form.states[n:]]
     points = np.vstack([np.zeros(n), np.eye(n)])
-    # Axes: the states, the points, the directions.
+    # Axes: the momenta, the points, the directions.
     around = points.T[:, :, None] + 1j * _ASIDE * np.eye(n)[:, None, :]
-    rates = [
-        rate + np.zeros(around.shape[1:])
-        for rate in form.rates([*around, *others], parameters.tolist())
-    ]
-    J = (
-        np.array([rate.imag / _ASIDE for rate in rates[:n]])
-        .transpose(1, 0, 2)
-        .reshape(n + 1, n * n)
-    )
-    turns = (
-        [rate.real[:, 0] for rate in rates[n : n + 4]] if "e0" in form.states else [J[:, 0] * 0] * 4
-    )
-    entries = np.column_stack([J, *turns])
+    rates = form.rates([*around, *others], [*parameters])
+    whole = np.array([rate + np.zeros_like(around[0]) for rate in rates])
+    turns = whole[n : n + 4, :, 0] if "e0" in form.states else np.zeros((4, n + 1))
+    J = np.moveaxis(whole[:n].imag, 0, 1).reshape(n + 1, n * n) / _ASIDE
+    entries = np.hstack([J, turns.real.T])
     entries[1:] -= entries[0]
     return np.ascontiguousarray(entries)

@@ -9,7 +9,7 @@ from typing import Any
 
 
 class GapKind(Enum):
-    """What is wrong with the extent of a dense answer."""
+    """A fault of the extent of a dense answer."""
 
     JUMP = "jump"
     NOT_COVERED = "not covered"
@@ -37,7 +37,7 @@ class Fault(Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class InterpolantFinding:
     """A fault of a quantity: its errors at the nodes, and between them."""
 
     quantity: str
@@ -48,12 +48,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class Certified:
-    """What is proven of a dense answer of a scene, for all times of the span that it covers.
+    """Proven bounds of the error of a dense answer, for all times of the span that it covers.
 
     ``bound`` and ``at`` are by quantity: the largest error, in the measures of the judge (relative to the
     largest size of vectors, radians for the attitude, by the length of its way for the centre, relative to
     the largest size so far for own states), and the time near which it is reached. ``largest`` are errors
-    that are proven to be reached there, and ``rounding`` bounds what the evaluation of the pieces in
+    that are reached there, to a percent, and ``rounding`` bounds what the evaluation of the pieces in
     float64 adds. ``because`` says why nothing is proven, where that is so.
     """
 
@@ -63,7 +63,7 @@ class Certified:
     largest: Mapping[str, float] = field(default_factory=dict)
     rounding: Mapping[str, float] = field(default_factory=dict)
     gaps: tuple[Gap, ...] = ()
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[InterpolantFinding, ...] = ()
     tolerance: float | None = None
     because: str = ""
 

@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.records.faults import Refused
+from taylor_verify.records.faults import Refused, cut
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.objects import trajectory
+from taylor_verify.solvers.files.rotations import bare
 
 
 class MisshapenAnswer(ValueError):
@@ -47,7 +48,7 @@ def answer_of(answered: Any, problem: Problem) -> Any:
         return _sampled(answered, problem)
     if isinstance(answered, Mapping) or _has_names(answered):
         return _file(answered, problem)
-    _check_mask(answered)
+    _check_numbers(answered)
     return answered
 
 
@@ -104,8 +105,12 @@ def _file(answered: Any, problem: Problem) -> TrajectoryFile:
             raise MisshapenAnswer(str(fault)) from None
 
 
-def _check_mask(answered: Any) -> None:
-    """Refuse masked numbers: NumPy drops a mask."""
+def _check_numbers(answered: Any) -> None:
+    """Refuse masked numbers and a unit: NumPy drops a mask and a unit."""
+    _, unit = bare(answered)
+    if unit.strip("1 ") not in ("", "dimensionless"):
+        mend = "a state has quantities of several units: return a dict of them"
+        raise MisshapenAnswer(f"expected states without a unit, got {cut(unit)} ({mend})")
     rows = answered if isinstance(answered, list | tuple) else [answered]
     masks = [np.ma.getmaskarray(row) for row in rows if isinstance(row, np.ma.MaskedArray)]
     if masked := sum(int(np.sum(mask)) for mask in masks):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from taylor_verify.records.certificate import Certified, Fault, Finding, Gap, GapKind
+from taylor_verify.records.certificate import Certified, Fault, Gap, GapKind, InterpolantFinding
 
 
 def certificate_lines(certificate: Certified) -> list[str]:
@@ -23,7 +23,7 @@ def _verdict(bound: float, tolerance: float) -> str:
     return f"{'within' if bound <= tolerance else 'beyond'} {tolerance:g}"
 
 
-def finding_sentence(finding: Finding) -> str:
+def finding_sentence(finding: InterpolantFinding) -> str:
     """Return the sentence on a fault."""
     sizes = f"nodes right to {finding.at_nodes:.1e}, between them {finding.between:.1e}"
     if finding.fault is Fault.BETWEEN:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Final
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any, Final, cast
 
 import numpy as np
 
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
 _NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late"})
@@ -20,8 +24,7 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if not changes or _NO_SCENE & set(changes):
         return ""
     other, lines, n = right.changed(changes), list[str](), right.size
-    is_other = "mass" in changes and right.names_mass
-    if is_other or (right.is_hung and _changes_loads(other)):
+    if not _is_written(other, changes):
         return ""
     if "mass" in changes:
         key = "inertia" if n == 3 else "mass_matrix"
@@ -33,7 +36,7 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if "damping" in changes:
         lines.append(f"damping = {number(float(other.damping))}")
     if "extra" in changes:
-        texts = _loads(other)
+        texts = [text if _is_number(text) else f'"{text}"' for text in load_texts(other)]
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
             lines.append(f"{key} = {_list(texts[first : first + 3])}")
     return "; ".join(lines)
@@ -55,12 +58,32 @@ def _list(parts: Iterable[str]) -> str:
     return f"[{', '.join(parts)}]"
 
 
-def _changes_loads(other: Equations) -> bool:
-    return bool(np.any(other.extra[:, other.basis.groups["loads"].start :]))
+def changed_body(body: Body, right: Equations, changes: Changes) -> Body | None:
+    """Return a rigid body whose loads are texts, with changes of its inertia and its loads; else None."""
+    other, loads = right.changed(changes), body.loads
+    if loads is None or {"rotor", *_NO_SCENE} & set(changes) or not _is_written(other, changes):
+        return None
+    if "mass" in changes and body.MODEL == "euler":
+        inertia = tuple(tuple(map(Fraction, row)) for row in _symmetric(other.mass).tolist())
+        body = replace(cast("Any", body), inertia=inertia)
+    elif "mass" in changes:
+        return None
+    texts = load_texts(other)
+    names = VECTORS[loads.model]
+    vectors = tuple((name, tuple(texts[3 * i : 3 * i + 3])) for i, name in enumerate(names))
+    changed = body.with_loads(replace(loads, vectors=vectors))
+    return changed.with_damping(Fraction(float(other.damping)))
 
 
-def _loads(other: Equations) -> list[str]:
-    """Return each component of the loads: a number, or the text of an expression in quotes."""
+def _is_written(other: Equations, changes: Changes) -> bool:
+    """Return True if texts can say what has changed: they name no other mass, and no weight is changed."""
+    changes_loads = np.any(other.extra[:, other.basis.groups["loads"].start :])
+    is_other = "mass" in changes and other.names_mass
+    return not (is_other or (other.is_hung and changes_loads))
+
+
+def load_texts(other: Equations) -> list[str]:
+    """Return each component of the loads as a number or the text of an expression."""
     factors, words = _of_texts(other) if other.texts else _of_numbers(other)
     largest = float(np.max(np.abs(factors)))
     return [_text(row, words, largest) for row in factors]
@@ -100,7 +123,11 @@ def _text(row: Floats, words: Sequence[str], largest: float) -> str:
     if not any(word for _, word in large):
         return number(large[0][0]) if large else "0.0"
     written = " + ".join(map(_term, large))
-    return '"' + written.replace("+ -", "- ") + '"'
+    return written.replace("+ -", "- ")
+
+
+def _is_number(text: str) -> bool:
+    return not set(text) - set("0123456789.+-e")
 
 
 def _term(of: tuple[float, str]) -> str:

@@ -13,11 +13,14 @@ import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.bodies import faults_of_bodies
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.changed_scene import changed_body
 from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.proof import ROUNDINGS, may_leave
-from taylor_verify.scenes.loads.grammar import Fault
+from taylor_verify.judge.causes.terms import faults_of_terms
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
@@ -26,14 +29,21 @@ _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -
 # What a candidate leaves of the error at the first wrong row, at most; that is so many roundings large.
 _NEAR: Final = 0.01
 _CLEAR: Final = 300.0
-# The work of the exact motion for a row, and for an instant of held states.
+# The work of an exact motion: to begin it, and for each row and each instant of held states.
+_BEGIN: Final = 40_000.0
 _WORK: Final = 6_000.0
 
 
 @dataclass(frozen=True)
 class _Changed:
     name: str
-    loads: Loads
+    body: Body
+    is_fault: bool = False
+
+    @property
+    def loads(self) -> Loads:
+        assert self.body.loads is not None
+        return self.body.loads
 
 
 def cause_in_states(answer: Answer) -> list[Cause]:
@@ -45,7 +55,9 @@ def cause_in_states(answer: Answer) -> list[Cause]:
     if scene is None or scene.body.loads is None or not answer.moving:
         return []
     with suppress(Spent):
-        for changed in _candidates(scene.body.loads, answer):
+        for changed in _candidates(scene.body, answer):
+            if proven and changed.is_fault:
+                break
             # A change may leave a text that no scene may have, such as a jump by the state.
             with suppress(ValueError, ArithmeticError, Unsettled):
                 if leaves := _leaves(answer, changed):
@@ -57,15 +69,15 @@ def cause_in_states(answer: Answer) -> list[Cause]:
 def _leaves(answer: Answer, changed: _Changed) -> dict[str, float]:
     """Return what a changed scene leaves of each error; empty where it is not proven."""
     assert answer.scene is not None
-    if any(isinstance(each, Fault) for each in changed.loads.faults()):
+    if next(changed.loads.faults(), None):
         return {}
-    body = answer.scene.body.with_loads(changed.loads)
-    exact = ExactMotion(replace(answer.scene, body=body), answer.file.c is not None)
+    exact = ExactMotion(replace(answer.scene, body=changed.body), answer.file.c is not None)
 
     def left(rows: list[int]) -> dict[str, float]:
         part = answer.at(rows)
         times = [Fraction(t) for t in part.times.tolist()]
-        answer.budget.spend(_WORK * (len(rows) + len(changed.loads.instants(times[-1]))))
+        instants = len(changed.loads.instants(times[-1]))
+        answer.budget.spend(_BEGIN + _WORK * (len(rows) + instants))
         motion = exact.at(times, answer.right.has_momenta)
         errors = part.errors(motion)
         return {name: float(np.max(errors[name])) for name in answer.failed}
@@ -90,7 +102,20 @@ def _first_wrong(answer: Answer) -> int:
     return min((int(rows[0]) for rows in clear if len(rows)), default=answer.count - 1)
 
 
-def _candidates(loads: Loads, answer: Answer) -> Iterator[_Changed]:
+def _candidates(body: Body, answer: Answer) -> Iterator[_Changed]:
+    """Yield changed states, or held loads, and then the faults of terms and bodies."""
+    loads = body.loads
+    assert loads is not None
+    own = _of_states(loads) if loads.states else _held(loads, answer)
+    for name, changed in own:
+        yield _Changed(name, body.with_loads(changed))
+    right = answer.right
+    for fault in (*faults_of_terms(right), *faults_of_bodies(right)) if answer.has_states else ():
+        if other := changed_body(body, right, fault.changes):
+            yield _Changed(fault.name, other, is_fault=True)
+
+
+def _of_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
     held, own = loads.held_states, [s for s in loads.states if isinstance(s, Continuous)]
     for state in held:
         yield from _without_delay(loads, state)
@@ -100,9 +125,7 @@ def _candidates(loads: Loads, answer: Answer) -> Iterator[_Changed]:
         yield from _at_other_rates(loads, held)
     for each, (words, factor) in product(own, _WRONG_RATES):
         rate = tuple(f"{factor}*({entry})" for entry in each.rate)
-        yield _Changed(f"{each.name} {words}", _with(loads, each, replace(each, rate=rate)))
-    if not loads.states:
-        yield from _held(loads, answer)
+        yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
 
 
 def _with(loads: Loads, old: State, *new: State) -> Loads:
@@ -111,13 +134,13 @@ def _with(loads: Loads, old: State, *new: State) -> Loads:
     return replace(loads, states=states)
 
 
-def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[_Changed]:
+def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[tuple[str, Loads]]:
     for factor in _RATES:
         every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
         names = " and ".join(state.name for state in held)
         states = tuple(_slower(state, factor) for state in loads.states)
         name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
-        yield _Changed(name, replace(loads, states=states))
+        yield name, replace(loads, states=states)
 
 
 def _ratio(factor: Fraction) -> str:
@@ -130,33 +153,33 @@ def _slower(state: State, factor: Fraction) -> State:
     return replace(state, every=factor * state.every, offset=factor * state.offset)
 
 
-def _without_delay(loads: Loads, state: Held) -> Iterator[_Changed]:
+def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:
     """Yield a state that only repeats another one, without its delay."""
     for other in loads.held_states:
         if other is not state and state.value == other.components:
             taken = replace(other, name=state.name, start=state.start)
-            yield _Changed(f"{state.name} without its delay", _with(loads, state, taken))
+            yield f"{state.name} without its delay", _with(loads, state, taken)
 
 
-def _late(loads: Loads, state: Held) -> _Changed:
+def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
     """Return a state whose values are used one sample late."""
     now = replace(state, name=f"{state.name}_now")
     start = state.start or (Fraction(0),) * len(state.components)
     late = replace(state, start=start, value=now.components)
     name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
-    return _Changed(name, _with(loads, state, now, late))
+    return name, _with(loads, state, now, late)
 
 
-def _continuous(loads: Loads, held: tuple[Held, ...]) -> _Changed:
+def _continuous(loads: Loads, held: tuple[Held, ...]) -> tuple[str, Loads]:
     """Return held states as continuous functions of the state."""
     texts = [pair for each in held for pair in zip(each.components, each.value, strict=True)]
     left = tuple(state for state in loads.states if not isinstance(state, Held))
     names = " and ".join(state.name for state in held)
     changed = replace(loads, definitions=(*loads.definitions, *texts), states=left)
-    return _Changed(f"{names} continuous, where the scene samples", changed)
+    return f"{names} continuous, where the scene samples", changed
 
 
-def _held(loads: Loads, answer: Answer) -> Iterator[_Changed]:
+def _held(loads: Loads, answer: Answer) -> Iterator[tuple[str, Loads]]:
     """Yield loads that are taken once in a row, or several times, and held in between."""
     spacing = Fraction(float(np.median(np.diff(answer.times)))).limit_denominator(10**6)
     if not spacing > 0:
@@ -172,4 +195,4 @@ def _held(loads: Loads, answer: Answer) -> Iterator[_Changed]:
             for name, entries in loads.vectors
         )
         name = f"loads taken every {float(every):.6g} and held in between"
-        yield _Changed(name, replace(loads, vectors=vectors, states=states))
+        yield name, replace(loads, vectors=vectors, states=states)

@@ -11,6 +11,7 @@ from datetime import datetime
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
+from math import nan
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -137,13 +138,13 @@ def _sums(
         at = f"{place}, row {row}, column {cut(fractions.name)}"
         try:
             seconds, below = map(exact, pair)
-        except ValueError as error:
-            faults.add(str(error), " ".join(map(shown, pair)), at)
-            return
-        if not 0 <= below < parts:
+        except ValueError:
+            # A row of another topic, or no time at all.
+            seconds, below = nan, Fraction(0)
+        if below < 0 or below >= parts:
             faults.add(f"less than a second, {parts} of which are one", shown(pair[1]), at)
             return
-        yield seconds + Fraction(below) / parts
+        yield seconds + Fraction(below) / parts if below == below else nan
 
 
 # One clock.
@@ -189,11 +190,15 @@ class _Clock:
 
     @cached_property
     def is_of_the_day(self) -> bool:
-        """True for times of a calendar or since 1970, which no scene begins at."""
-        start = self._scene.clock.start if self._scene else Fraction(0)
-        return self._is_calendar or (
-            abs(start) < _CLOCK[0] <= self._first * self._factor < _CLOCK[1]
-        )
+        """True for times of a calendar, and for such since 1970 that are beyond the scene."""
+        since_1970 = _CLOCK[0] <= self._first * self._factor < _CLOCK[1]
+        return self._is_calendar or (since_1970 and self._first * self._factor > self._last)
+
+    @cached_property
+    def _last(self) -> Fraction:
+        """The last instant of the scene."""
+        clock = self._scene.clock if self._scene else None
+        return max(clock.start, clock.instants[-1]) if clock else Fraction(0)
 
     @cached_property
     def times(self) -> list[Any]:
@@ -221,7 +226,7 @@ class _Clock:
         if self._scene is None:
             return (self.is_of_the_day, False, 0)
         clock = self._scene.clock
-        span = max(abs(time) for time in clock.elapsed)
+        span = abs(clock.elapsed[-1])
         is_apart = self.is_of_the_day or abs(self.times[0] - clock.start) > _NEAR * span
         is_beyond = abs(self.times[-1] - clock.start) > span * (1 + _NEAR)
         instants = set(map(float, clock.instants))

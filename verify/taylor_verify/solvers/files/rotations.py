@@ -48,6 +48,6 @@ def _of_rotation(value: Any) -> dict[str, Any]:
 def bare(value: Any) -> tuple[Any, str]:
     """Return the numbers of a quantity with a unit, of astropy or pint, and its unit as text."""
     for numbers, unit in (("value", "unit"), ("magnitude", "units")):
-        if hasattr(value, numbers) and hasattr(value, unit):
+        if hasattr(value, numbers) and getattr(value, unit, None) is not None:
             return getattr(value, numbers), str(getattr(value, unit))
     return value, ""

@@ -7,7 +7,7 @@ another description. What a program's manual says of its names is applied.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import inf
+from math import inf, nan
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -97,15 +97,16 @@ def _settled(
     every: Sequence[_Description], choices: Sequence[Choice], place: str, faults: Faults
 ) -> tuple[_Description | None, list[str]]:
     """Return the first of the descriptions, which all agree; it is a fault where two do not."""
-    if len(choices) < 2:
+    if len(choices) < 2 and not (choices and choices[0].doubt):
         return (every[0] if every else None), []
-    right = next((each for each in every if not each.choice.doubt), every[0]).matrices
-    apart = [_apart(each.matrices, right) for each in every]
+    sure = [each for each in every if not each.choice.doubt]
+    apart = [_apart(each.matrices, sure[0].matrices) if sure else inf for each in every]
     agree = [each for each, angle in zip(every, apart, strict=True) if angle <= _AGREE]
     if [each.choice for each in agree] != list(choices):
         got = " and ".join(choice.shown for choice in choices)
+        got += ", which differ" if sure else f": {choices[0].doubt}"
         mend = "say which: --columns q0=NAME,... or r11=NAME,... or zyx=NAME:NAME"
-        faults.add("the attitude once", f"{got}, which differ", place, mend)
+        faults.add("the attitude once", got, place, mend)
         return None, []
     first, *others = agree
     scalar = f": the scalar is {first.order}" if first.order else ""
@@ -138,7 +139,7 @@ def _transposed(row: Numbers) -> Numbers:
 def _in_body(omega: Numbers, q: Numbers) -> Numbers:
     """Return R^T omega for a quaternion of any length."""
     square = sum(part * part for part in q)
-    return [part / square for part in apply(transpose(rotation(q)), omega)]
+    return [part / square if square else nan for part in apply(transpose(rotation(q)), omega)]
 
 
 def _in_body_by_matrix(omega: Numbers, R: Numbers) -> Numbers:

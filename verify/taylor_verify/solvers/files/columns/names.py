@@ -141,7 +141,7 @@ def _spellings() -> Iterator[Spelling]:
     for stem, scalar in product(_ATTITUDES.split(), "ws"):
         yield Spelling("quaternion", tuple(stem + c for c in (scalar, *_LETTERS)))
     for stem, first in product(_ATTITUDES.split(), (1, 0)):
-        if (stem, first) != ("q", 0):
+        if (stem, first) not in (("q", 0), ("orn", 0)):
             keys = tuple(f"{stem}{first + k}" for k in range(4))
             yield Spelling("quaternion", keys, doubt=_DOUBT)
     yield Spelling(

@@ -94,15 +94,32 @@ def _of_group(
     """Return the columns of a whole group: between two ends, or with one word before each."""
     if group == "time":
         return [("t", theirs)]
-    ours, ends = GROUPS[group], theirs.split(":")
-    places = [place for end in ends if (place := _place(end, names)) is not None]
-    if len(ends) == len(places) == 2:
-        texts = [name.text for name in names[places[0] : places[1] + 1]]
-        if len(texts) == len(ours):
-            return list(zip(ours, texts, strict=True))
+    ends = theirs.split(":")
+    places = {end: place for end in ends if (place := _place(end, names)) is not None}
+    if len(ends) == 2 and places:
+        return _between(GROUPS[group], ends, places, names, at, faults)
+    return _of_stem(group, theirs, names, at, faults)
+
+
+def _between(
+    ours: Sequence[str],
+    ends: Sequence[str],
+    places: Mapping[str, int],
+    names: Sequence[Name],
+    at: str,
+    faults: Faults,
+) -> list[tuple[str, str]]:
+    """Return the columns from one end to the other."""
+    if missing := [end for end in ends if end not in places]:
+        expected = f"a column of the file, by its name or by a number up to {len(names)}"
+        faults.add(expected, f"`{cut(missing[0])}`", at)
+        return []
+    first, last = (places[end] for end in ends)
+    texts = [name.text for name in names[first : last + 1]]
+    if len(texts) != len(ours):
         faults.add(f"{len(ours)} columns", f"{len(texts)} from {ends[0]} to {ends[1]}", at)
         return []
-    return _of_stem(group, theirs, names, at, faults)
+    return list(zip(ours, texts, strict=True))
 
 
 def _place(end: str, names: Sequence[Name]) -> int | None:

@@ -114,7 +114,7 @@ class _Chooser:
             names = tuple(asked[name] for name in ours)
             units = tuple(self.candidates.asked_unit(name, group) for name in ours)
             spelling = self.candidates.of_clock(names[0]) if group == "time" else None
-            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours)
+            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours and not s.whose)
             return Choice(group, names, units, Rank.ASKED, spelling)
         every = self.candidates.of(group, self.chosen)
         clear = [choice for choice in every if not choice.doubt]

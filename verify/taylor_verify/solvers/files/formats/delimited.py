@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
@@ -23,6 +24,7 @@ from taylor_verify.solvers.files.formats.column import (
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.header import (
     MARKS,
+    MOST_CHARACTERS,
     MOST_LINES,
     Head,
     Line,
@@ -48,7 +50,7 @@ def read(file: Content, path: Path, part: str) -> Table:
 def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
     """Return the columns of the table that stands from the ``first`` line on."""
     try:
-        top = head(list(islice(_lines(file, first, with_comments=True), MOST_LINES)), marks)
+        top = head(_first_lines(file, first), marks)
         if top is None:
             raise refusal("a header line and rows", "an empty file", path)
         names, columns = _columns(file, top, path)
@@ -63,6 +65,20 @@ def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterat
     for number, text in enumerate(file.lines(), start=1):
         if number >= first and text.strip() and (with_comments or not is_comment(text)):
             yield Line(number, text)
+
+
+def _first_lines(file: Content, first: int) -> list[Line]:
+    """Return the lines among which the header stands: the first ones, and the last comments before."""
+    comments, others, size = deque[Line](maxlen=MOST_LINES), list[Line](), 0
+    for line in _lines(file, first, with_comments=True):
+        if line.is_comment and len(line.text) < MOST_CHARACTERS:
+            comments.append(line)
+        elif not line.is_comment:
+            others.append(line)
+            size += len(line.text)
+        if len(others) == MOST_LINES or (len(others) > 1 and size > MOST_CHARACTERS):
+            break
+    return sorted([*comments, *others])
 
 
 class _Rows:

@@ -22,6 +22,7 @@ from taylor_verify.solvers.files.formats.column import (
     VALUES,
     Column,
     Table,
+    check_size,
     refuse_part,
     shown,
 )
@@ -48,7 +49,7 @@ def read(file: Content, path: Path, part: str) -> Table:
         counted = enumerate(document, start=1)
         return table((_object(each, f"{path}, row {k}") for k, each in counted), path)
     if isinstance(document, dict) and isinstance(document.get("columns"), dict | list):
-        document = _by_name(document["columns"], document.get("data"))
+        document = _by_name(document["columns"], document.get("data"), path)
     while isinstance(document, dict) and len(document) == 1:
         (inner,) = document.values()
         if not isinstance(inner, dict):
@@ -66,10 +67,11 @@ def read(file: Content, path: Path, part: str) -> Table:
     return Table(columns)
 
 
-def _by_name(names: Any, rows: Any) -> Any:
+def _by_name(names: Any, rows: Any, path: Path) -> Any:
     """Return the columns of a table whose rows stand apart from their names, as pandas splits it."""
     if isinstance(names, dict) or not isinstance(rows, list):
         return names
+    check_size(len(names), len(rows), path)
     return {str(n): [_entry(row, k) for row in rows] for k, n in enumerate(names)}
 
 

@@ -10,10 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats.column import Column, Table, check_size
 
@@ -21,8 +23,25 @@ _DEEPEST: Final = 10
 _MOST_NAMED: Final = 8
 _COMPONENT: Final = re.compile(r"(.*\D)?(?:[0-9]+|[wxyz])")
 _NOTHING: Final = ""
-# The paths of the numbers of an object, and those of its inner objects.
-Shape = tuple[frozenset[str], frozenset[str]]
+_SHAPES: Final = Limit(1000, "different sets of fields", "messages of one type have some tens")
+
+
+class Shape(NamedTuple):
+    """The paths of the numbers of an object, those of its inner objects, and the names of its vectors."""
+
+    names: frozenset[str]
+    inner: frozenset[str]
+    vectors: frozenset[str]
+
+    def lacks_zero(self, name: str) -> bool:
+        """Return True if an object without this field has left it out because it is zero."""
+        parent = name.rpartition(".")[0]
+        if name in self.names or name.endswith("]"):
+            return False
+        if parent:
+            return parent in self.inner
+        stem = _stem(name)
+        return stem in self.vectors if stem else _is_time(name)
 
 
 @dataclass
@@ -54,8 +73,9 @@ class Entries:
 
     @property
     def shape(self) -> Shape:
-        """The paths of the numbers, and those of the inner objects."""
-        return frozenset(self.values), frozenset(self.inner)
+        """The paths of what is there."""
+        vectors = frozenset(filter(None, map(_stem, self.values)))
+        return Shape(frozenset(self.values), frozenset(self.inner), vectors)
 
 
 def table(rows: Iterable[Entries], path: Path) -> Table:
@@ -72,7 +92,9 @@ def table(rows: Iterable[Entries], path: Path) -> Table:
         for name, values in columns.items() if len(row.values) < len(columns) else ():
             if name not in row.values:
                 values.append(_NOTHING)
-        of_rows.append(shapes.setdefault(row.shape, row.shape))
+        shape = row.shape
+        of_rows.append(shapes.setdefault(shape, shape))
+        _SHAPES.check(len(shapes), path)
     if not columns:
         raise refusal('objects {"t": ..., "w1": ...}', "none with a number", path)
     zero = [name for name in columns if _fill(columns[name], name, of_rows, shapes)]
@@ -84,26 +106,19 @@ def table(rows: Iterable[Entries], path: Path) -> Table:
 
 def _fill(values: list[Any], name: str, of_rows: Sequence[Shape], shapes: Iterable[Shape]) -> bool:
     """Write a zero where a field was left out because it is one; return True if it was anywhere."""
-    lacking = {shape for shape in shapes if _lacks_zero(name, *shape)}
+    lacking = {shape for shape in shapes if shape.lacks_zero(name)}
     for k, shape in enumerate(of_rows) if lacking else ():
         if shape in lacking:
             values[k] = "0"
     return bool(lacking)
 
 
-def _lacks_zero(name: str, names: frozenset[str], inner: frozenset[str]) -> bool:
-    """Return True if an object without this field has left it out because it is zero."""
-    parent = name.rpartition(".")[0]
-    if name in names or name.endswith("]"):
-        return False
-    if parent:
-        return parent in inner
-    stem = _stem(name)
-    if stem:
-        return any(_stem(other) == stem for other in names)
+@lru_cache
+def _is_time(name: str) -> bool:
     return any(reading.spelling.group == "time" for reading in Name(Column(name, ())).readings)
 
 
+@lru_cache(4096)
 def _stem(name: str) -> str:
     """Return the name of a vector without its component; empty for what is no component."""
     match = _COMPONENT.fullmatch(name)

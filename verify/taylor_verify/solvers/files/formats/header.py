@@ -11,23 +11,25 @@ import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.units import DIMENSION, in_brackets
-from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.files.formats.column import COLUMNS, Column
 from taylor_verify.solvers.files.formats.epochs import is_epoch
 from taylor_verify.solvers.values import is_number
 
-# A header stands among the first lines of its file.
-MOST_LINES: Final = 200
+# A header stands among the first lines of its file, which have no more characters than this.
+MOST_LINES: Final = 100
+MOST_CHARACTERS: Final = 2**18
 COMMENTS: Final = ("#", "%")
 _BLANKS: Final = ""
 MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
 # A name with its unit in brackets, between blanks.
-_WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?")
+_WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s{0,3}[\[(][^\[\]()]{0,40}[\])])?")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _MOSTLY: Final = 0.5
@@ -131,6 +133,8 @@ def _mark(text: str, marks: Sequence[str]) -> str | None:
 
 
 def _share(cells: Sequence[str]) -> float:
+    if len(cells) > COLUMNS.most:
+        return 0.0
     texts = [cell for cell in cells if cell]
     return sum(map(is_value, texts)) / max(len(texts), 1)
 
@@ -184,6 +188,8 @@ def _names(line: Line, mark: str, row: Sequence[str]) -> _Names | None:
     """Return the names in a line, if there are as many as cells in a row of numbers."""
     readings = [_fitting(cells, row) for cells in _ways(line.bare, mark)]
     named = [cells for cells in readings if cells and not any(map(is_value, cells))]
+    if line.is_comment:
+        named = [cells for cells in named if len(set(cells)) == len(cells)]
     if not named:
         return None
     cells = max(named, key=_known)
@@ -210,7 +216,12 @@ def _fitting(cells: Sequence[str], row: Sequence[str]) -> list[str]:
 
 
 def _known(names: Sequence[str]) -> int:
-    return sum(bool(Name(Column(name, ())).readings) for name in names)
+    return sum(map(_is_known, names))
+
+
+@lru_cache(4096)
+def _is_known(name: str) -> bool:
+    return bool(Name(Column(name, ())).readings)
 
 
 # Units.

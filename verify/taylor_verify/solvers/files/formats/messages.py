@@ -7,8 +7,7 @@ geometry_msgs/TransformStamped the same as a transform
 geometry_msgs/QuaternionStamped
 geometry_msgs/TwistStamped     twist in axes of the frame of the header, with covariance or without
 
-The time is the stamp of the header, to the nanosecond. Stamps of a clock, those after the year 2001, count
-from the first message; others are the time of a simulation, and are taken as they are.
+The time is the stamp of the header, to the nanosecond.
 """
 
 from __future__ import annotations
@@ -24,8 +23,6 @@ from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table
 
-# A second count that no simulation reaches, and every clock has since 2001.
-_CLOCK: Final = 10**9
 _MOST_LISTED: Final = 20
 MESSAGE_BYTES: Final = Limit(2**20, "bytes in a message", "one that tells a motion has a thousand")
 
@@ -119,9 +116,9 @@ def table(topic: Topic, messages: Iterable[Any], path: Path) -> Table:
         # The definition of Imu: the message has no estimate of its orientation.
         columns = {name: values for name, values in columns.items() if name[0] != "q"}
         notes.append("orientation is not read: its covariance says, by -1, that there is none")
-    times, note = _times(stamps)
+    times = [Decimal(stamp).scaleb(-9) for stamp in stamps]
     read = [Column("t", times), *(Column(name, values) for name, values in columns.items())]
-    return Table(read, (*notes, note))
+    return Table(read, tuple(notes))
 
 
 def _nanoseconds(stamp: Any) -> int:
@@ -134,12 +131,3 @@ def _frames(message: Any) -> str:
     frames = (getattr(message, "child_frame_id", ""), message.header.frame_id)
     named = cut(" to ".join(filter(None, frames)))
     return f", frame {named}" if named else ""
-
-
-def _times(stamps: Sequence[int]) -> tuple[list[Decimal], str]:
-    """Return the stamps in seconds, and a note on where they count from."""
-    note, zero = "t is the stamp of the header", 0
-    if stamps and min(stamps) >= _CLOCK * 10**9:
-        zero = stamps[0]
-        note = f"t counts from the first stamp, {zero // 10**9}.{zero % 10**9:09} s"
-    return [Decimal(stamp - zero).scaleb(-9) for stamp in stamps], note

@@ -14,6 +14,7 @@ from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
+    VALUES,
     Column,
     Table,
     check_size,
@@ -23,6 +24,7 @@ from taylor_verify.solvers.files.formats.content import Content
 
 # Sixty characters of a number, and as many bytes more as some remarks have.
 _WIDEST: Final = 64
+_ROWS_AT_ONCE: Final = 256
 _TEXT_BYTES: Final = 2**24
 
 
@@ -37,7 +39,7 @@ def read(file: Content, path: Path, part: str) -> Table:
         long = _long_texts(footer, texts)
         reader = parquet.ParquetFile(file.binary, read_dictionary=texts)
         wanted = [name for name in names if name not in long]
-        table = _flat(reader.read(wanted, use_threads=False))
+        table = _flat(_in_parts(reader, wanted, path))
         _check_texts(table, texts, path)
         table = _seconds(_without_lists(table, path))
     except MemoryError:
@@ -53,6 +55,20 @@ def read(file: Content, path: Path, part: str) -> Table:
     ]
     notes += [f"not read, because they hold no numbers: {cut(', '.join(left))}"] if left else []
     return Table(columns, tuple(notes))
+
+
+def _in_parts(reader: Any, names: Sequence[str], path: Path) -> Any:
+    """Return the table; one with lists is read in parts, because nothing says how long its lists are."""
+    import pyarrow as pa
+
+    parts, count = [], 0
+    has_lists = any(_is_list(field.type) for field in reader.schema_arrow)
+    options = {"columns": names, "use_threads": False}
+    for part in reader.iter_batches(_ROWS_AT_ONCE, **options) if has_lists else ():
+        count += sum(len(c.flatten()) for c in part.columns if _is_list(c.type))
+        VALUES.check(count, path)
+        parts.append(part)
+    return pa.Table.from_batches(parts) if parts else reader.read(**options)
 
 
 def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
@@ -145,9 +161,9 @@ def _without_lists(table: Any, path: Path) -> Any:
         if lengths["min"] != lengths["max"] or column.null_count:
             got = f"lists of {lengths['min']} to {lengths['max']}"
             raise refusal("lists of one length", got, f"{path}, column {name}")
+        check_size(len(columns) + (lengths["max"] or 0), len(column), path)
         for k in range(lengths["max"] or 0):
             columns[f"{name}[{k}]"] = pc.list_element(column, k)
-        check_size(len(columns), len(column), path)
     return pa.table(columns)
 
 

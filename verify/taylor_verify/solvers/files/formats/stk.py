@@ -41,7 +41,8 @@ def read(file: Content, path: Path, part: str) -> Table:
             if names:
                 if len(words) != len(names) + 1:
                     ragged(f"{len(names) + 1} numbers", str(len(words)), place)
-                rows.append(words)
+                else:
+                    rows.append(words)
                 ROWS.check(len(rows), path)
             elif word.startswith("attitudetime"):
                 names = _named(word, words[0], keywords.get("sequence", ""), place)
@@ -54,7 +55,8 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise Refused(faults.lines)
     columns = map(list, zip(*rows, strict=True)) if rows else ([] for _ in ("t", *names))
     read = [Column(name, values) for name, values in zip(("t", *names), columns, strict=True)]
-    note = f"the attitude is that of body axes from {cut(keywords.get(_AXES, 'the axes of the file'))} "
+    axes = cut(keywords.get(_AXES, "the axes of the file"))
+    note = f"{axes} is taken for the space axes of the scene"
     return Table(read, (note,))
 
 

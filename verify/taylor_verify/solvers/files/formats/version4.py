@@ -59,12 +59,11 @@ def _order(start: bytes) -> str | None:
 def arrays(content: bytes, path: Path) -> Iterator[Array]:
     """Yield the matrices, or the variables of a result of Modelica."""
     try:
-        matrices = {matrix.name: matrix for matrix in _matrices(content)}
+        matrices = {matrix.name: matrix for matrix in _matrices(content, path)}
     except Refused:
         raise
     except (ValueError, struct.error) as error:
         raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
-    COLUMNS.check(len(matrices), path)
     if matrices.keys() >= set(_MODELICA):
         yield from _of_modelica(matrices, path)
         return
@@ -77,8 +76,8 @@ def _array(name: str, values: np.ndarray[Any, Any], kind: str) -> Array:
     return Array(name, values.shape, kind, values.dtype.itemsize, lambda: values)
 
 
-def _matrices(content: bytes) -> Iterator[_Matrix]:
-    order, place = _order(content), 0
+def _matrices(content: bytes, path: Path) -> Iterator[_Matrix]:
+    order, place, count = _order(content), 0, 0
     while place < len(content):
         kind, *shape, imaginary, length = struct.unpack_from(f"{order}5i", content, place)
         form = np.dtype(f"{order}{_STORED[kind // 10 % 10]}") if 0 <= kind // 10 % 10 < 6 else None
@@ -91,6 +90,8 @@ def _matrices(content: bytes) -> Iterator[_Matrix]:
         name = content[place + _HEADER : start].rstrip(b"\0").decode("latin-1")
         values = np.frombuffer(content, form, prod(shape), start).reshape(shape, order="F")
         yield _Matrix(name, kind % 10 if not imaginary else -1, values)
+        count += 1
+        COLUMNS.check(count, path)
         place = start + size * (1 + bool(imaginary))
 
 

@@ -122,9 +122,9 @@ def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Pictur
 
 
 def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
-    looks = {line.name: line.look.line for panel in drawn for line in panel.lines}
+    styles = {line.name: line.look.line for panel in drawn for line in panel.lines}
     # What carries an engine, behind the comma, is left out.
-    entries: list[Entry] = [(look, name.partition(",")[0]) for name, look in looks.items()]
+    entries: list[Entry] = [(look, name.partition(",")[0]) for name, look in styles.items()]
     note = "Each engine by its best setting; dashed: a plain solver, in float64."
     figure, places = sheet(len(drawn), entries, note, _HEIGHT)
     spots = [point for panel in drawn for line in panel.lines for point in line.points]

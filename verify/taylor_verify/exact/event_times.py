@@ -45,6 +45,9 @@ class EventTime:
     t: mpf
     radius: mpf
 
+    def __float__(self) -> float:
+        return float(self.t)
+
 
 @dataclass(frozen=True)
 class Events:
