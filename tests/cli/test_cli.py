@@ -418,7 +418,6 @@ def test_a_name_that_means_nothing_is_a_wrong_call(capsys: Captured, arguments: 
         ["bogus"],
         ["run", "--rung"],
         ["run", "euler/generic", "--bogus"],
-        ["exact", "euler/generic"],
         ["exact", "--at", "1"],
         ["exact", "euler/generic", "euler/backward", "--at", "1"],
         ["exact", "euler/generic", "--at", "1", "--digits", "ten"],
@@ -434,6 +433,15 @@ def test_a_call_that_cannot_be_read_ends_with_2(capsys: Captured, arguments: lis
     out, error = capsys.readouterr()
     assert out == ""
     assert "usage: taylor-verify" in error
+
+
+def test_exact_asks_for_times_or_an_event(capsys: Captured) -> None:
+    """One of both is asked for, and a call with neither says so."""
+    assert main(["exact", "euler/generic"]) == 2
+    assert (
+        "expected one of --at T,T,... and --event TEXT --until T, got none"
+        in capsys.readouterr().err
+    )
 
 
 def test_an_error_nobody_foresaw_is_one_line_with_its_place(

@@ -26,7 +26,8 @@ def answer(options: argparse.Namespace) -> Answer:
             f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
         )
     if (options.event is None) is (options.at is None):
-        raise WrongCall("expected one of --at T,T,... and --event TEXT --until T")
+        got = "none" if options.event is None else "both"
+        raise WrongCall(f"expected one of --at T,T,... and --event TEXT --until T, got {got}")
     if (options.event is None) is not (options.until is None):
         raise WrongCall("expected --event TEXT and --until T together")
     return _of_times(options) if options.event is None else _of_events(options)

@@ -142,14 +142,14 @@ def _stage(extent: Numbers) -> tuple[Stage, Numbers, Numbers]:
     low, high = _box(extent)
     view, figure = _view(extent), blank(_HEIGHT)
     axes: Any = figure.add_axes(
-        (0.0, 0.04, _STAGE / PAGE_WIDTH, 0.96),
+        (0.02, 0.04, _STAGE / PAGE_WIDTH - 0.02, 0.96),
         projection="3d",
         proj_type="ortho",
         azim=view.azimuth,
         elev=view.elevation,
         computed_zorder=False,
     )
-    axes.set_box_aspect(high - low, zoom=0.9)
+    axes.set_box_aspect(high - low, zoom=0.88)
     for side, first, last in zip("xyz", low, high, strict=True):
         axes.set(**{f"{side}lim": (first, last), f"{side}label": side})
         axis = getattr(axes, f"{side}axis")

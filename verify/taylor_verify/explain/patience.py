@@ -47,7 +47,7 @@ class Patience:
 def _has_timer() -> bool:
     """Return True if a timer may be set; a profiler has its own."""
     is_main = threading.current_thread() is threading.main_thread()
-    return is_main and hasattr(signal, "SIGPROF") and signal.getitimer(signal.ITIMER_PROF)[0] == 0
+    return is_main and hasattr(signal, "setitimer") and signal.getitimer(signal.ITIMER_PROF)[0] == 0
 
 
 def _stop(number: int, frame: FrameType | None) -> None:

@@ -132,7 +132,7 @@ _UNKNOWN_COLOURS: Final = ("#C48600", "#882255", "#2F9E8F", "#0E5F2A", "#C04FAF"
 _UNKNOWN_CORNERS: Final = (3, 4, 5, 6, 7)
 _UNKNOWN_ANGLES: Final = (0, 20)
 # Their number is coprime to that of the colours, so that pairs repeat late.
-_LINE_MARKERS: Final = ("o", "s", "^", "D", "v", "p", "h")
+_LINE_MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X")
 
 
 def kind_of(family: str) -> str:

@@ -17,12 +17,16 @@ _ESCAPES: Final = {"##": r"#\x23"}
 
 def escaped(text: str) -> str:
     """Return the text with an escape for each character that would steer a terminal."""
-    return _CONTROL.sub(lambda match: _ESCAPES.get(match[0]) or ascii(match[0])[1:-1], text)
+    return _CONTROL.sub(_escape, text)
+
+
+def _escape(character: re.Match[str]) -> str:
+    return _ESCAPES.get(character[0]) or ascii(character[0])[1:-1]
 
 
 def one_line(text: str) -> str:
     """Return the text escaped, its line feeds too: a name never begins a line."""
-    return escaped(text).replace("\n", r"\n")
+    return _CONTROL.sub(_escape, text).replace("\n", r"\n")
 
 
 def without_commands(text: str) -> str:

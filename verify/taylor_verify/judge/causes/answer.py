@@ -77,6 +77,11 @@ class Answer:
     scene: Scene | None = None
 
     @property
+    def off(self) -> float:
+        """The largest error of the moving part."""
+        return max(self.worst[group] for group in self.groups)
+
+    @property
     def has_states(self) -> bool:
         """True if the scene has states of its own, which no row of the search has."""
         loads = None if self.scene is None else self.scene.body.loads

@@ -23,6 +23,7 @@ from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.printed import half_units
+from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
@@ -284,9 +285,11 @@ def material_of_file(
         _read_by(file, given, conventions, names[0], attitudes, verdicts, every)
         for attitudes in _attitudes(file, given, conventions)
     ]
-    # Where the file's own attitude is wrong, the exact one may be that of its space axes.
     known = [answer for answer in read if answer is not None]
-    return min(known, key=lambda each: max(each.worst[g] for g in each.groups), default=None)
+    if not known:
+        return None
+    # Where the file's own attitude is wrong, the exact one is that of its space axes if it explains them.
+    return next((each for each in known[1:] if each.off <= LEAVES * known[0].off), known[0])
 
 
 def _read_by(

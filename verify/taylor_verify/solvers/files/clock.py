@@ -63,7 +63,7 @@ def with_times(
     whole = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
     units = Candidates([Name(column) for column in read], {}, {})
-    clocks = [_Clock(c, scene, _unit(c, units)) for c in _candidates(whole, asked)]
+    clocks = _clocks(whole, asked, scene, units)
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))
@@ -78,13 +78,16 @@ def with_times(
     return Times(read, wanted, (*notes, *note))
 
 
-def _candidates(columns: Sequence[Column], asked: Sequence[str]) -> list[Column]:
+def _clocks(
+    columns: Sequence[Column], asked: Sequence[str], scene: Scene | None, units: Candidates
+) -> list[_Clock]:
     """Return the columns that are asked for, or called a time, or else those with times of a calendar."""
     if asked:
-        return [column for column in columns if column.name.strip() in asked]
-    names = [Name(column) for column in columns]
-    called = [name.column for name in names if _is_called_a_time(name)]
-    return called or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
+        times = [column for column in columns if column.name.strip() in asked]
+    else:
+        times = [column for column in columns if _is_called_a_time(Name(column))]
+        times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
+    return [_Clock(column, scene, _unit(column, units)) for column in times]
 
 
 def _unit(column: Column, names: Candidates) -> Unit:

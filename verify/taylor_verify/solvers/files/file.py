@@ -131,7 +131,12 @@ def from_columns(
     and times that tell which of two clocks is meant. Raises Refused with every fault.
     """
     faults = Faults()
-    named, planar = with_zeros(_named_once(columns, place, faults), scene)
+    by_name: dict[str, Column] = {}
+    for column in columns:
+        if column.name in by_name:
+            faults.add("every column once", f"`{cut(column.name)}` again", place)
+        by_name[column.name] = column
+    named, planar = with_zeros(list(by_name.values()), scene)
     clock = with_times(named, by_number(named, wanted, scene, place), scene, place, faults)
     own, asked = own_columns(scene), clock.wanted
     beside, left, asked = apart(clock.columns, asked, own, place, faults)
@@ -154,12 +159,3 @@ def from_columns(
     first, *others = files
     sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *agreed)
     return replace(first, notes=sentences, apart=tuple(others))
-
-
-def _named_once(columns: Iterable[Column], file: str, faults: Faults) -> list[Column]:
-    by_name: dict[str, Column] = {}
-    for column in columns:
-        if column.name in by_name:
-            faults.add("every column once", f"`{cut(column.name)}` again", file)
-        by_name[column.name] = column
-    return list(by_name.values())
