@@ -16,8 +16,9 @@ from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline, CubicSpline, PPoly, make_interp_spline
 
-from taylor_verify.certify import certify
+from taylor_verify.certify import bounds, certify
 from taylor_verify.certify.answer import pieces_of
+from taylor_verify.certify.motion import errors_of
 from taylor_verify.cli import main
 from taylor_verify.exact import exact
 from taylor_verify.exact.rows import quaternions
@@ -227,3 +228,47 @@ def test_the_verb_says_what_is_proven(
         "kind": "not covered", "quantity": "time", "at": 4.0, "end": 100.0, "size": 0,
     }  # fmt: skip
     assert content["passed"] is False
+
+
+def turned() -> dict[str, Any]:
+    """Samples of a body that turns, as columns of a table."""
+    times = np.linspace(0, 1, 9)
+    motion = exact(until("euler/with-attitude", 1), [Fraction(t) for t in times], 18)
+    columns = np.hstack(
+        [motion["omega"].astype(float), quaternions(motion["attitude"].astype(float))]
+    )
+    names = ("w1", "w2", "w3", "q0", "q1", "q2", "q3")
+    return {"t": times, **dict(zip(names, columns.T, strict=True))}
+
+
+def test_the_sign_of_a_quaternion_is_free_in_each_row() -> None:
+    """Samples of which every second one has the other sign have the same interpolant."""
+    table = turned()
+    signs = np.where(np.arange(9) % 2, -1, 1)
+    other = {name: v * signs if name[0] == "q" else v for name, v in table.items()}
+    scene = until("euler/with-attitude", 1)
+    first, second = (certify(scene, each, interpolation="cubic") for each in (table, other))
+    assert first.bound == second.bound
+    assert first.bound["attitude"] < 0.1
+
+
+def test_bits_that_narrow_nothing_are_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A quaternion that goes through zero has no bound but half a turn, however exact the truth is."""
+    asked: list[int] = []
+
+    def counted(*given: Any) -> Any:
+        asked.append(given[-1])
+        return errors_of(*given)
+
+    monkeypatch.setattr(bounds, "errors_of", counted)
+    table = turned()
+    signs = np.where(np.arange(9) % 2, -1, 1)
+    rows = np.stack([table[name] * signs for name in ("q0", "q1", "q2", "q3")], axis=1)
+    omega = np.stack([table[name] for name in ("w1", "w2", "w3")], axis=1)
+    answer = {
+        "omega": CubicSpline(table["t"], omega),
+        "quaternion": CubicSpline(table["t"], rows),
+    }
+    certificate = certify(until("euler/with-attitude", 1), answer)
+    assert certificate.bound["attitude"] == pytest.approx(np.pi)
+    assert len(set(asked)) <= 2

@@ -19,8 +19,17 @@ pytest_plugins = ["pytester"]
 LIGHT = {
     f"taylor_verify.{name}"
     for name in (
-        *("check", "exact", "explain", "records", "records.version", "run", "run_many"),
-        *("scenes", "testing", "testing.plugin", "tradeoff"),
+        *(
+            "certify",
+            "check",
+            "exact",
+            "explain",
+            "numbers",
+            "numbers.working_precision",
+            "records",
+        ),
+        *("records.version", "run", "run_many", "scenes", "sweep", "testing", "testing.plugin"),
+        *("tradeoff", "types"),
     )
 }
 HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}

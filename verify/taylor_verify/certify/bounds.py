@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import asin, atan, hypot, pi, sqrt
+from math import asin, atan, hypot, inf, pi, sqrt
 from typing import Final
 
 from flint import ctx
@@ -35,6 +35,7 @@ _MOST_BITS: Final = 1600
 # The truth is narrow enough where it widens a bound by less than this, or where nothing is left to see.
 _NARROW: Final = 1.05
 _NOTHING: Final = 1e-28
+_GAIN: Final = 0.9
 _ROOT_OF_EIGHT: Final = sqrt(8)
 
 
@@ -79,7 +80,7 @@ def _settled(
     scene: Scene, pieces: Pieces, measured: Sequence[Measured], until: Fraction
 ) -> tuple[Mapping[tuple[str, int], Errors], Mapping[str, Largest], Nodes]:
     """Return errors and their largest values, at a precision at which the truth is narrow enough."""
-    bits, stuck = _FIRST_BITS, False
+    bits, stuck, earlier = _FIRST_BITS, False, inf
     while True:
         try:
             with ctx.workprec(bits):
@@ -91,10 +92,11 @@ def _settled(
                 raise Unsettled(reason.because or "the motion is lost before its end") from None
             bits, stuck = reason.bits, reason.stuck is not None
             continue
-        is_narrow = all(f.bound <= max(_NARROW * f.reached, _NOTHING) for f in worst.values())
-        if is_narrow or bits > _MOST_BITS:
+        # What more bits do not narrow is the size of an interval, and no doubt about the truth.
+        widest = max(f.bound / max(f.reached, _NOTHING) for f in worst.values())
+        if widest <= _NARROW or widest > _GAIN * earlier or bits > _MOST_BITS:
             return errors, worst, nodes
-        bits *= 2
+        bits, earlier = 2 * bits, widest
 
 
 def _reached(scene: Scene, pieces: Pieces, last: Fraction) -> Fraction:

@@ -14,6 +14,7 @@ from taylor_verify.certify.dense import columns_of, named, of_scipy
 from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, fraction, polynomial, rational
 from taylor_verify.certify.slopes import slopes_of
 from taylor_verify.records.faults import brief, refusal
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.values import exact
@@ -36,8 +37,8 @@ def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) ->
         for k, column in enumerate(file.columns[group])
     }
     pairs = sorted(zip(file.times, *values.values(), strict=True))
-    times, rows = [Fraction(row[0]) for row in pairs], [row[1:] for row in pairs]
-    names = list(values)
+    times, names = [Fraction(row[0]) for row in pairs], list(values)
+    rows = _with_steady_signs(names, [row[1:] for row in pairs])
     if len(times) < 2:
         raise refusal("two rows at least", len(times), file.name)
     if interpolation == "cubic":
@@ -55,6 +56,18 @@ def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) ->
         for (a, p, f), (b, q, g) in ends
     )
     return named(names, times, cubics)
+
+
+def _with_steady_signs(
+    names: Sequence[str], rows: Sequence[Sequence[Fraction]]
+) -> list[list[Fraction]]:
+    """Return the rows with each quaternion near to the one before: its sign is free in answers."""
+    places = {k for k, name in enumerate(names) if name in COLUMNS["quaternion"]}
+    steady: list[list[Fraction]] = []
+    for row in rows:
+        turned = steady and sum(row[k] * steady[-1][k] for k in places) < 0
+        steady.append([-v if turned and k in places else v for k, v in enumerate(row)])
+    return steady
 
 
 def _line(p: Fraction, q: Fraction, h: Fraction) -> fmpq_poly:
