@@ -22,6 +22,8 @@ def figure(value: float | None) -> str:
         return NOTHING
     if value == 0:
         return "0"
+    if not isfinite(value):
+        return "NaN" if isnan(value) else INFINITE
     mantissa, _, tail = f"{value:.2e}".partition("e")
     exponent = int(tail)
     if -2 <= exponent <= 2:

@@ -1,7 +1,8 @@
 """The rows of a file that are there: rows that repeat the one before, and groups with rows of their own.
 
-A group has no row where all of its cells are blank, and none where all are NaN between its numbers, as in a
-table of two rates. NaN that is rare, or in which a group ends, is an answer.
+A group has no row where all of its cells are blank, and none where all are NaN as in a table of two rates:
+rows of the slower group stand alone, with about as many rows of NaN between each two, and every row of NaN
+has numbers of another group. Any other NaN is an answer.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ Flags = np.ndarray[Any, np.dtype[np.bool_]]
 
 # R writes NA, and other programs null.
 _BLANK: Final = ("", "NA", "null", None)
+# With fewer gaps between its rows a group has no rate.
+_FEWEST: Final = 2
 
 
 def blanks(values: Sequence[Any]) -> Flags:
@@ -69,18 +72,24 @@ def rows_of_groups(
 
     ``blank`` are those without a number, and ``finite`` those whose numbers are all finite.
     """
-    if not groups:
-        return {}
     there = {group: ~blank[group] for group in groups}
     nan = {g: there[g] & _of_nan(columns, there[g] & ~finite[g]) for g, columns in groups.items()}
-    sparse = [group for group in groups if _is_sparse(finite[group], nan[group])]
-    elsewhere = np.zeros_like(next(iter(there.values())))
-    for group in sparse:
-        elsewhere |= finite[group]
+    sparse = [
+        group
+        for group in groups
+        if _stands_alone(finite[group]) and _has_others(nan[group], group, finite)
+    ]
     for group, rows in there.items():
-        if group in sparse or _complements(nan[group], elsewhere):
+        slower = [finite[each] for each in sparse if each != group]
+        if group in sparse or any(_complements(nan[group], elsewhere) for elsewhere in slower):
             rows &= ~nan[group]
     return there
+
+
+def _has_others(nan: Flags, group: str, finite: Mapping[str, Flags]) -> bool:
+    """Return True if other groups have numbers in all rows of NaN."""
+    others = [rows for each, rows in finite.items() if each != group]
+    return bool(np.logical_or.reduce(others)[nan].all()) if others else False
 
 
 def _complements(nan: Flags, elsewhere: Flags) -> bool:
@@ -101,13 +110,14 @@ def _of_nan(columns: Sequence[Column], rows: Flags) -> Flags:
     return nan
 
 
-def _is_sparse(finite: Flags, nan: Flags) -> bool:
-    """Return True for a group whose numbers stand between at least as many rows of NaN."""
-    if nan.sum() < max(finite.sum() - 1, 1):
+def _stands_alone(finite: Flags) -> bool:
+    """Return True for rows that stand alone, with about as many others between each two and at the end."""
+    runs = [(there, len(list(run))) for there, run in groupby(finite.tolist())]
+    between = [length for there, length in runs[1:-1] if not there]
+    if len(between) < _FEWEST or any(there and length > 1 for there, length in runs):
         return False
-    runs = [(lost, len(list(run))) for lost, run in groupby((~finite).tolist())]
-    inner = max((length for lost, length in runs[1:-1] if lost), default=0)
-    return inner > 0 and not (runs[-1][0] and runs[-1][1] > inner)
+    last = 0 if runs[-1][0] else runs[-1][1]
+    return max(*between, last) <= 2 * min(between) + 1
 
 
 def _is_nan(raw: Any) -> bool:
