@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import inf
+from math import inf, isfinite, isnan
 from typing import Final
 
 from taylor_verify.records.quantities import states_among
