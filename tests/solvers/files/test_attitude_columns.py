@@ -50,6 +50,7 @@ def test_every_sequence_of_euler_angles(sequence: str) -> None:
         of_rows(angles, f"euler_{sequence}[0] euler_{sequence}[1] euler_{sequence}[2]")
     )
     assert not is_the_turn(of_rows(angles[:, ::-1], "a b c", f"{sequence}=2:4"))
+    assert is_the_turn(of_rows(angles[:, ::-1], "a b c", f"{sequence}=4:2"))
 
 
 FORMS_OF = {

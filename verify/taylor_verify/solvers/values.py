@@ -28,7 +28,8 @@ Value = Fraction | float
 _HEXADECIMAL = re.compile(
     r"([+-]?)0x(?=[0-9a-f.])([0-9a-f]*)\.?([0-9a-f]*)(?:p([+-]?[0-9]{1,6}))?", re.IGNORECASE
 )
-_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
+# C writes -nan(ind) too.
+_NOT_FINITE = re.compile(r"([+-]?(?:nan|inf|infinity))(?:\(\w*\))?", re.IGNORECASE)
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE)
 _EXPONENT_BITS: Final = int(LARGEST_EXPONENT * math.log2(10))
 
@@ -59,8 +60,8 @@ def exact(raw: object) -> Value:
 
 
 def _from_text(text: str) -> Value:
-    if _NOT_FINITE.fullmatch(text):
-        return float(text)
+    if match := _NOT_FINITE.fullmatch(text):
+        return float(match[1])
     if match := _HEXADECIMAL.fullmatch(text):
         sign, whole, part, power = match.groups()
         exponent = int(power or 0) - 4 * len(part)

@@ -2,7 +2,7 @@
 
 A NAME may also be a whole group, ``omega=gyro``: then ``gyro_x gyro_y gyro_z`` or ``gyro[0] ...`` are its
 columns, in our order; ``omega=2:4`` and ``omega=p:r`` name its first and its last column, by number from 1
-or by name. A form of the attitude is a group too, in radians, or with a unit: ``zyx_deg=5:7``.
+or by name; ``zyx=7:5`` goes backwards. A form of the attitude is a group too, in radians, or with a unit: ``zyx_deg=5:7``.
 """
 
 from __future__ import annotations
@@ -115,7 +115,8 @@ def _between(
         faults.add(expected, f"`{cut(missing[0])}`", at)
         return []
     first, last = (places[end] for end in ends)
-    texts = [name.text for name in names[first : last + 1]]
+    step = 1 if first <= last else -1
+    texts = [names[k].text for k in range(first, last + step, step)]
     if len(texts) != len(ours):
         faults.add(f"{len(ours)} columns", f"{len(texts)} from {ends[0]} to {ends[1]}", at)
         return []

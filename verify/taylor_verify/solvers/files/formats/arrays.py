@@ -143,7 +143,7 @@ def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
         width = prod(array.shape) // max(rows, 1)
         names = [f"{array.name}[{k}]" for k in range(width)]
         if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).readings:
-            example = ",".join(f"w{k}={name}" for k, name in enumerate(names[1:3], start=1))
+            example = ",".join(f"w{k}={name}" for k, name in enumerate(names[:2], start=1))
             shown = ", ".join(names[:_MOST_OF_MATRIX])
             more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""
             yield f"the columns of {array.name} are {shown}{more}, as in --columns {example},..."
