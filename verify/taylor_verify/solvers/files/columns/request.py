@@ -2,7 +2,8 @@
 
 A NAME may also be a whole group, ``omega=gyro``: then ``gyro_x gyro_y gyro_z`` or ``gyro[0] ...`` are its
 columns, in our order; ``omega=2:4`` and ``omega=p:r`` name its first and its last column, by number from 1
-or by name; ``zyx=7:5`` goes backwards. A form of the attitude is a group too, in radians, or with a unit: ``zyx_deg=5:7``.
+or by name; ``zyx=7:5`` goes backwards. A form of the attitude is a group too, in radians, or with a unit:
+``zyx_deg=5:7``.
 """
 
 from __future__ import annotations
