@@ -204,6 +204,11 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
         ({**DOCUMENT, "quantities": {"omega": [[[1.0]]]}}, {}, "3 components"),
         (PPoly(SPLINE.c * 180 / np.pi, NODES), {}, "in degrees per unit of time"),
         (TABLE, {"interpolation": "quintic"}, "linear, cubic, hermite"),
+        (
+            {"breaks": [0, 4], "quantities": {"omega": [[[1e160], [1], [1]]]}},
+            {},
+            "terms below 1e100",
+        ),
         (TABLE, {}, "a dense answer"),
         (SPLINE, {"tolerance": -1.0}, "a positive number"),
     ],

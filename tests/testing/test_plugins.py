@@ -32,6 +32,19 @@ BROKEN = {
     "engines": ("none = tv_broken:missing", "to be the path of a script (.py, .mjs)"),
     "causes": ("half = tv_broken", "to have candidates, got none"),
 }
+# Modules whose import, and a reader whose call, ends the program or writes lines of its own.
+ENDING = """
+import sys
+class Log:
+    suffixes = (".zzz",)
+    def read(self, path):
+        sys.exit(0)
+log = Log()
+def add(parser):
+    sys.exit(0)
+def run(arguments):
+    return "x"
+"""
 SOURCE = """
 missing = "/nowhere/with_none.py"
 class Csv:
@@ -159,6 +172,39 @@ def test_a_broken_plugin_is_named_in_one_line_and_harms_nobody(
         assert "\n" not in line
     with pytest.raises(BrokenContract, match="No module named"):
         keeps_contract("tv-broken")
+
+
+def test_what_ends_the_program_is_no_pass(
+    install: Install, tmp_path: Path, capsys: Captured
+) -> None:
+    """sys.exit(0) in a plug-in, in a module or in a function gives status 2 and a line."""
+    (tmp_path / "tv_ending.py").write_text(ENDING)
+    (tmp_path / "tv_exits.py").write_text("import sys\nsys.exit(0)\n")
+    (tmp_path / "tv_ends.py").write_text("import os\ndef solve(problem):\n    os._exit(0)\n")
+    (tmp_path / "mine.zzz").write_text("")
+    install("tv-ending", {"readers": "log = tv_ending:log", "verbs": "fly = tv_ending"})
+    for call in (
+        ["check", str(tmp_path / "mine.zzz"), "--scene", "euler/spherical"],
+        ["run", "euler/spherical", "--solver", "python:tv_exits:f"],
+        ["run", "euler/spherical", "--solver", "python:tv_ends:solve"],
+        ["fly"],
+    ):
+        assert main(call) == 2, call
+        assert capsys.readouterr().err.startswith("taylor-verify: ")
+
+
+def test_a_garbled_list_of_entry_points_harms_nobody(
+    install: Install, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The package is named, in one line also where its words have more, and the others are there."""
+    (tmp_path / "tv_loud.py").write_text('raise RuntimeError("x\\n::error::boo")\n')
+    install("tv-garbled", {"solvers": "mine\n = x\n:::"})
+    install("tv-sound", {"solvers": "same = math:sin\nloud = tv_loud:f\nstrange = math:y z"})
+    assert "same" in [plugin.name for plugin in plugins.plugins("solvers")]
+    assert "the entry points of tv-garbled cannot be read" in caplog.text
+    messages = [record.getMessage() for record in caplog.records]
+    assert any("RuntimeError: x ::error::boo" in message for message in messages)
+    assert any("to be module:object, got 'math:y z'" in message for message in messages)
 
 
 def test_of_two_packages_with_one_name_the_first_counts(

@@ -11,6 +11,7 @@ from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.runs import run_all
 from taylor_verify.batch.store import unfinished
+from taylor_verify.solvers.registry import PYTHON
 
 if TYPE_CHECKING:
     from taylor_verify.judge.judgement import Judgement
@@ -49,9 +50,10 @@ def judge_all(
     With ``resume``, what the same run had finished before an interrupt is not run again. An
     interrupt is raised as Interrupted.
 
-    One job runs in this process, several on the ``executor``, or in as many ``workers`` as there are
-    cores: heyoka's compiled integrators and the truth's big integers both hold the interpreter. Raises
-    Failed for a job that broke, or lost its process; whatever ends this early ends the workers first.
+    One job runs in this process, unless a function that somebody names could end it; several on the
+    ``executor``, or in as many ``workers`` as there are cores: heyoka's compiled integrators and the
+    truth's big integers both hold the interpreter. Raises Failed for a job that broke, or lost its process;
+    whatever ends this early ends the workers first.
     """
     ended = 0
 
@@ -62,7 +64,7 @@ def judge_all(
             progress(ended, len(jobs), job)
 
     report(None)
-    if len(jobs) == 1 and executor is None:
+    if len(jobs) == 1 and executor is None and not _may_end_the_process(jobs[0]):
         judgements = run_job(jobs[0])
         report(jobs[0])
         return judgements
@@ -96,6 +98,11 @@ def judge_all(
             store.forget()
     rest = iter(made)
     return [each for known in stored for each in (next(rest) if known is None else known)]
+
+
+def _may_end_the_process(job: Job) -> bool:
+    """Return True for a function by its name: with its `os._exit(0)` this process would seem to pass."""
+    return isinstance(job.solver, str) and job.solver.startswith(PYTHON)
 
 
 def run_job(job: Job) -> list[Judgement]:

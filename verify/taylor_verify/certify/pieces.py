@@ -14,6 +14,9 @@ from flint import fmpq, fmpq_poly
 from taylor_verify.records.faults import Faults, Refused
 
 MOST_DEGREE: Final = 60
+# 2^332 is 1e100.
+_HUGE: Final = "1e100"
+_HUGE_BITS: Final = 332
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,13 @@ class Piece:
         """The sizes of the terms at the end of the piece."""
         whole = self.polynomials[column](fmpq_poly([0, rational(self.end - self.begin)]))
         return [abs(float(fraction(entry))) for entry in whole.coeffs()]
+
+    @property
+    def is_huge(self) -> bool:
+        """True for a term whose square no double would have."""
+        whole = fmpq_poly([0, rational(self.end - self.begin)])
+        terms = (c for p in self.polynomials.values() for c in p(whole).coeffs())
+        return any(int(c.p).bit_length() - int(c.q).bit_length() > _HUGE_BITS for c in terms)
 
     def shifted(self, begin: Fraction, end: Fraction) -> Piece:
         """The polynomials on a part of the piece."""
@@ -74,6 +84,8 @@ class Pieces:
             degree = max((p.degree() for p in piece.polynomials.values()), default=0)
             if degree > MOST_DEGREE:
                 faults.add(f"degrees of at most {MOST_DEGREE}", str(degree), f"piece {k}")
+            elif piece.begin < piece.end and piece.is_huge:
+                faults.add(f"terms below {_HUGE}", "a larger one", f"piece {k}")
         for k, (before, after) in enumerate(pairwise(every)):
             if after.begin < before.end:
                 got = f"two at t = {float(after.begin):g}"

@@ -8,6 +8,7 @@ wrong; 3 undecided (nothing failed). Nothing heavy is imported before a verb nee
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 
 from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
@@ -32,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parse(sys.argv[1:] if arguments is None else arguments)
         MANNER.quiet, MANNER.colour = options.quiet, options.color
         with stdout_reserved():
-            answer = options.act(options)
+            answer = _acted(options)
         return _print(answer, options.json)
     except KeyboardInterrupt as interrupt:
         tell(_interruption(interrupt))
@@ -44,6 +45,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return WRONG_CALL
     finally:
         print_out()
+
+
+def _acted(options: Namespace) -> Answer:
+    """Return the answer of a verb; code of others that ends the program, with any status, gives none."""
+    try:
+        answer: Answer = options.act(options)
+    except SystemExit as end:
+        message = f"expected an answer, got sys.exit({end.code!r:.60}) from a function or module"
+        raise WrongCall(f"{message} that was called") from end
+    return answer
 
 
 def _print(answer: Answer, as_json: bool) -> int:

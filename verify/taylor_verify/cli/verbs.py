@@ -18,7 +18,7 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, wrong_calls
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
 from taylor_verify.records.plugins import BrokenPlugin, entries, load, package_of, taken
 
@@ -58,13 +58,19 @@ def verbs(own: Collection[str]) -> Iterator[EntryPoint]:
 def add(parser: argparse.ArgumentParser, verb: EntryPoint) -> None:
     """Let a plug-in add its arguments to the parser of its verb. Raises WrongCall as ``described`` does."""
     plugin = _loaded(verb)
-    plugin.add(parser)
-    parser.set_defaults(act=partial(_act, plugin))
+    try:
+        plugin.add(parser)
+    except SystemExit as end:
+        got = f"sys.exit({end.code!r:.60})"
+        raise WrongCall(f"expected arguments of the verb {verb.name}, got {got}") from end
+    parser.set_defaults(act=partial(_act, plugin, verb.name))
 
 
-def _act(plugin: Any, options: argparse.Namespace) -> Answer:
+def _act(plugin: Any, name: str, options: argparse.Namespace) -> Answer:
     """Run a verb; an exit status stands for an answer that is printed already."""
     result = plugin.run(options)
     if isinstance(result, Answer):
         return result
-    return Answer(PASS if result is None else int(result), {}, str)
+    if result is not None and not isinstance(result, int):
+        raise WrongCall(f"expected an Answer or a status of the verb {name}, got {result!r:.60}")
+    return Answer(PASS if result is None else result, {}, str)

@@ -89,7 +89,33 @@ def entries(kind: str) -> list[EntryPoint]:
     """Return the entry points of a kind, by name; nothing of them is imported."""
     from importlib.metadata import entry_points
 
-    return sorted(entry_points(group=_GROUP + kind), key=lambda e: (e.name, package_of(e)))
+    group = _GROUP + kind
+    try:
+        every = [*entry_points(group=group)]
+    except Exception:  # the file of one package is enough
+        every = [*_readable(group)]
+    return sorted(every, key=lambda e: (e.name, package_of(e)))
+
+
+def _readable(group: str) -> Iterator[EntryPoint]:
+    """Yield the entry points of all packages whose own can be read; each other package is named."""
+    from importlib.metadata import distributions
+
+    known: set[str] = set()
+    for package in distributions():
+        name = str(package.name)
+        if name in known:
+            continue
+        known.add(name)
+        try:
+            yield from package.entry_points.select(group=group)
+        except Exception as error:  # other people's file
+            say_once(f"the entry points of {name} cannot be read: {_in_one_line(error)}")
+
+
+def _in_one_line(error: BaseException) -> str:
+    text = "".join(c if c.isprintable() else " " for c in str(error))
+    return f"{type(error).__name__}: {text}"
 
 
 def package_of(entry: EntryPoint) -> str:
@@ -100,10 +126,12 @@ def package_of(entry: EntryPoint) -> str:
 def load(kind: str, entry: EntryPoint) -> Any:
     """Return the object behind an entry point. Raises BrokenPlugin."""
     expected = f"expected the {kind.removesuffix('s')} {entry.name} of {package_of(entry)}"
+    if not entry.pattern.match(entry.value):
+        raise BrokenPlugin(f"{expected} to be module:object, got {entry.value!r:.60}")
     try:
         content = entry.load()
     except (Exception, SystemExit) as error:
-        raise BrokenPlugin(f"{expected}, got {type(error).__name__}: {error}") from error
+        raise BrokenPlugin(f"{expected}, got {_in_one_line(error)}") from error
     if lack := lacks(kind, content):
         raise BrokenPlugin(f"{expected} {lack}")
     return content
