@@ -67,7 +67,11 @@ def changed(sentence: str, text: str) -> str:
         [
             ("gyro-axis-2-flipped", FREE, ["omega has the other sign on axis 2"]),
             ("imu-mounted-askew", FREE, ["rotation of 31.59 degrees", "rotation of 31.59 degrees"]),
-            ("time-in-frames-60", FREE, ["clock = 0.0166667"]),
+            (
+                "time-in-frames-60",
+                FREE,
+                ["60 times too slow, or t counts 1/60 of the unit of time"],
+            ),
             ("wheels-inertia-1.2x", "wheels", ["factor of the inertia = 1.2;"]),
             ("wheel-2-missing", "wheels", ["wheel 2 left out"]),
             ("gyroscopic-half", "link", ["factor of the gyroscopic term = 0.5;"]),

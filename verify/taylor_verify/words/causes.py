@@ -10,6 +10,8 @@ _NOTHING: Final = 1e-7
 # A change below this part of the largest one is none: the entry agrees.
 _AGREES: Final = 1e-4
 _MOST_DIGITS: Final = 15
+# A factor so near to a whole number is one.
+_WHOLE: Final = 1e-6
 
 
 def sentence(
@@ -42,12 +44,22 @@ def with_numbers(
 ) -> str:
     """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
     values = [float(number) for number in numbers]
+    if name == "clock" and values[0] > 0:
+        return f"clock = {values[0]:.6g}: {_pace(values[0])}"
     if labels:
         changes = _changes(labels, [float(number) for number in right], values)
         return changes if [*labels] == [name] else f"{name}: {changes}"
     largest = max(map(abs, values)) or 1.0
     cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
     return f"{name} = {' '.join(f'{value:.6g}' for value in cut)}"
+
+
+def _pace(clock: float) -> str:
+    """Return how fast a motion goes on whose rates have this factor, and what its times count."""
+    times, pace = (clock, "fast") if clock > 1 else (1 / clock, "slow")
+    number = f"{round(times)}" if abs(times / round(times) - 1) < _WHOLE else f"{times:.6g}"
+    counts = f"{number} units" if clock > 1 else f"1/{number} of the unit"
+    return f"the motion is {number} times too {pace}, or t counts {counts} of time"
 
 
 def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> str:
