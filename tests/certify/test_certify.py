@@ -214,7 +214,7 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
     ],
 )
 def test_what_is_no_dense_answer_is_refused(answer: Any, more: dict[str, Any], why: str) -> None:
-    """One sentence says what was expected."""
+    """A refusal says in one sentence what was expected."""
     with pytest.raises((Refused, ValueError), match=why):
         certify(SCENE, answer, **more)
 

@@ -436,7 +436,7 @@ def test_a_call_that_cannot_be_read_ends_with_2(capsys: Captured, arguments: lis
 
 
 def test_exact_asks_for_times_or_an_event(capsys: Captured) -> None:
-    """One of both is asked for, and a call with neither says so."""
+    """Times or an event are asked for, and a call with neither says so."""
     assert main(["exact", "euler/generic"]) == 2
     assert (
         "expected one of --at T,T,... and --event TEXT --until T, got none"

@@ -33,7 +33,7 @@ def refusal(capsys: Captured, *arguments: str) -> str:
 def test_a_call_without_a_verb_greets_with_three_commands(
     capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On a terminal; each of the three can be typed, and is of a use that the README has too."""
+    """Calls of the greeting on a terminal can be typed, and are of a use that the README has too."""
     monkeypatch.delenv("CI", raising=False)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     assert main([]) == 0

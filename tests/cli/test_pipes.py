@@ -62,7 +62,7 @@ def test_standard_input_is_judged_as_a_file_is(
 def test_what_is_wrong_with_standard_input_is_said(
     pipe: io.BytesIO, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing, and more than the limit of a file, end with status 2, also when quiet."""
+    """Input of nothing, and of more than the limit of a file, ends with status 2, also when quiet."""
     assert main(["check", "-", "--scene", SCENE, "-q"]) == 2
     assert "got nothing @ -" in capsys.readouterr().err
     fill(pipe, CSV)

@@ -1,4 +1,4 @@
-"""What the public functions return: read by name, printed in full, pickled, shown in a notebook."""
+"""Results of the public functions: read by name, printed in full, pickled, shown in a notebook."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def results() -> dict[str, Any]:
 def test_a_result_is_pickled_and_compared_without_losing_a_bit(
     name: str, results: dict[str, Any]
 ) -> None:
-    """What is read back equals what was written; mpmath's own pickle rounds numbers to doubles."""
+    """A pickled result equals what was written; mpmath's own pickle rounds numbers to doubles."""
     result = results[name]
     assert pickle.loads(pickle.dumps(result)) == result == deepcopy(result)
     assert result != "another"

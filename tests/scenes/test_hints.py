@@ -134,7 +134,7 @@ WRITTEN = [
 
 @pytest.mark.parametrize(("model", "key"), WRITTEN)
 def test_the_lines_of_a_sentence_are_read(model: str, key: str) -> None:
-    """What a sentence says to write is a part of a scene, with names from the tables that it says."""
+    """Lines that a sentence says to write are a part of a scene, with names from its tables."""
     lines = [line for line in re.findall("`([^`]+)`", refusal(model, "body", key)) if " = " in line]
     space = [line for line in lines if line[0] in "ob" and line[1] == " "]
     body = [line for line in lines if line not in space and not line.startswith("model")]

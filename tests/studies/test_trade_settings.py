@@ -67,7 +67,7 @@ def test_every_solver_of_the_sweep_is_listed() -> None:
     ],
 )
 def test_stops_are_measured_both_ways(scene: str, expected: bool) -> None:
-    """Where there are switches or held states, some settings step over them."""
+    """Settings that step over switches and held states are there where there are any."""
     families = {one.family for one in settings(load(scene), ["f64"])}
     assert ("scipy DOP853 without stops" in families) is expected
     assert "scipy DOP853" in families

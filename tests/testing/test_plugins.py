@@ -92,7 +92,7 @@ def example(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_example_is_short() -> None:
-    """One plug-in of each kind takes at most 80 lines."""
+    """A package with a plug-in of each kind takes at most 80 lines."""
     files = (file for file in EXAMPLE.rglob("*") if file.suffix in (".py", ".toml"))
     assert sum(len(file.read_text().splitlines()) for file in files) <= 80
 

@@ -150,7 +150,7 @@ def test_descriptions_that_differ_are_refused() -> None:
     ],
 )
 def test_body_axes_and_space_as_the_frame_come_first(names: str, taken: str, left: str) -> None:
-    """Of one rate in several frames the one of the equations of motion is taken, the others are named."""
+    """The rate of the equations of motion is taken among those of several frames; the others are named."""
     every = " ".join(
         " ".join(name.replace("*", c) for c in "xyz") if "*" in name else name
         for name in names.split()

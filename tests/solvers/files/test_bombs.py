@@ -111,7 +111,7 @@ BOMBS: dict[str, tuple[str, Callable[[Path], None]]] = {
 
 @pytest.mark.parametrize("name", BOMBS)
 def test_a_bomb_is_refused_by_what_it_claims(name: str, tmp_path: Path) -> None:
-    """What a part of a file becomes when it is unpacked has a limit, whatever the part says."""
+    """An unpacked part of a file has a limit of its size, whatever the part says."""
     fault, write = BOMBS[name]
     write(tmp_path / name)
     with pytest.raises(Refused, match=fault):

@@ -87,18 +87,29 @@ class Endless(Exception):
     """More evaluations than a run may take; the text is their number."""
 
 
-class Counted:
-    """The rates of a form, counted; Endless is raised beyond ``most`` evaluations."""
+class Counting:
+    """A count of evaluations; Endless is raised beyond ``most`` of them."""
 
-    def __init__(self, form: Form, parameters: Sequence[Any], most: int) -> None:
-        self._rates = straight_line(form, parameters)
+    def __init__(self, most: int) -> None:
         self._most = most
         self.evaluations = 0
 
-    def __call__(self, t: Any, state: Sequence[Any]) -> list[Any]:
+    def count(self) -> None:
+        """Count one evaluation more. Raises Endless."""
         self.evaluations += 1
         if self.evaluations > self._most:
             raise Endless(f"{self.evaluations} evaluations")
+
+
+class Counted(Counting):
+    """The rates of a form, counted."""
+
+    def __init__(self, form: Form, parameters: Sequence[Any], most: int) -> None:
+        super().__init__(most)
+        self._rates = straight_line(form, parameters)
+
+    def __call__(self, t: Any, state: Sequence[Any]) -> list[Any]:
+        self.count()
         return self._rates(t, state)
 
 

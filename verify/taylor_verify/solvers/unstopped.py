@@ -16,11 +16,11 @@ from taylor_verify.models.stretch import holding, taking
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.solvers.pieces import held_at_start, legs
-from taylor_verify.solvers.straight_line import Endless, Rates, straight_line
+from taylor_verify.solvers.straight_line import Counting, Rates, straight_line
 
 
-class Unstopped:
-    """The rates of all legs of a motion in double precision, counted, as `Counted` has those of one form.
+class Unstopped(Counting):
+    """The rates of all legs of a motion in double precision, counted.
 
     A held value is that of the last instant so far that an evaluation has reached.
     """
@@ -28,16 +28,15 @@ class Unstopped:
     def __init__(self, problem: Problem, most: int) -> None:
         loads = problem.given.body.loads
         assert loads is not None
-        self._legs, self._most, self.evaluations = list(legs(problem, loads)), most, 0
+        super().__init__(most)
+        self._legs = list(legs(problem, loads))
         self._sign = 1 if problem.times[-1] > 0 else -1
         self._ends = [self._sign * float(leg.problem.times[-1]) for leg in self._legs]
         self._held = [held_at_start(problem)]
         self._rates: dict[int, Rates] = {}
 
     def __call__(self, t: float, state: Sequence[float]) -> list[Any]:
-        self.evaluations += 1
-        if self.evaluations > self._most:
-            raise Endless(f"{self.evaluations} evaluations")
+        self.count()
         ended = self._ended(t, state)
         return self._of_leg(min(ended, len(self._legs) - 1))(t, state)
 
@@ -49,11 +48,11 @@ class Unstopped:
         """Return how many legs have ended; what is taken at their ends is taken from this state."""
         ended = bisect_right(self._ends, self._sign * t)
         while len(self._held) <= ended:
-            leg, held = self._legs[len(self._held) - 1], self._held[-1]
+            leg, values = self._legs[len(self._held) - 1], self._held[-1]
             if leg.instant is not None:
                 exactly = tuple(exact_value(value) for value in state)
-                held = taking(holding(leg.problem, held), leg.instant, exactly)
-            self._held.append(held)
+                values = taking(holding(leg.problem, values), leg.instant, exactly)
+            self._held.append(values)
         return ended
 
     def _of_leg(self, k: int) -> Rates:

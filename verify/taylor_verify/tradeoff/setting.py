@@ -94,7 +94,7 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
         all_settings += taylor(rung)
         if rung.name == "f64":
             all_settings += library(_SCIPY, LIBRARY_TOLERANCES, rung)
-            if has_stops(scene):
+            if _has_stops(scene):
                 all_settings += library(_SCIPY[:2], LIBRARY_TOLERANCES, rung, _UNSTOPPED)
             all_settings += geometric(scene, rung) if is_rigid else ()
             all_settings += odefun(scene, rung)
@@ -188,7 +188,7 @@ def library(
             yield setting(f"{solver}?rtol={text}&atol={text}{option}", rung)
 
 
-def has_stops(scene: Scene) -> bool:
+def _has_stops(scene: Scene) -> bool:
     """Return True if there are switches, or instants of held states, at which a solver begins anew."""
     loads = scene.body.loads
     return loads is not None and bool(loads.switches or loads.held_states)

@@ -1,4 +1,4 @@
-"""One plug-in of each kind."""
+"""A plug-in of each kind."""
 
 from dataclasses import replace
 from fractions import Fraction
