@@ -14,7 +14,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
 from taylor_verify.solvers.taylor.numbers import arithmetic
-from taylor_verify.solvers.taylor.way import FEW_LOOKS
 from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
 _RUNG: Final = rung("f64")
@@ -59,8 +58,7 @@ def _call(work: Callable[[], object]) -> Action:
 
 def _known(problem: Problem) -> Action:
     """Return the solve of a problem for which the driver has compiled all that it ever compiles."""
-    for _ in range(FEW_LOOKS + 1):
-        Taylor().solve(problem)
+    Taylor().solve(problem)
     return _call(partial(Taylor().solve, problem))
 
 

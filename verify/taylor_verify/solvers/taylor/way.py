@@ -17,7 +17,6 @@ from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.taylor.differenced import Differenced
 from taylor_verify.solvers.taylor.numbers import arithmetic
-from taylor_verify.solvers.taylor.rate_bound import Look
 from taylor_verify.solvers.trajectory import Outcome
 
 # In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of the first size;
@@ -35,8 +34,6 @@ _UNCUT: Final = 0.9
 _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
 _ROWS_LOOKED_AT: Final = 16
-# After so many looks at one way its bound is compiled, which takes as long as some thousand looks.
-FEW_LOOKS: Final = 10
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
@@ -89,8 +86,6 @@ class Way:
             if self._is_loaded
             else Linearised(problem, self._parameters if is_double else None)
         )
-        self._look_number = 0
-        self._look: Look | None = None
         self._rate = self._linearised.fastest(self._start)
         # In these units the motion is of size one, also one that is at rest when it begins.
         self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]) - float(problem.begin))
@@ -178,21 +173,8 @@ class Way:
             return False
         some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
         if ran.outcome is Outcome.FINISHED:
-            return not self._is_within(some, _SLACK * self._longest / ran.longest)
+            return not self._linearised.is_within(some, _SLACK * self._longest / ran.longest)
         return self._linearised.fastest(some) > rate
-
-    def _is_within(self, states: Rows, rate: float) -> bool:
-        """Return True if no row of the states has a faster rate.
-
-        Whoever goes one way again and again is timing a solver: that is worth compiled code.
-        """
-        self._look_number += 1
-        if self._look_number > FEW_LOOKS and not self._is_loaded:
-            if self._look is None:
-                self._look = Look(self._problem, len(states))
-            if self._look.is_within(states, rate):
-                return True
-        return self._linearised.is_within(states, rate)
 
     @property
     def _callback(self) -> Any:
