@@ -12,6 +12,7 @@ from random import Random
 
 import pytest
 
+from taylor_verify.exact import exact
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
@@ -252,7 +253,6 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ("tables", "place"),
     [
         ('[define]\nw1 = "2"', "define.w1"),
-        ('[define]\nsin = "2"', "define.sin"),
         ('[define]\nu1 = "2"', "define.u1"),
         ('[define]\nlambda = "2"', "define.lambda"),
         ("[space]\nw = [1, 0, 0]", "space.w"),
@@ -261,12 +261,20 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ],
 )
 def test_a_name_that_is_taken_is_refused(tables: str, place: str) -> None:
-    """By the other model too, by a function, by a component of a vector, by Python, or made twice."""
+    """By the other model too, by a component of a vector, by Python, or made twice."""
     lines = faults("w1", tables=tables)
     assert lines
     assert all(
         "a name that is free, got `" in line and line.endswith(f" @ {place}") for line in lines
     )
+
+
+def test_a_function_lends_its_name_to_a_table() -> None:
+    """Before a bracket it is the function, elsewhere the table: the contract's own table is `log`."""
+    table = '[tables]\n{} = {{ times = [0, 1], values = [2, 3], kind = "linear" }}'
+    named = of_texts("log(log)", tables=table.format("log"))
+    plain = of_texts("log(profile)", tables=table.format("profile"))
+    assert (exact(named, ["1/2"])["omega"] == exact(plain, ["1/2"])["omega"]).all()
 
 
 def test_a_name_has_letters_digits_and_underscores() -> None:

@@ -155,7 +155,7 @@ def test_definitions_of_values_alone_may_jump() -> None:
         ("h = { start = [], rate = [] }", "from 1 to 100 entries, got 0 @ states.h.rate"),
         ("h = { start = 1, rate = 1, value = 2 }", "got nothing @ states.h.every"),
         ("w = { start = [0], rate = [0] }", "a name that is free, got `w1` @ states.w"),
-        ("sin = { start = 0, rate = 0 }", "a name that is free, got `sin`"),
+        ("if = { start = 0, rate = 0 }", "a name that is free, got `if`"),
         ("omega = { start = 0, rate = 0 }", "a name that is no quantity of the motion"),
         ("T = { start = 0, rate = 0 }", "a name that is no quantity of the motion"),
         ('h = { start = 0, rate = "sign(w1)" }', "@ states.h.rate, column 1"),

@@ -8,8 +8,6 @@ from fractions import Fraction
 from itertools import chain
 from typing import Final
 
-from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS
-
 Entry = Fraction | str
 """A number, or the text of an expression."""
 Entries = tuple[Entry, ...]
@@ -48,4 +46,5 @@ def names(model: str) -> frozenset[str]:
 
 
 # No scene may define these, so that a text has one meaning in both models. Words of Python are no names.
-TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), ALL_FUNCTIONS, keyword.kwlist))
+# A function's name is free, since a function is followed by its bracket: a table may be called `log`.
+TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), keyword.kwlist))

@@ -9,7 +9,6 @@ from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.records.faults import Faults, Refused, brief
-from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous
 from taylor_verify.scenes.loads.vocabulary import FIELD, names
@@ -17,7 +16,7 @@ from taylor_verify.scenes.reading.loads import ENTRY, is_name
 from taylor_verify.scenes.reading.states import MOST_COMPONENTS
 from taylor_verify.scenes.reading.table import Number, Table, exact_number
 
-_TAKEN: Final = frozenset((*names(FIELD), *ALL_FUNCTIONS, *keyword.kwlist))
+_TAKEN: Final = frozenset((*names(FIELD), *keyword.kwlist))
 
 
 def field_of(rates: Mapping[str, Any], start: Mapping[str, Any], begin: Fraction) -> Loads:
