@@ -24,7 +24,6 @@ from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import Ellipsoid
-from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.parts import entrywise
 from taylor_verify.scenes.scene import Scene
@@ -159,18 +158,3 @@ def test_the_closed_form_is_of_the_same_body_as_the_enclosure(name: str) -> None
         for quantity in motion.quantities:
             apart = _distance(motion[quantity][0], closed[quantity][0])
             assert apart <= (motion.radius[0] + closed.radius[0]) * 2
-
-
-def test_loads_that_make_a_motion_are_those_of_the_ellipsoid() -> None:
-    """Under the loads of a manufactured motion the enclosure of the ellipsoid follows that motion."""
-    wave = Wave(Fraction(2), vector("0.1", 0, "0.3", 0, "0.2", "0.1"), vector(0, "0.2", 0, 1, 0, 0))
-    manufactured = Manufactured(vector(1, 0, "0.5", 0, 1, "0.25"), (wave,))
-    body = replace(shaped("triaxial").body, manufactured=manufactured)
-    start = Impulse(manufactured.start[:3], manufactured.start[3:])
-    scene = one_instant(body, start)
-    motion = solution(scene, "taylor").motion([Fraction(2)], 140)
-    chosen = solution(scene, "arb").motion([Fraction(2)], 150)
-    with mp.workdps(180):
-        for quantity in motion.quantities:
-            apart = _distance(motion[quantity][0], chosen[quantity][0])
-            assert apart <= 2 * motion.radius[0]

@@ -52,8 +52,6 @@ BY_STEPS = (
     "kirchhoff/general-body",
     "kirchhoff/constant-loads",
     "kirchhoff/steklov",
-    "manufactured/euler-from-rest",
-    "manufactured/kirchhoff-path",
     "extremes/kirchhoff-nearly-clebsch",
 )
 
@@ -69,8 +67,8 @@ def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
             step = run.stepper.step(box, now, length, times[-1] - now)
             assert step.flow is not None
             while pending and abs(pending[-1] - now) <= abs(step.length):
-                derivatives.append(step.flow.at(ball((pending.pop() - now) / step.length)) * total)
-            total = step.flow.at(arb(1)) * total
+                derivatives.append(step.flow.whole(ball((pending.pop() - now) / step.length)) * total)
+            total = step.flow.whole(arb(1)) * total
             box = carried(box, step.state, step.tube, step.flow, system.spans)
             now, length = now + step.length, 2 * step.length
         return [in_momenta(scene, matrix) for matrix in derivatives]

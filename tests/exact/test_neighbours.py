@@ -15,12 +15,12 @@ from builders.turns import by_turns
 from builders.written_loads import kirchhoff
 from mpmath import mp, mpf
 
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning import neighbours as module
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
 from taylor_verify.exact.conditioning.flow import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.scenes.motion import Clock, Motion, State
@@ -36,12 +36,11 @@ LOADED = replace(
 )
 # Of the exact motion.
 DIGITS = 90
-# Constant loads; wheels and attitude; a path; a load that changes with time, and a path.
+# Constant loads; wheels and attitude; a path.
 SCENES = (
     "euler/constant-moment",
     "euler/gyrostat-moment",
     "kirchhoff/steady-screw-under-loads",
-    "manufactured/kirchhoff-path",
 )
 
 

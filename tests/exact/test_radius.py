@@ -24,7 +24,6 @@ SCENES = (
     "euler/with-attitude",
     "euler/moment-along-axis",
     "kirchhoff/screw",
-    "manufactured/kirchhoff-tones",
 )
 TIMES = ("1.25", "7")
 

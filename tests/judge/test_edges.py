@@ -13,7 +13,6 @@ from mpmath import mpf
 
 from taylor_verify.judge.conventions.readings import readings
 from taylor_verify.judge.conventions.worlds import worlds
-from taylor_verify.judge.errors.balances import ClockWork
 from taylor_verify.judge.files.coverage import Extent
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement
@@ -57,18 +56,6 @@ def test_the_slack_of_a_clock_grows_with_its_start() -> None:
         scene = replace(load("euler/generic"), clock=Clock(start, times))
         slacks.append(Extent.of(scene, times, rung("f64")).slack)
     assert slacks[1] == 100 * slacks[0] > 0
-
-
-@pytest.mark.parametrize(("turns", "square"), [(0.0, 1 / 2), (400.0, 2.0)])
-def test_a_drift_of_the_clock_is_its_integral(turns: float, square: float) -> None:
-    """Where the work is in proportion to time, P = t, N steps leave u r (N/3)^(1/2) by t = 1.
-
-    The square of r is 1/2 for short steps, and 2 for steps of a radian.
-    """
-    P = np.linspace(0.0, 1.0, 1001)[:, None]
-    work = ClockWork(1.0, mpf(1), np.array([turns]), P)
-    (drift,) = work.drift(Fraction(1, 2**53), 400, np.ones(1), mpf(1))
-    assert drift * 2**53 == pytest.approx((square * 400 / 3) ** 0.5, rel=1e-3)
 
 
 @pytest.mark.parametrize("number", [float, mpf])

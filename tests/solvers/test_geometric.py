@@ -348,7 +348,6 @@ REFUSED = {
     "euler/gyrostat": (TURN_WHEELS, WITHOUT + "wheels"),
     "euler/constant-moment": (["implicit-midpoint"], WITHOUT + "a moment"),
     "euler/damped": (["lie-rk4"], WITHOUT + "damping"),
-    "manufactured/euler-tones": ([], WITHOUT + "a moment that changes with time"),
     "kirchhoff/screw": ([], "made for Euler's equations, got kirchhoff"),
 }
 

@@ -200,7 +200,6 @@ def test_the_equations_of_the_scripts_lead_to_the_exact_motion(
             "among w1 w2 w3 q0 q1 q2 q3, got s1 @ columns",
         ),
         ({"model": "gyrostat"}, "expected the model euler or kirchhoff, got gyrostat"),
-        ({"manufactured": {}}, "expected constant loads, got a manufactured motion"),
     ],
 )
 def test_a_question_beyond_the_equations_is_refused_in_a_sentence(

@@ -31,14 +31,14 @@ PAIR = {"text", "hex"}
 LISTS = ("loads", "states", "instants")
 # Tables whose keys are names that the scene chose.
 NAMED = ("define", "space")
-Kind = tuple[str, frozenset[str], bool, bool, bool, bool]
+Kind = tuple[str, frozenset[str], bool, bool, bool]
 
 
 def kind(scene: Scene) -> Kind:
     """The features by which the questions of two scenes differ in their keys."""
     loads = scene.body.loads
     acts = scene.body.is_free, loads is not None, loads is not None and bool(loads.states)
-    return scene.model, scene.track, scene.body.manufactured is not None, *acts
+    return scene.model, scene.track, *acts
 
 
 @cache

@@ -13,9 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.clocks import Exact, Floats, standing, swing
 from taylor_verify.numbers.tensors import Matrix, Vector
-from taylor_verify.scenes.manufactured import Manufactured
+
+Exact = np.ndarray[Any, Any]
+"""An object array of rationals."""
+Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 
 class Scaled(NamedTuple):
@@ -51,33 +53,6 @@ class Equations(NamedTuple):
             return self
         decay = np.diag([damping] * len(self.constant)) + nothing(len(self.constant))
         return self._replace(linear=self.linear - decay)
-
-    def driven(self, motion: Manufactured | None) -> Equations:
-        """The equations without linear terms, and with the loads and the clock of a manufactured motion.
-
-        z' = N(z) + z*' - N(z*) with z* = S w and w' = W w for the clock w. Its first variable is 1, which
-        makes a product of what is linear; without a motion it is the only one, and absent where no term
-        is linear.
-        """
-        if motion is None and not self.linear.any():
-            return self
-        d = len(self.constant)
-        S, W = swing(motion or standing(d))
-        n = d + len(W)
-        hessian = np.full((n, n, n), Fraction(0), dtype=object)
-        hessian[:d, :d, :d] = self.hessian
-        hessian[:d, d:, d:] = -(S.T @ self.hessian @ S)
-        hessian[:d, d, :d] += self.linear
-        hessian[:d, :d, d] += self.linear
-        loads = np.concatenate([S @ W - self.linear @ S, W])
-        hessian[:, d, d:] += loads
-        hessian[:, d:, d] += loads
-        more = np.full((3, len(W)), Fraction(0), dtype=object)
-        spin, velocity = (
-            np.hstack([form, more[: len(form)]]) for form in (self.spin, self.velocity)
-        )
-        constant = np.concatenate([self.constant, more[0]])
-        return Equations(constant, nothing(n), hessian, spin, velocity)
 
     def scaled(self, units: Vector, time: Fraction, length: Fraction) -> Scaled:
         """The equations with z in ``units``, one for each component; the centre goes by lengths."""

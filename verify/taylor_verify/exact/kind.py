@@ -17,7 +17,6 @@ from taylor_verify.exact.units import Units
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
 
@@ -60,7 +59,7 @@ class Kind(ABC, Generic[B, S]):
 
     @abstractmethod
     def equations(self, body: B) -> Equations:
-        """The equations of z, without the loads of a manufactured motion."""
+        """The equations of z, without written loads."""
 
     @abstractmethod
     def pushed(self, body: B) -> Matrix:
@@ -101,12 +100,8 @@ class Kind(ABC, Generic[B, S]):
         return self.energy(body)
 
     def momentum_equations(self, body: B) -> Equations:
-        """The equations of the momentum, without the loads of a manufactured motion."""
+        """The equations of the momentum, without written loads."""
         return self.equations(body)
-
-    def manufactured_momentum(self, body: B) -> Manufactured | None:
-        """The momentum of the manufactured motion, if there is one."""
-        return body.manufactured
 
     # What is conserved.
 

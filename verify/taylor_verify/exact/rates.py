@@ -1,23 +1,20 @@
 """First and second time derivatives of an exact motion, from its own equations.
 
-The equations are those of exact.equations, z' = c + z.Q z/2, so that z'' = z.Q z'. No difference
-of two motions is taken.
+The equations are those of exact.equations, z' = c + L z + z.Q z/2, so that z'' = L z' + z.Q z'. No
+difference of two motions is taken.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact import clocks
-from taylor_verify.exact.clocks import Floats
-from taylor_verify.exact.equations import Scaled
+from taylor_verify.exact.equations import Floats, Scaled
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.exact.units import Units
@@ -43,12 +40,10 @@ class Rates:
     time: int
 
 
-def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = None) -> Rates:
+def rates(scene: Scene, motion: Motion) -> Rates:
     """The derivatives of a motion of this scene, to the roundings of float64.
 
-    ``elapsed`` are the times of its rows since the start, the scene's own unless they are given; loads
-    that change with time, those of a manufactured motion, ask for them. Raises ValueError for loads that a
-    scene writes down: their rates are not known here.
+    Raises ValueError for loads that a scene writes down: their rates are not known here.
     """
     if scene.body.loads is not None:
         raise ValueError(f"expected a body without written loads, got some @ {scene.name}")
@@ -59,8 +54,6 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
         name: _floats(motion[name], exponents[name]) for name in names if name in motion.quantities
     }
     state, flow = np.concatenate([values[name] for name in moving], axis=1), _flow(scene)
-    if state.shape[1] < len(flow.constant):
-        state = np.hstack([state, _clock(scene, elapsed, len(state))])
     with np.errstate(all="ignore"):  # what is not finite stays so, and is the caller's to see
         velocity, acceleration = _derivatives(flow, moving, state, values.get("attitude"))
     return Rates(
@@ -69,14 +62,6 @@ def rates(scene: Scene, motion: Motion, elapsed: Sequence[Fraction] | None = Non
         units={name: exponents[name] for name in values},
         time=scale.time,
     )
-
-
-def _clock(scene: Scene, elapsed: Sequence[Fraction] | None, rows: int) -> Floats:
-    """The clock at every row, (rows, variables): its 1 alone without a manufactured motion."""
-    motion = scene.body.manufactured
-    if motion is None:
-        return np.ones((rows, 1))
-    return clocks.floats(motion, scene.clock.elapsed if elapsed is None else elapsed)
 
 
 def _units(scene: Scene) -> Units:
@@ -91,8 +76,8 @@ def _derivatives(
 
     ``z`` has the shape (times, n), ``attitude`` (times, 3, 3); without it there is the state alone.
     """
-    rate = flow.constant + np.einsum("iab,ta,tb->ti", flow.hessian, z, z) / 2
-    second = np.einsum("iab,ta,tb->ti", flow.hessian, z, rate)
+    rate = flow.constant + z @ flow.linear.T + np.einsum("iab,ta,tb->ti", flow.hessian, z, z) / 2
+    second = rate @ flow.linear.T + np.einsum("iab,ta,tb->ti", flow.hessian, z, rate)
     firsts, seconds = (
         {name: rows[:, 3 * k : 3 * k + 3] for k, name in enumerate(moving)}
         for rows in (rate, second)
@@ -114,12 +99,9 @@ def _derivatives(
 def _flow(scene: Scene) -> Scaled:
     """The equations of a scene's state in its units."""
     scale, body = _units(scene), scene.body
-    equations = kind_of(body).equations(body).driven(body.manufactured)
-    unit = [power_of_two(e) for e in scale.blocks for _ in range(3)]
-    # The clock of a manufactured motion is of size one.
-    unit += [Fraction(1)] * (len(equations.constant) - len(unit))
+    unit = tuple(power_of_two(e) for e in scale.blocks for _ in range(3))
     times = power_of_two(scale.time), power_of_two(scale.centre)
-    return equations.scaled(tuple(unit), *times)
+    return kind_of(body).equations(body).scaled(unit, *times)
 
 
 def _floats(values: np.ndarray[Any, Any], exponent: int) -> Floats:

@@ -23,7 +23,7 @@ from taylor_verify.scenes.scene import Scene
 _FEW_PRECISIONS: Final = 3
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
-# The functions of a closed form by route: in exact.manufactured, and in ``closed`` of each kind's room.
+# The functions of a closed form by route, in ``closed`` of each kind's room.
 _FUNCTIONS: Final[Mapping[str, str]] = {"arb": "enclosed", "mpmath": "closed_form"}
 CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
 
@@ -98,8 +98,6 @@ def _closed_form(scene: Scene, route: str) -> Solution:
     if scene.body.damping and scene.body.loads is None:
         return _damped(scene, route)
     module = f"{kind_of(scene.body).room}.closed"
-    if scene.body.manufactured is not None:
-        module = "taylor_verify.exact.manufactured"
     if scene.body.loads is not None:
         module = "taylor_verify.exact.euler.heavy"
     try:

@@ -116,14 +116,13 @@ def arcs(
 ) -> Motion:
     """Row k: where the scene's equations lead from the exact state starts[k] in the time spans[k].
 
-    Enclosed to ``digits``, as Solution.motion is, and raises Unsettled likewise. The loads of a
-    manufactured motion change with time: there each arc has to say when it begins, ``begins`` since the
-    start of the scene. Elsewhere that changes nothing. A scene with states of its own needs these too:
-    ``own`` has them by name, those that are held as they are after an instant at the beginning of an arc.
+    Enclosed to ``digits``, as Solution.motion is, and raises Unsettled likewise. Written
+    loads change with time: there each arc has to say when it begins, ``begins`` since the start of the
+    scene. Elsewhere that changes nothing. A scene with states of its own needs these too: ``own`` has them
+    by name, those that are held as they are after an instant at the beginning of an arc.
     """
     body = scene.body
-    changes = body.manufactured is not None or body.loads is not None
-    if changes and len(begins) != len(starts):
+    if body.loads is not None and len(begins) != len(starts):
         raise ValueError(
             f"expected the times at which {len(starts)} arcs under loads that change with time begin, "
             f"got {len(begins)} @ {scene.name}"

@@ -1,7 +1,7 @@
 """The gates of a run: for each quantity its errors, the floor that they are compared with, and the verdict.
 
-The floor is whole before the gate is judged: the roundings of the steps, those of the clock of a load, and
-for an answer from elsewhere the rounding of the input.
+The floor is whole before the gate is judged: the roundings of the steps, and for an answer from elsewhere
+the rounding of the input.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
-from taylor_verify.judge.errors.balances import clock_work
 from taylor_verify.judge.errors.laws import Laws
 from taylor_verify.judge.errors.measured import Comparison, Measured
 from taylor_verify.judge.errors.shift import Shift
@@ -178,10 +177,8 @@ class _Gates:
             yield Gate(self.run, errors, attainable, terms, shift, measured.is_shifted_whole)
 
     def conserved(self) -> Iterator[Gate]:
-        """Yield the gates of drifts by rounding the momenta, and by the roundings of a load's clock."""
-        work, at_nodes = clock_work(self.run.problem.scene), in_mpfr(self.measured.at_nodes)
-        roundoff = self.run.problem.rung.unit_roundoff
-        count, times = max(self.steps.counted, len(self.floor.times)), self.floor.times
+        """Yield the gates of drifts by rounding the momenta."""
+        at_nodes = in_mpfr(self.measured.at_nodes)
         for invariant, errors in self.measured.drifts:
             (scale,) = errors.parts.values()
             if invariant.name in self.measured.worked:
@@ -190,11 +187,7 @@ class _Gates:
                 yield Gate(self.run, errors, attainable, terms)
                 continue
             attainable = self.floor.of_gradients(invariant, at_nodes, scale)
-            clock = work.get(invariant.name)
-            if clock is not None:
-                drift = clock.drift(roundoff, count, times, scale)
-                attainable = np.hypot(attainable, drift)
-            terms = self._terms(errors, attainable, Carried.GRADIENT, clock is not None)
+            terms = self._terms(errors, attainable, Carried.GRADIENT)
             yield Gate(self.run, errors, attainable, replace(terms, conserved=invariant.because))
 
     def sound_attitude(self) -> Iterator[Gate]:
@@ -231,11 +224,9 @@ class _Gates:
             terms = Reason(floor=RoundoffFloor(Carried.LAW))
             yield Gate(self.run, law.errors, law.attainable, terms)
 
-    def _terms(
-        self, errors: Errors, attainable: Floats, carried: Carried, clock_work: bool = False
-    ) -> Reason:
+    def _terms(self, errors: Errors, attainable: Floats, carried: Carried) -> Reason:
         terms = self.floor.terms(attainable, errors, carried)
-        return Reason(floor=replace(terms, clock_work=clock_work), claim=self.steps.claim)
+        return Reason(floor=terms, claim=self.steps.claim)
 
 
 def _mean(errors: Floats) -> float:

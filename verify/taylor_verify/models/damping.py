@@ -40,7 +40,7 @@ class Damped(Mechanics[Body, State]):
     def __init__(self, free: Mechanics[Any, Any]) -> None:
         self._free = free
         self.body_letters = (*free.body_letters, _LETTER)
-        self.momenta, self.inverse = free.momenta, free.inverse
+        self.momenta = free.momenta
 
     @property
     def equations(self) -> Equations:

@@ -11,7 +11,6 @@ from fractions import Fraction
 
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.letters import numbers_of
-from taylor_verify.models.manufactured import Loaded
 from taylor_verify.models.mechanics import components
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
@@ -21,8 +20,6 @@ from taylor_verify.scenes.parts import Shape
 
 _ATTITUDE = ("e0", "e1", "e2", "e3")
 _CENTRE = ("c1", "c2", "c3")
-# Letters of the parameters of a manufactured motion.
-_OF_MOTION = "hknabfg"
 # Letters of the parameters of written loads.
 _OF_LOADS = "gv"
 
@@ -36,11 +33,6 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
     kind = mechanics(body)
     numbers = numbers_of(body, problem.units)
     equations: Equations = kind.equations
-    own, motion = kind.states, body.manufactured
-    if motion is not None:
-        equations = Loaded(equations, len(motion.waves), kind.inverse)
-        own += tuple(name for name in problem.form.states if name[0] in "uv")
-        numbers |= {n: value for n, value in problem.parameter.items() if n[0] in _OF_MOTION}
     written = problem.form.equations
     if isinstance(written, Written):
         equations = replace(written, free=equations)
@@ -48,7 +40,7 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
     frame = tuple(name for name in problem.form.states if name[0] in "ec")
     numbers |= {n: value for n, value in problem.parameter.items() if n == "s"}
     known = {**problem.parameter, **problem.state}
-    states = own + frame
+    states = kind.states + frame
     names = tuple(name for name, value in numbers.items() if value or zeros or name[0] == "g")
     form = Form(equations, states, names)
     return replace(

@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final, final
 
-from taylor_verify.models.algebra import add, apply, cross, minus
+from taylor_verify.models.algebra import add, apply, cross
 from taylor_verify.models.choice import Choice
 from taylor_verify.models.euler import euler_equations
 from taylor_verify.models.form import Equations, Named, labelled
-from taylor_verify.models.manufactured import EULER_INVERSE, Inverse, Moved
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.rigid import Rigid, chosen_equations
 from taylor_verify.models.units import Units, binary, size
@@ -43,22 +42,12 @@ class WithWheels:
         return rates | labelled("H", add(H, turned))
 
 
-def _moment(n: Named, momentum: Moved) -> dict[str, Any]:
-    """M = H*' - (H* + r) x K H*, with components e_ijk r_j (K H*)_k taken off."""
-    H, _ = momentum
-    loads, r, K = EULER_INVERSE.loads(n, momentum), n.vector("r"), n.symmetric("K")
-    omega = apply(K, H)
-    turned = cross(r, omega)
-    return labelled("M", [minus(loads[f"M{i}"], turned[i - 1]) for i in (1, 2, 3)])
-
-
 @final
 class Wheeled(Mechanics[Gyrostat, Spin]):
     """Euler's equations with a constant momentum of wheels."""
 
     body_letters = (*Rigid.body_letters, Part("r", Shape.VECTOR, MOMENTUM))
     momenta = Rigid.momenta
-    inverse = Inverse("H", _moment)
 
     @property
     def equations(self) -> Equations:
@@ -80,7 +69,7 @@ class Wheeled(Mechanics[Gyrostat, Spin]):
 
     def units(self, body: Gyrostat, start: Spin, span: Fraction) -> Units:
         """Return the units: H by its size or its growth by the moment, time by omega or by the wheels."""
-        alone = RigidBody(body.inertia, body.moment, body.manufactured)
+        alone = RigidBody(body.inertia, body.moment)
         units = _RIGID.units(alone, start, span)
         rate = size(tensors.apply(body.inverse_inertia, body.rotor))
         return replace(units, time=min(units.time, 1 / binary(rate))) if rate else units

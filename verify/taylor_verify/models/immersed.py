@@ -18,7 +18,6 @@ from taylor_verify.models.kirchhoff import (
     clebsch_equations,
     kirchhoff_equations,
 )
-from taylor_verify.models.manufactured import KIRCHHOFF_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
 from taylor_verify.numbers import tensors
@@ -40,7 +39,6 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         for part in ImmersedBody.PARTS
     )
     momenta = (Part("x", Shape.VECTOR, IMPULSE), Part("y", Shape.VECTOR, MOMENTUM))
-    inverse = KIRCHHOFF_INVERSE
 
     @property
     def equations(self) -> Equations:
@@ -64,19 +62,13 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
 
     def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
         # Without a force |x| is constant; y may start at zero and receive all the energy.
-        motion = body.manufactured
-        state = start.moving if motion is None else motion.reach
+        state = start.moving
         linear, coupling, angular = map(largest, (body.linear, body.coupling, body.angular))
         spun_up = _spun_up(body.energy_matrix, state, angular)
         impulse = size(state[:3]) or binary(size(body.force) * span)
         momentum = max(size(state[3:]), spun_up) or binary(size(body.couple) * span)
         impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
-        rate = max(
-            linear * impulse**2 / momentum,
-            coupling * impulse,
-            angular * momentum,
-            Fraction(0) if motion is None else motion.highest,
-        )
+        rate = max(linear * impulse**2 / momentum, coupling * impulse, angular * momentum)
         # Each impulse is at most twice its unit, which bounds the path unless loads or damping act.
         speed = 6 * (linear * impulse + coupling * momentum)
         path = max(2 * binary(speed * span * impulse / momentum), Fraction(1))

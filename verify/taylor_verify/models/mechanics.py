@@ -15,13 +15,11 @@ from typing import Generic, TypeVar
 
 from taylor_verify.models.choice import Choice
 from taylor_verify.models.form import Equations
-from taylor_verify.models.manufactured import Inverse
 from taylor_verify.models.units import Units
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.parts import Part, Shape, Value
 
@@ -59,26 +57,16 @@ class Change:
         """Return the moving part of the state that has these momenta."""
         return momentum if self.matrix is None else tensors.apply(self.inverse, momentum)
 
-    def motion_of_momenta(self, motion: Manufactured) -> Manufactured:
-        """Return the motion of the momenta for a motion of the state."""
-        return motion if self.matrix is None else motion.mapped(self.matrix)
-
-    def motion_of_state(self, motion: Manufactured) -> Manufactured:
-        """Return the motion of the state for a motion of the momenta."""
-        return motion if self.matrix is None else motion.mapped(self.inverse)
-
 
 class Mechanics(ABC, Generic[B, S]):
     """Ingredients of the equations of one kind of body.
 
     ``body_letters`` are its coefficients and loads, ``momenta`` the vectors that are integrated: parts
     whose names are letters.
-    ``inverse`` makes the loads of a manufactured motion.
     """
 
     body_letters: tuple[Part, ...]
     momenta: tuple[Part, ...]
-    inverse: Inverse
 
     @property
     @abstractmethod

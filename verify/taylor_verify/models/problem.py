@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
-from taylor_verify.models import manufactured, own, written
+from taylor_verify.models import own, written
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.evaluated import wheels
@@ -34,7 +34,6 @@ from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import NoStep
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Clock, State
 from taylor_verify.scenes.scene import Scene
 
@@ -165,8 +164,6 @@ def pose(scene: Scene, rung: Rung) -> Problem:
     start, unit = scene.clock.start, units.time
     clock = Clock(start, Instants(len(times), lambda k: start + times[k] * unit))
     data = _rounded_data(scene, units, Rounding(rung))
-    if scene.body.manufactured is not None:
-        data = _with_clock(data, scene.body, scene.body.manufactured, units, Rounding(rung))
     loads = _rounded_loads(scene, rung)
     data = _with_frame(data, own.framed(scene.track, loads), units, rung)
     choice = data.choice
@@ -273,9 +270,7 @@ def pose_as_stored(scene: Scene, rung: Rung) -> Problem:
     """Return the problem of a solver that stores I and omega0, as physics engines do.
 
     I and omega0 are rounded to the rung, and so are the 21 coefficients and x, y of a solid in a fluid.
-    I^-1 is exact, because its computation belongs to the solver. For a manufactured motion the solver
-    stores the scene's frequencies and the coefficients of omega, or of x and y. The motion begins where
-    the rounded numbers say, under the loads of the rounded body. Everything else is as in `pose`. Raises
+    I^-1 is exact, because its computation belongs to the solver. Everything else is as in `pose`. Raises
     NotRepresentable if the rounded data are no valid body.
     """
     posed = pose(scene, rung)
@@ -304,12 +299,8 @@ def adopt(scene: Scene, rung: Rung, instants: Sequence[Fraction]) -> Problem:
 
 def _stored(scene: Scene, rounded: Rounding, loads: Loads | None) -> tuple[Body, State]:
     """Return body and initial state, with each number rounded once; those of the loads are already."""
-    motion = scene.body.manufactured
     start = scene.initial.changed(rounded.part)
-    if motion is not None:
-        motion = Manufactured(rounded.each(motion.constant), rounded.waves(motion))
-        start = start.with_moving(motion.start)
-    body = scene.body.changed(rounded.part).with_motion(motion).with_loads(loads)
+    body = scene.body.changed(rounded.part).with_loads(loads)
     if not tensors.is_positive_definite(body.energy_matrix):
         raise NotRepresentable(
             f"rounded to {rounded.rung.name}, {body.ENERGY} is not positive definite"
@@ -350,35 +341,6 @@ def _rounded_data(scene: Scene, units: Units, rounded: Rounding) -> _Data:
     initial = start.with_parts(place).with_moving(kind.change(given).moving(momentum))
     numbers = named(kind.momenta, momenta) | named(kind.body_letters, values)
     return _Data(kind.choice(numbers, rounded.rung), kind.states, given, initial)
-
-
-def _with_clock(
-    data: _Data, body: Body, motion: Manufactured, units: Units, rounded: Rounding
-) -> _Data:
-    """Return the same under the loads of a manufactured motion, with their clock among the states.
-
-    The coefficients of H*, or x* and y*, and the frequencies are formed exactly and rounded once. The
-    constant part follows from the rounded start, so that the motion begins at the state.
-    """
-    kind = mechanics(body)
-    sizes: Vector = tuple(units.of(part.dimension) for part in kind.momenta for _ in range(3))
-    of_momenta = kind.change(body).motion_of_momenta(motion)
-    scaled = of_momenta.in_units(tuple(1 / size for size in sizes), 1 / units.time)
-    start = tuple(data.choice.numbers[name] for name in data.states)
-    rounded_motion = manufactured.motion_from(rounded.waves(scaled), start)
-    given = kind.change(data.body).motion_of_state(rounded_motion.in_units(sizes, units.time))
-    # The loads need the general coefficients, even if the shorter equations do not.
-    coefficients = numbers_of(data.body, units) | dict(data.choice.numbers)
-    choice = replace(
-        data.choice,
-        equations=manufactured.Loaded(
-            data.choice.equations, len(rounded_motion.waves), kind.inverse
-        ),
-        numbers=coefficients | manufactured.numbers(rounded_motion),
-        because=(*data.choice.because, *manufactured.sentences(rounded_motion, kind.inverse)),
-    )
-    states = data.states + manufactured.states(rounded_motion)
-    return _Data(choice, states, data.body.with_motion(given), data.initial)
 
 
 def _with_frame(data: _Data, track: Collection[str], units: Units, rung: Rung) -> _Data:

@@ -12,7 +12,6 @@ from typing import Final, final
 from taylor_verify.models.choice import Choice, Numbers
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equations
 from taylor_verify.models.form import Equations
-from taylor_verify.models.manufactured import EULER_INVERSE
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
 from taylor_verify.numbers import tensors
@@ -36,7 +35,6 @@ class Rigid(Mechanics[RigidBody, Spin]):
         Part("M", Shape.VECTOR, MOMENT, is_load=True),
     )
     momenta = (Part("H", Shape.VECTOR, MOMENTUM),)
-    inverse = EULER_INVERSE
 
     @property
     def equations(self) -> Equations:
@@ -57,12 +55,7 @@ class Rigid(Mechanics[RigidBody, Spin]):
         return chosen_equations(numbers, rung)
 
     def units(self, body: RigidBody, start: Spin, span: Fraction) -> Units:
-        momentum, motion = tensors.apply(body.inertia, start.omega), body.manufactured
-        if motion is not None:
-            # The reach of the motion and the rate of its waves count, not its start.
-            reached = size(motion.mapped(body.inertia).reach) or Fraction(1)
-            rate = max(size(motion.reach), motion.highest) or Fraction(1)
-            return Units(time=1 / binary(rate), momentum=reached)
+        momentum = tensors.apply(body.inertia, start.omega)
         unit = size(momentum) or binary(size(body.moment) * span) or Fraction(1)
         rate = size(start.omega) or largest(body.inverse_inertia) * unit
         # If the moments differ by many orders of magnitude, H may turn much faster than the body.

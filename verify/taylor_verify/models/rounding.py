@@ -9,7 +9,6 @@ from fractions import Fraction
 from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import Rung, floor_log2
-from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion
 from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
 
@@ -51,12 +50,6 @@ class Rounding:
         shift = -max(floor_log2(entry) for entry in quaternion if entry)
         e0, e1, e2, e3 = (self(entry, shift) for entry in quaternion)
         return (e0, e1, e2, e3)
-
-    def waves(self, motion: Manufactured) -> tuple[Wave, ...]:
-        """Round frequencies and coefficients of a manufactured motion."""
-        return tuple(
-            Wave(self(w.frequency), self.each(w.cosine), self.each(w.sine)) for w in motion.waves
-        )
 
 
 def distinct_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:

@@ -84,8 +84,7 @@ class RoundoffFloor:
     It is u x (``steps`` x ``alike``)^1/2 x ``growth`` where an orbit or a gradient carries the roundings,
     and u x ``steps`` for the length of a quaternion, of which ``lengths`` says what was met; u =
     2^-``bits``. ``alike`` is the number of steps in a row that add nearly the same amount. With
-    ``clock_work`` the roundings of the clock of a manufactured load are in it too. With ``velocities`` a
-    solid's U and Omega were rounded, of which its impulses were made.
+    ``velocities`` a solid's U and Omega were rounded, of which its impulses were made.
     """
 
     carried: Carried
@@ -94,7 +93,6 @@ class RoundoffFloor:
     steps: int = 0
     growth: float | None = None
     alike: int = 1
-    clock_work: bool = False
     velocities: bool = False
     lengths: str = ""
 
@@ -129,8 +127,7 @@ class RoundoffFloor:
     def _additions(self) -> str:
         """Return the clauses on what else is in the floor."""
         repeated = _REPEATED.format(self.alike) if self.alike > 1 else ""
-        clock, inertia = _CLOCK_WORK * self.clock_work, _INERTIA * self.velocities
-        return f"{clock}{inertia}{repeated}"
+        return f"{_INERTIA * self.velocities}{repeated}"
 
 
 # Floors that are not made of steps, or are made of other floors.
@@ -161,9 +158,6 @@ _REPEATED: Final = (
 _INERTIA: Final = (
     "; where one rounding of each component of U and Omega moves (x, y) = M (U, Omega) by more than "
     "u |x_i|, that takes its place, because the file has velocities"
-)
-_CLOCK_WORK: Final = (
-    ", and as many roundings of the clock of the loads, each of which does work ever after"
 )
 
 

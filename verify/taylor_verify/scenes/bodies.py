@@ -12,7 +12,6 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.ellipsoid import Inertias, inertias
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
 from taylor_verify.scenes.stand_in import stand_in
@@ -35,7 +34,6 @@ class Body(Parted):
     STATE: ClassVar[type[State]]
     ENERGY: ClassVar[str]
 
-    manufactured: Manufactured | None
     loads: Loads | None
     damping: Fraction
 
@@ -66,10 +64,10 @@ class Body(Parted):
 
     @property
     def is_free(self) -> bool:
-        """True without loads: no constant ones, no texts, and none of a manufactured motion."""
-        if self.manufactured is not None or self.loads is not None:
-            return False
-        return not any(any(self.part(part)) for part in self.PARTS if part.is_load)
+        """True without loads: no constant ones, and no texts."""
+        return self.loads is None and not any(
+            any(self.part(part)) for part in self.PARTS if part.is_load
+        )
 
     @property
     def others(self) -> frozenset[str]:
@@ -83,15 +81,11 @@ class Body(Parted):
     def acting(self) -> tuple[str, ...]:
         """The names of all that moves the body besides its energy.
 
-        Parts of its own kind such as ``rotor``, ``damping``, ``manufactured``, ``loads`` for texts, and
-        constant loads that are not zero.
+        Parts of its own kind such as ``rotor``, ``damping``, ``loads`` for texts, and constant loads that
+        are not zero.
         """
         own = (part.name for part in self.PARTS if part.name in self.others)
-        changing = (
-            "damping" * bool(self.damping),
-            "manufactured" * (self.manufactured is not None),
-            "loads" * (self.loads is not None),
-        )
+        changing = "damping" * bool(self.damping), "loads" * (self.loads is not None)
         loads = (part.name for part in self.PARTS if part.is_load and any(self.part(part)))
         return tuple(filter(None, (*own, *changing, *loads)))
 
@@ -109,11 +103,6 @@ class Body(Parted):
     def has_velocities(self) -> bool:
         """True if the linear velocity belongs to the motion: U and Omega are linear in the momenta."""
         return False
-
-    def with_motion(self, motion: Manufactured | None) -> Self:
-        """Return the same body with this manufactured motion, or with none."""
-        changed: Self = replace(cast("Any", self), manufactured=motion)
-        return changed
 
     def with_loads(self, loads: Loads | None) -> Self:
         """Return the same body under these loads."""
@@ -144,13 +133,11 @@ class RigidBody(Body):
     """A rigid body about a fixed point or its centre of mass.
 
     ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
-    components, I_12 = -int xy dm); ``moment`` is constant in body axes. Where there is a
-    ``manufactured`` omega, the moment is the one that makes it a motion of this body.
+    components, I_12 = -int xy dm); ``moment`` is constant in body axes.
     """
 
     inertia: Matrix
     moment: Vector = ZERO_VECTOR
-    manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
 
@@ -185,8 +172,7 @@ class ImmersedBody(Body):
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
     constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; its coefficients are
-    irrational. Where there is a ``manufactured`` motion of (x, y), the loads are those
-    that make it a motion of this body.
+    irrational.
     """
 
     linear: Matrix
@@ -195,7 +181,6 @@ class ImmersedBody(Body):
     force: Vector = ZERO_VECTOR
     couple: Vector = ZERO_VECTOR
     ellipsoid: Ellipsoid | None = None
-    manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
 

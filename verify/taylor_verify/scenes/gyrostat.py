@@ -10,7 +10,6 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape
 
@@ -26,7 +25,6 @@ class Gyrostat(Body):
     inertia: Matrix
     rotor: Vector
     moment: Vector = ZERO_VECTOR
-    manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
 

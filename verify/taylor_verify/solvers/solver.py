@@ -16,7 +16,6 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 _ACTING: Final = {
     "rotor": "wheels",
     "moment": "a moment",
-    "manufactured": "a moment that changes with time",
 }
 
 

@@ -24,13 +24,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.differences import settled
 from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
@@ -282,9 +282,9 @@ def differs_dearly(scene: Scene) -> bool:
     """Return True if each difference of the motion would cost a Taylor integration or quadratures.
 
     One integration along it costs less. A start beside it may leave the closed form: a motion in a plane
-    leaves the plane, Weber's loses FG = 0, and a manufactured one has its closed form from one start only.
+    leaves the plane, and Weber's loses FG = 0.
     """
-    if scene.body.manufactured is not None or solution(scene).by_quadrature:
+    if solution(scene).by_quadrature:
         return True
     start = momentum(scene)
     beside = (start.moved(j, unit) for j, unit in enumerate(start.units))

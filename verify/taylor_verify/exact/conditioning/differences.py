@@ -15,10 +15,10 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.damping import decayed
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices

@@ -6,8 +6,7 @@ axes, and moves the centre c,
 
     theta' = R dOmega,        dc' = theta x R U + R dU,
 
-with Omega and U linear in z. Of a manufactured motion z* = S w, with w the clock of exact.clocks and
-w' = W w, the loads are S w' - J(z*) z*/2; they do not depend on z, and so are no part of J.
+with Omega and U linear in z.
 """
 
 from __future__ import annotations
@@ -15,15 +14,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.clocks import Floats, standing, swing
 from taylor_verify.exact.conditioning.momentum import momentum
-from taylor_verify.exact.equations import Scaled, exact, in_units
+from taylor_verify.exact.equations import Floats, Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
@@ -64,13 +61,11 @@ class Flow:
     """The equations in units of their size: d = 3 or 6 components of momentum.
 
     J is linear + hessian @ z. ``momenta`` are the units of each block of the momentum by name; time is
-    measured in ``time``, lengths in ``length``: powers of two. ``waves`` is S and ``turning`` W.
+    measured in ``time``, lengths in ``length``: powers of two.
     """
 
     momenta: Mapping[str, Fraction]
     equations: Scaled
-    waves: Floats
-    turning: Floats
     time: Fraction
     length: Fraction
 
@@ -87,13 +82,9 @@ class Flow:
         time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
         fastest = max((abs(s) for s in (equations.velocity * unit).flat), default=Fraction(0))
         length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
-        motion = kind.manufactured_momentum(scene.body)
-        waves, turning = swing(motion or standing(len(unit)))
         return cls(
             momenta=dict(zip(kind.momenta, units[::3], strict=True)),
             equations=equations.scaled(units, time, length),
-            waves=(waves / unit[:, None]).astype(float),
-            turning=(turning * time).astype(float),
             time=time,
             length=length,
         )
@@ -120,26 +111,13 @@ class Flow:
         """The rate at which volume grows: the trace of J, to which the quadratic terms add nothing."""
         return float(np.trace(self.equations.linear))
 
-    def free(self, z: Floats, jacobian: Floats | None = None) -> Floats:
-        """z' (..., d) at z (..., d) without loads: J counts half, and its linear part whole.
+    def rates(self, z: Floats, jacobian: Floats | None = None) -> Floats:
+        """z' (..., d) at z (..., d) under constant loads: J counts half, and its linear part whole.
 
         ``jacobian`` is J at z, where it is known.
         """
         J = self.jacobian(z) if jacobian is None else jacobian
-        return applied(J + self.equations.linear, z) / 2
-
-    @cached_property
-    def _is_driven(self) -> bool:
-        return bool(self.waves.any())
-
-    def load(self, clock: Floats) -> Floats:
-        """The constant load, and the one that a manufactured motion takes."""
-        if not self._is_driven:
-            return self.equations.constant
-        z, rate = clock @ self.waves.T, clock @ self.turning.T @ self.waves.T
-        constant = self.equations.constant
-        load: Floats = constant + rate - self.free(z)
-        return load
+        return self.equations.constant + applied(J + self.equations.linear, z) / 2
 
     def rate(self, z: Floats) -> Floats:
         """Return the rate that a step must resolve: a step of length h covers h times this rate.
@@ -151,7 +129,7 @@ class Flow:
         square = jacobian @ jacobian
         fifth = _norm(square @ square @ jacobian) ** 0.2
         spin = np.linalg.norm(z @ self.equations.spin.T, axis=-1)
-        own = np.maximum(np.maximum(fifth, spin), np.abs(self.turning).max())
+        own = np.maximum(fifth, spin)
         rate: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
         return rate
 

@@ -18,7 +18,6 @@ import numpy as np
 from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import balls, midpoint
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
 from taylor_verify.exact.conditioning.path_times import MOST_OF_RUN, times_of_run
 from taylor_verify.exact.enclosure.box import Box
@@ -27,6 +26,7 @@ from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.proving import Times
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import product, rotation_matrix, rotation_rows

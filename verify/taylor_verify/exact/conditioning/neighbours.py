@@ -26,10 +26,9 @@ from typing import Any, Final
 import gmpy2
 import numpy as np
 
-from taylor_verify.exact import clocks
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
 from taylor_verify.exact.conditioning.flow import Flow, applied
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.registry import kind_of
@@ -78,10 +77,9 @@ def neighbours(
         ends, errors = arcs.led(exact, start, float(size), derivatives)
         is_close = arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS)
         return arcs.moved(end, ends, size) if is_close else None
-    clock = clocks.floats(scene.body.manufactured, elapsed[:count])
     z, arrival = (arcs.counted(arcs.momentum(motion)) for motion in exact)
     with np.errstate(all="ignore"):  # what is not finite is not negligible
-        reached, errors = arcs.followed(clock, z, start, float(size), spans)
+        reached, errors = arcs.followed(z, start, float(size), spans)
         # No rate of an error is more than about 2 in these units, for a z of 1.
         missed = 4 * (1 + np.abs(spans)) * np.linalg.norm(reached.z - arrival, axis=1)
         largest = np.max(np.abs(np.hstack([start, reached.difference])), axis=1)
@@ -218,37 +216,32 @@ class _Arcs:
         return np.hstack(parts)[:, :width]
 
     def followed(
-        self, clock: Floats, z: Floats, start: Floats, size: float, spans: Floats
+        self, z: Floats, start: Floats, size: float, spans: Floats
     ) -> tuple[_Reached, Floats]:
         """Return the ends of all arcs and the estimated errors of the differences; NaN if too long."""
-        m, d = clock.shape[1], z.shape[1]
-        at = np.hstack([clock, z, start])
+        d, at = z.shape[1], np.hstack([z, start])
         radians = np.max(np.abs(spans) * self.flow.rate(z), initial=0.0)
         if not radians <= _MOST_STEPS * _STEP or np.max(np.abs(start), initial=0.0) > _LARGEST:
             return _Reached(z, start), np.full_like(start, np.nan)
         steps = max(1, ceil(radians / _STEP))
         errors = np.zeros_like(start)
-        rates = partial(self._rates, size=size, m=m, d=d)
+        rates = partial(self._rates, size=size, d=d)
         for _ in range(steps):
             at, error = extrapolated(rates, at, (spans / steps)[:, None])
-            errors += np.abs(error[:, m + d :])
-        return _Reached(at[:, m : m + d], at[:, m + d :]), errors
+            errors += np.abs(error[:, d:])
+        return _Reached(at[:, :d], at[:, d:]), errors
 
-    def _rates(self, at: Floats, size: float, m: int, d: int) -> Floats:
+    def _rates(self, at: Floats, size: float, d: int) -> Floats:
         flow = self.flow
-        clock, z, e = at[:, :m], at[:, m : m + d], at[:, m + d : m + 2 * d]
-        rates = [
-            clock @ flow.turning.T,
-            flow.load(clock) + flow.free(z),
-            applied(flow.jacobian(z + size / 2 * e), e),
-        ]
+        z, e = at[:, :d], at[:, d : 2 * d]
+        rates = [flow.rates(z), applied(flow.jacobian(z + size / 2 * e), e)]
         if self._has_turn:
-            v = at[:, m + 2 * d : m + 2 * d + 3]
+            v = at[:, 2 * d : 2 * d + 3]
             cosine = np.sqrt(1 - size**2 * np.sum(v * v, axis=1))[:, None]
             spin, more = z @ flow.equations.spin.T, e @ flow.equations.spin.T
             rates.append((cosine * more + np.cross(v, 2 * spin + size * more)) / 2)
         if self._has_centre:
-            g = at[:, m + 2 * d + 3 :]
+            g = at[:, 2 * d + 3 :]
             speed = (z + size * e) @ flow.equations.velocity.T
             across = np.cross(v, speed)
             carried = 2 * cosine * across + 2 * size * np.cross(v, across)

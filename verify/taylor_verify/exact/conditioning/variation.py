@@ -17,10 +17,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact import clocks
-from taylor_verify.exact.clocks import Floats
 from taylor_verify.exact.conditioning.extrapolation import FINE, ROUGH, extrapolated
 from taylor_verify.exact.conditioning.flow import Flow, Steps, applied, products
+from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import cross_matrices
@@ -95,11 +94,10 @@ def _steps(
         centre = ((path - path[:1]) / mp.convert(flow.length)).astype(float)
     n, d = z.shape
     R = truth.quantities.get("attitude", np.empty((n, 0, 3))).astype(float)
-    clock = clocks.floats(scene.body.manufactured, points)
     turn = np.zeros((n - 1, R.shape[1], d))
     shift = turn if len(flow.equations.velocity) else turn[:, :0]
     identity = np.tile(np.eye(d), (n - 1, 1, 1))
-    arcs = _Arcs(clock[:-1], z[:-1], R[:-1], identity, turn, shift)
+    arcs = _Arcs(z[:-1], R[:-1], identity, turn, shift)
     spans = np.diff([float(t / flow.time) for t in points])
     reached = _followed(flow, arcs, spans, is_rough)
     if reached is None or not _arrive(reached, z[1:], np.exp(flow.expansion * spans)):
@@ -124,14 +122,13 @@ def _arrive(reached: _Arcs, truth: Floats, volumes: Floats) -> bool:
 
 
 class _Arcs(NamedTuple):
-    """The ends of n arcs: w (n, m), z (n, d), R (n, 3, 3), and what errors of z at their starts became.
+    """The ends of n arcs: z (n, d), R (n, 3, 3), and what errors of z at their starts became.
 
     ``by_momentum`` (n, d, d) are the derivatives of z, ``turn`` and ``shift`` (n, 3, d) those of theta
     and c. Where no attitude is tracked, R, ``turn`` and ``shift`` have no rows, and for a rigid body
     ``shift`` has none.
     """
 
-    clock: Floats
     momentum: Floats
     attitude: Floats
     by_momentum: Floats
@@ -188,8 +185,7 @@ def _rates(flow: Flow, at: _Arcs) -> _Arcs:
         speed = applied(R, at.momentum @ flow.equations.velocity.T)
         shift = R @ (flow.equations.velocity @ at.by_momentum) - cross_matrices(speed) @ at.turn
     return _Arcs(
-        clock=at.clock @ flow.turning.T,
-        momentum=flow.load(at.clock) + flow.free(at.momentum, jacobian),
+        momentum=flow.rates(at.momentum, jacobian),
         attitude=R @ cross_matrices(at.momentum @ flow.equations.spin.T),
         by_momentum=jacobian @ at.by_momentum,
         turn=turn,

@@ -16,7 +16,6 @@ from operator import add, sub
 from typing import Any, Final
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.conserved.polynomial import (
     Polynomial,
     TooLong,
@@ -26,7 +25,7 @@ from taylor_verify.exact.conserved.polynomial import (
     reduced,
     symbols_of,
 )
-from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.equations import Equations, Exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.quantities import COLUMNS

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import exp
+from operator import mul
 from typing import Final
 
 from flint import arb, arb_mat
 
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent, identity
+from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.derivative import Jacobian, jacobian
 from taylor_verify.exact.enclosure.system import column, intervals, magnitudes, reached
 from taylor_verify.exact.enclosure.tube import Tube, accumulated
@@ -23,6 +26,8 @@ from taylor_verify.exact.enclosure.tube import Tube, accumulated
 # The derivative of the flow is wanted to its leading digits alone: orders beyond are bounded, not computed.
 _LITTLE_BITS: Final = 24
 _LEAST_ORDER: Final = 8
+# With more all orders are taken.
+_MOST_GROWTH: Final = 100.0
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ class Flow:
 def flow(bounds: Bounds, box: Box, tube: Tube) -> Flow:
     """The derivative of the flow for every path within the tube."""
     h, n, moving = bounds.series.length, bounds.tape.size, bounds.tape.moving
-    order = _order(tube.growth, bounds.order)
+    order = min(_order(tube.growth, bounds.series.rows), bounds.order - 1)
     slopes = jacobian(bounds, tube.width.entries(), order)
     inner = [_part(term, moving, moving) for term in slopes.terms]
     terms = [_part(identity(n), moving, n)]
@@ -79,20 +84,26 @@ def _padded(vector: arb_mat, length: int) -> arb_mat:
     return column([*vector.entries(), *[arb(0)] * (length - vector.nrows())])
 
 
-def _order(growth: arb_mat, most: int) -> int:
-    """Orders of an exponential that grows as fast: g^m e^g/m! is little, with g the spectral radius."""
+def _order(growth: arb_mat, rows: Rows) -> int:
+    """Orders of V beyond which little is left of it.
+
+    V is about as large as v with v' = g(s) v, v(0) = 1: g(1) is the spectral radius of the growth, and the
+    orders of g are in proportion to those of the state.
+    """
     power = growth
     for _ in range(3):
         power = power * power
-    trace = power.trace()
+    trace, sizes = power.trace(), [sum(map(abs, row), arb(0)) for row in rows]
     if trace.is_zero():
-        return min(_LEAST_ORDER, most - 1)
-    g = arb(2) ** (arb(exponent(trace)) / 8)
-    term, order = g.exp(), 0
-    while order < _LEAST_ORDER or not term < arb(2) ** -_LITTLE_BITS:
-        order += 1
-        term = term * g / order
-    return min(order, most - 1)
+        return _LEAST_ORDER
+    radius, whole = 2 ** (exponent(trace) / 8), sum(sizes, arb(0))
+    rates = [radius * float((size / whole).mid()) for size in sizes]
+    left = exp(min(sum(rate / k for k, rate in enumerate(rates, 1)), _MOST_GROWTH))
+    terms = [1.0]
+    while len(terms) < _LEAST_ORDER or (left >= 2**-_LITTLE_BITS and len(terms) < len(rows)):
+        left -= terms[-1]
+        terms.append(sum(map(mul, rates, reversed(terms))) / len(terms))
+    return len(terms)
 
 
 def flow_defect(slopes: Jacobian, terms: Sequence[arb_mat]) -> arb_mat:

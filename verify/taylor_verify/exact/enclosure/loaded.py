@@ -19,13 +19,13 @@ import numpy as np
 from flint import arb
 
 from taylor_verify.exact.balls import balls
-from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.box import Box, over_box
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.layout import Layout
 from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
 from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.system import Piece, System, Taken
+from taylor_verify.exact.equations import Exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
@@ -52,6 +52,8 @@ class LoadedBody:
             declared=loads.states,
         )
         self._tapes: dict[Any, PieceTapes] = {}
+        # Steps take long to hash, as tapes are looked up by them.
+        self._tapes_from: dict[Fraction | None, PieceTapes] = {}
 
     def system(self) -> System:
         equations, loads = self._kind.equations(self._scene.body), self._loads
@@ -117,10 +119,12 @@ class LoadedBody:
 
     def _tapes_at(self, elapsed: Fraction, is_later: bool) -> PieceTapes:
         piece = self._loads.piece(elapsed, is_later)
-        key = piece[2:]
-        if key not in self._tapes:
-            self._tapes[key] = PieceTapes(self._scene, self._layout, piece)
-        return self._tapes[key]
+        if piece.begin not in self._tapes_from:
+            steps = piece[2:]
+            if steps not in self._tapes:
+                self._tapes[steps] = PieceTapes(self._scene, self._layout, piece)
+            self._tapes_from[piece.begin] = self._tapes[steps]
+        return self._tapes_from[piece.begin]
 
     def _taken(self, instant: Instant) -> Taken:
         """The values that are taken at an instant, by the later piece."""

@@ -7,16 +7,14 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Final
 
-from taylor_verify.exact.clocks import Exact
 from taylor_verify.exact.enclosure.derived import Derived
-from taylor_verify.exact.enclosure.driven import driven
 from taylor_verify.exact.enclosure.framing import Frame, named
 from taylor_verify.exact.enclosure.layout import Layout
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.system import natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
-from taylor_verify.exact.equations import exact
+from taylor_verify.exact.equations import Exact, exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Piece
@@ -82,11 +80,7 @@ class PieceTapes:
         body = self._scene.body
         equations, pushed = self._kind.equations(body), exact(self._kind.pushed(body))
         rates = natural(self._graph, equations, self._z)
-        pushes = formed(pushed, loads)
-        if body.manufactured is not None:
-            motion = driven(self._graph, equations, body.manufactured)
-            pushes = [push + load for push, load in zip(pushes, motion, strict=True)]
-        return [rate + push for rate, push in zip(rates, pushes, strict=True)]
+        return [rate + push for rate, push in zip(rates, formed(pushed, loads), strict=True)]
 
     def functions(self, orders: int) -> Tape:
         """The functions of the motion, then their rates of change, and so on up to an order."""

@@ -1,8 +1,7 @@
-"""The system of a scene: of its body alone, of a manufactured motion, or under written loads."""
+"""The system of a scene: of its body alone, or under written loads."""
 
 from __future__ import annotations
 
-from taylor_verify.exact.enclosure.driven import driven
 from taylor_verify.exact.enclosure.loaded import LoadedBody
 from taylor_verify.exact.enclosure.system import System, always, natural
 from taylor_verify.exact.enclosure.tape import Graph, Tape
@@ -17,9 +16,6 @@ def posed(scene: Scene) -> System:
         return LoadedBody(scene, body.loads).system()
     start, equations, graph = kind.state(scene.initial), kind.equations(body), Graph()
     rates = natural(graph, equations, graph.states(len(start)))
-    if body.manufactured is not None:
-        motion = driven(graph, equations, body.manufactured)
-        rates = [rate + load for rate, load in zip(rates, motion, strict=True)]
     return always(
         Tape.of(graph, len(start), rates),
         tuple(range(3, len(start) + 1, 3)),

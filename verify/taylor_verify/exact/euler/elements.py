@@ -22,7 +22,6 @@ from taylor_verify.exact.euler.moments.washboard.board import Washboard, Washboa
 from taylor_verify.exact.euler.moments.washboard.turnings import regime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import RigidBody
@@ -100,8 +99,6 @@ _BEAD: Final[Mapping[WashboardRegime, tuple[str, ...]]] = {
 def elements(scene: Scene, digits: int) -> Elements:
     """Return the elements of a free body; for a body under a moment at most a period, and sentences."""
     body, start = top(scene)
-    if body.manufactured is not None:
-        return Elements(REGIME, (), MANUFACTURED)
     if not body.is_free:
         return _loaded(body, start.omega, digits)
     spin = FreeSpin(body.inertia, start.omega)

@@ -10,7 +10,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, TypeVar, final
 
-from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, exact, mapped
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
@@ -21,7 +20,6 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.scene import Scene
 
@@ -62,15 +60,12 @@ class Rotating(Kind[B, Spin]):
         return body.inverse_inertia
 
     def units(self, body: B, z: Vector) -> Units:
-        """omega by its size, or what the moment makes of it; time by omega, its fastest wave, h or c."""
-        K, motion = body.inverse_inertia, body.manufactured
+        """omega by its size, or what the moment makes of it; time by omega, h or c."""
+        K = body.inverse_inertia
         wheels = exponent(tensors.apply(K, self.rotor(body)))
-        if motion is None:
-            spun = halved(exponent(tensors.apply(K, body.moment)))
-            omega = largest(exponent(z), spun, default=0)
-            return Units((omega,), 0, -largest(omega, wheels, exponent((body.damping,)), default=0))
-        omega = largest(exponent(motion.reach), default=0)
-        return Units((omega,), 0, -largest(omega, clocks.exponent(motion), wheels, default=0))
+        spun = halved(exponent(tensors.apply(K, body.moment)))
+        omega = largest(exponent(z), spun, default=0)
+        return Units((omega,), 0, -largest(omega, wheels, exponent((body.damping,)), default=0))
 
     def momentum(self, body: B, z: Vector) -> Vector:
         return tensors.apply(body.inertia, z)
@@ -90,9 +85,6 @@ class Rotating(Kind[B, Spin]):
         linear = exact(tensors.cross_matrix(self.rotor(body))) @ exact(K)
         undamped = Equations(exact(body.moment), linear, cross(_ONE, K), exact(K), _NO_VELOCITY)
         return undamped.damped(body.damping)
-
-    def manufactured_momentum(self, body: B) -> Manufactured | None:
-        return None if body.manufactured is None else body.manufactured.mapped(body.inertia)
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body: B = scene.body  # type: ignore[assignment]

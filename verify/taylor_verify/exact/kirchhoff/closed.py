@@ -72,7 +72,7 @@ def case(scene: Scene) -> Case:
     body, _ = solid(scene)
     whole = Reduced(scene)
     if not body.is_free:
-        solved = steady(whole) if body.manufactured is None else None
+        solved = steady(whole)
         if solved is None:
             raise NoClosedForm("a force or a couple acts on the body")
         return solved

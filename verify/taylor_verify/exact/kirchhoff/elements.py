@@ -12,7 +12,6 @@ from taylor_verify.exact.kirchhoff.axes import Axes
 from taylor_verify.exact.kirchhoff.closed import Case, case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.manufactured import MANUFACTURED, REGIME
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
 
@@ -26,8 +25,6 @@ _LOADED: Final = (
 def elements(scene: Scene, digits: int) -> Elements:
     """Return the elements of the orbit, to ``digits`` significant digits."""
     body, _ = solid(scene)
-    if body.manufactured is not None:
-        return Elements(REGIME, (), MANUFACTURED)
     impulses, whole = _case(replace(scene, track=frozenset())), _case(scene)
     if impulses is None and not body.is_free:
         return Elements(NO_CLOSED_FORM, (), _LOADED)

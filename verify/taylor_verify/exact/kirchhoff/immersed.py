@@ -11,7 +11,6 @@ from typing import Final, final
 
 import numpy as np
 
-from taylor_verify.exact import clocks
 from taylor_verify.exact.equations import Equations, cross, exact, nothing
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
@@ -63,9 +62,7 @@ class Immersed(Kind[ImmersedBody, Impulse]):
 
     def units(self, body: ImmersedBody, z: Vector) -> Units:
         """Return units of the blocks: their sizes, or their changes in a unit of time."""
-        # What a manufactured motion reaches, not where it begins, is the size of its impulses.
-        reached = z if body.manufactured is None else body.manufactured.reach
-        x, y, force, couple = reached[:3], reached[3:], body.force, body.couple
+        x, y, force, couple = z[:3], z[3:], body.force, body.couple
         a, b, c = body.linear, body.coupling, body.angular
         driven = tensors.apply(body.energy_matrix, force + couple)
         omega = largest(
@@ -81,8 +78,6 @@ class Immersed(Kind[ImmersedBody, Impulse]):
             later(exponent(driven[:3]), time),
             default=omega,
         )
-        if body.manufactured is not None:
-            time = -largest(omega, clocks.exponent(body.manufactured), default=0)
         linear = largest(exponent(x), later(exponent(force), time), default=0)
         moment = linear + velocity + time
         angular = largest(exponent(y), later(exponent(couple), time), moment, default=0)

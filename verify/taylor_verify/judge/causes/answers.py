@@ -73,7 +73,7 @@ _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 def are_known(body: Body) -> bool:
     """Return True if every part of the body has its terms in the search."""
-    return body.others <= _WITH_TERMS and body.manufactured is None
+    return body.others <= _WITH_TERMS
 
 
 @dataclass(frozen=True)

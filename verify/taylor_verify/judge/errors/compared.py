@@ -196,7 +196,7 @@ class Compared:
         motion = run.motion(elapsed, run.digits)
         if motion is None:
             return None
-        fit = self.fit(motion, rates(run.scene, motion, elapsed), shifts)
+        fit = self.fit(motion, rates(run.scene, motion), shifts)
         return fit if fit.is_finite else None
 
     def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:

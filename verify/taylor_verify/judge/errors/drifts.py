@@ -13,10 +13,6 @@ that of the exact motion, which holds the work of all loads.
 
 For a damped body without loads Q is evaluated at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so
 on are conserved. With loads or wheels they are not conserved, and Q itself has a balance.
-
-A manufactured motion has balances too, and each arc starts with the loads of the time at which it begins.
-A solver integrates the clock of these loads with the state. The roundings of the clock do work that adds
-up from step to step, and the bound of the balance includes it (judge.errors.balances).
 """
 
 from __future__ import annotations

@@ -8,9 +8,6 @@ solution and not in its derivative. The effect is measured in the unit of every 
 
 If there are many inputs, all of them are changed at once, up or down at random. The expected mean square
 over such draws is the same sum.
-
-The coefficients and frequencies of a manufactured motion are inputs too, and so is the start. The changed
-motion begins at the changed start, under the loads of the changed motion and body.
 """
 
 from __future__ import annotations
@@ -43,7 +40,6 @@ from taylor_verify.judge.floor.moves import Moves
 from taylor_verify.judge.velocities import has_velocities, velocity
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
-from taylor_verify.scenes.manufactured import Manufactured, Wave
 from taylor_verify.scenes.motion import Clock, Motion
 from taylor_verify.scenes.parts import Part, Shape, Value
 from taylor_verify.scenes.scene import Scene
@@ -89,8 +85,7 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
             name: np.sum([squares_of_move[name] for squares_of_move in moved], axis=0) / draws
             for name in names
         }
-        data = "body and start" if scene.body.manufactured is None else "body, motion and start"
-        words = f"each of the {numbers} numbers of {data} that are not zero"
+        words = f"each of the {numbers} numbers of body and start that are not zero"
         if not all(rung.holds(t) for t in instants):
             later = tuple(t * (1 + rung.unit_roundoff) for t in instants)
             late = replace(scene, clock=Clock(scene.clock.start, later))
@@ -225,17 +220,5 @@ def _changed(scene: Scene, change: Callable[[Place, Fraction], Fraction]) -> Sce
             for i, line in enumerate(value)
         )
 
-    def manufactured(motion: Manufactured) -> Manufactured:
-        constant = row("constant", motion.constant)
-        waves = [
-            (row(f"cosine{k}", wave.cosine), row(f"sine{k}", wave.sine))
-            for k, wave in enumerate(motion.waves)
-        ]
-        frequencies = row("frequency", [wave.frequency for wave in motion.waves])
-        pairs = zip(frequencies, waves, strict=True)
-        return Manufactured(constant, tuple(Wave(nu, *sizes) for nu, sizes in pairs))
-
     body, initial = scene.body.changed(changed), scene.initial.changed(changed)
-    motion = scene.body.manufactured
-    body = body.with_motion(None if motion is None else manufactured(motion))
     return replace(scene, body=body, initial=initial)

@@ -45,8 +45,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _COMPONENT: Final = 0.5
 # A change of a unit quaternion turns the frame by twice as much, in radians.
 _ANGLE: Final = 2.0
-# The largest size of a cosine or sine.
-_WAVE: Final = np.ones(1)
 _QUATERNION: Final = ("e0", "e1", "e2", "e3")
 _COMPONENTS: Final = {
     "momentum": ("H1", "H2", "H3"),
@@ -192,8 +190,7 @@ def _sizes(problem: Problem, path: Path) -> dict[str, Floats]:
 def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return S at every time, by name, in the problem's units; zero for a constant component."""
     form = problem.form
-    # States that do not belong to the body are cosines and sines in the loads of a manufactured motion.
-    states = [Magnitude(sizes.get(name, _WAVE)) for name in form.states]
+    states = [Magnitude(sizes[name]) for name in form.states]
     rates = form.rates(states, [float(value) for value in problem.parameters])
     magnitudes = {name: np.zeros_like(size) for name, size in sizes.items()}
     for name, rate in zip(form.states, rates, strict=True):

@@ -20,7 +20,6 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact import clocks
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.conditioning.flow import applied
 from taylor_verify.exact.rates import rates
@@ -127,18 +126,13 @@ def _differences(path: Path, x: Floats) -> Course:
 
 
 def _momenta(path: Path) -> Course:
-    """Return z, z' and z'' = J(z) (z' - z*') + z*'', where z* are the waves of a manufactured motion."""
+    """Return z, z' and z'' = J(z) z'."""
     flow, z = path.flow, path.momentum
-    clock = clocks.floats(path.scene.body.manufactured, path.elapsed)
-    turning, waves = flow.turning.T, flow.waves.T
-    wave_rate, wave_bend = clock @ turning @ waves, clock @ turning @ turning @ waves
-    unforced = flow.free(z) + flow.load(clock) - wave_rate
-    equations = flow.equations
+    rate, equations = flow.rates(z), flow.equations
     jacobian = np.tensordot(abs(z), abs(equations.hessian), (1, 2)) + abs(equations.linear)
-    # Twice, because the loads of a manufactured motion have the same terms.
-    terms = abs(equations.constant) + 2 * applied(jacobian, abs(z))
-    bend = _resolved(applied(flow.jacobian(z), unforced), applied(jacobian, terms))
-    return Course(z, _resolved(unforced, terms) + wave_rate, bend + wave_bend)
+    terms = abs(equations.constant) + applied(jacobian, abs(z))
+    bend = _resolved(applied(flow.jacobian(z), rate), applied(jacobian, terms))
+    return Course(z, _resolved(rate, terms), bend)
 
 
 def _turns(path: Path, momenta: Course) -> Course:
@@ -153,7 +147,7 @@ def _centre(path: Path) -> Course:
     """Return c, c' and c'' in space axes."""
     scene, length = path.scene, path.units["centre"]
     start = [float(c / length) for c in scene.initial.parts()["centre"]]
-    exact = rates(scene, solution(scene).motion(path.elapsed, _DIGITS), path.elapsed)
+    exact = rates(scene, solution(scene).motion(path.elapsed, _DIGITS))
     unit, later = (
         exact.units["centre"] - floor_log2(length),
         floor_log2(path.flow.time) - exact.time,

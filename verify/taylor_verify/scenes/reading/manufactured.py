@@ -13,7 +13,7 @@ from typing import Final
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.faults import shown
-from taylor_verify.scenes.manufactured import Manufactured, Wave
+from taylor_verify.scenes.loads.manufactured import Manufactured, Wave
 from taylor_verify.scenes.reading.table import Table, complete
 
 # A frequency has one digit in the names of the equations' parameters.

@@ -24,6 +24,7 @@ from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.manufactured import Manufactured
 from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.names import one_line
@@ -112,9 +113,12 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     model = _model(top)
     own, states = own_states(top)
     track = _track(top, model, own)
-    body, loads, initial = _posed(top, model, states or ()) if model else _unread(top)
+    body, loads = _loaded_body(top, model, states or ()) if model else _unread(top)
+    motion, initial = _begun(top, model, body) if model else (None, None)
     time = _part(top, "time", clock)
     body = loaded(body, loads, states, top, folder, time)
+    if body is not None and motion is not None and time is not None:
+        body = body.with_loads(motion.loads(body, time.start))
     top.close(advice(""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
@@ -171,29 +175,26 @@ def _part(
     return part
 
 
-def _unread(top: Table) -> tuple[None, Loads, None]:
+def _unread(top: Table) -> tuple[None, Loads]:
     """Take the tables whose contents are not known without a model."""
     needed = {"body"} if top.has("manufactured") else {"body", "initial"}
     for key in ("body", "manufactured", "initial"):
         if key in needed or top.has(key):
             top.table(key)
-    return None, Loads("euler", ()), None
+    return None, Loads("euler", ())
 
 
-def _posed(
-    top: Table, model: Model, states: tuple[Own, ...]
-) -> tuple[Body | None, Loads, State | None]:
-    """Return the body and its initial state, None after a fault, and what acts on the body."""
-    body, loads = _loaded_body(top, model, states)
+def _begun(top: Table, model: Model, body: Body | None) -> tuple[Manufactured | None, State | None]:
+    """Return a manufactured motion, if there is one, and the initial state; None after a fault."""
     if top.has("manufactured"):
-        body, initial = _manufactured(top, model, body)
-        return body, loads, initial
+        motion = _motion(top, model, body)
+        return motion, _start_of(top, model, motion)
 
     def start(table: Table) -> State | None:
         moving = model.moving(table, body)
         return state(model.kind.STATE, moving, place(table, model.kind.STATE))
 
-    return body, loads, _part(top, "initial", start, model)
+    return None, _part(top, "initial", start, model)
 
 
 def _loaded_body(top: Table, model: Model, states: tuple[Own, ...]) -> tuple[Body | None, Loads]:
@@ -227,18 +228,9 @@ def _track(top: Table, model: Model | None, own: frozenset[str]) -> frozenset[st
     return with_needs(words) & (own | frozenset(TRACKED[model.name]))
 
 
-def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | None, State | None]:
-    """Return the body with its manufactured motion, and the state in which that motion begins."""
-    kind = model.kind.STATE
-    motion = _part(top, "manufactured", partial(manufactured, vectors=kind.MOVING))
-    start = (top.table("initial") if top.has("initial") else None) or top.empty("initial")
-    for name in kind.MOVING + model.velocities:
-        if start.has(name):
-            start.take(name, "nothing")
-            got = "another one beside a manufactured motion"
-            start.fault("the start that the motion has", got, name, f"remove `{name}`")
-    initial = state(kind, motion.start if motion else None, place(start, kind))
-    start.close(advice("initial", model.name))
+def _motion(top: Table, model: Model, body: Body | None) -> Manufactured | None:
+    """Return the manufactured motion of a scene; all else that acts on the body is a fault."""
+    motion = _part(top, "manufactured", partial(manufactured, vectors=model.kind.STATE.MOVING))
     values = body.parts() if body else {}
     for name in model.kind.load_names():
         load = values.get(name, ())
@@ -251,4 +243,18 @@ def _manufactured(top: Table, model: Model, body: Body | None) -> tuple[Body | N
     if body is not None and body.damping:
         expected, mend = "no damping beside a manufactured motion", f"remove `{DAMPING.name}`"
         top.fault(expected, shown(body.damping), f"body.{DAMPING.name}", mend)
-    return (None if body is None else body.with_motion(motion)), initial
+    return motion
+
+
+def _start_of(top: Table, model: Model, motion: Manufactured | None) -> State | None:
+    """Return the state in which a manufactured motion begins; the scene gives only its place."""
+    kind = model.kind.STATE
+    start = (top.table("initial") if top.has("initial") else None) or top.empty("initial")
+    for name in kind.MOVING + model.velocities:
+        if start.has(name):
+            start.take(name, "nothing")
+            got = "another one beside a manufactured motion"
+            start.fault("the start that the motion has", got, name, f"remove `{name}`")
+    initial = state(kind, motion.start if motion else None, place(start, kind))
+    start.close(advice("initial", model.name))
+    return initial

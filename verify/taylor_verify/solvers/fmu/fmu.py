@@ -74,8 +74,6 @@ class Fmu(Solver):
     def unsuited(self, problem: Problem) -> str:
         if reason := super().unsuited(problem):
             return reason
-        if problem.given.body.manufactured is not None:
-            return f"{self.name} is asked with constant loads, and not with a manufactured motion"
         if min(problem.given.clock.elapsed) < 0:
             return f"{self.name} steps forwards in time, and the scene runs backwards"
         return ""

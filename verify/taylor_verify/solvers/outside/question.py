@@ -230,8 +230,6 @@ def read(scene: Any, takes_loads: bool = False) -> Question:
     Loads and states that a scene writes down are left to whoever takes them (acting.py).
     """
     body, initial, clock = scene["body"], scene["initial"], scene["time"]
-    if "manufactured" in scene:
-        raise Unsuited("expected constant loads, got a manufactured motion")
     if "loads" in scene and not takes_loads:
         raise Unsuited("expected constant loads, got some that the scene writes down")
     columns = scene["columns"][1:]

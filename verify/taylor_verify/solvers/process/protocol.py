@@ -34,7 +34,7 @@ from taylor_verify.solvers.values import exact, named_once
 
 # The version of a question, and those of what acts besides constant loads: a program can refuse them.
 VERSION: Final = 1
-VERSIONS: Final = {"manufactured": 2, "rotor": 3, "damping": 4, "loads": 5}
+VERSIONS: Final = {"rotor": 3, "damping": 4, "loads": 5}
 
 # A time is read from a decimal, formed as start + k dt and printed again: three roundings, plus one.
 _TIME_ROUNDINGS = 4
@@ -115,15 +115,6 @@ def _data(problem: Problem) -> dict[str, Any]:
         },
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
-    if body.manufactured is not None:
-        # The motion of what a program integrates: of H = I omega, or of x and y as it stands.
-        motion = mechanics(body).change(body).motion_of_momenta(body.manufactured)
-        numbers["manufactured"] = {
-            "frequencies": [wave.frequency for wave in motion.waves],
-            "cosines": [wave.cosine for wave in motion.waves],
-            "sines": [wave.sine for wave in motion.waves],
-            "constant_part": motion.constant,
-        }
     numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
     # Rounded to the rung's bits, whatever the exponent: the scene's own units may be far from one.
     bits = Rung(rung.name, rung.bits)

@@ -15,12 +15,6 @@ from taylor_verify.scenes.scene import Scene
 
 _EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
 _MOMENTUM: Final = r"\mathbf H = \mathsf I \boldsymbol\omega"
-_WAVES: Final = r"\mathbf a_0 + \sum_n (\mathbf a_n \cos \nu_n t + \mathbf b_n \sin \nu_n t)"
-_MADE_OMEGA: Final = (
-    rf"\boldsymbol\omega^*(t) = {_WAVES}",
-    r"\mathbf M(t) = \mathsf I \dot{\boldsymbol\omega}^* + \boldsymbol\omega^* \times "
-    r"\mathsf I \boldsymbol\omega^*",
-)
 _LINEAR: Final = r"\dot{\mathbf x} = \mathbf x \times \boldsymbol\Omega"
 _ANGULAR: Final = (
     r"\dot{\mathbf y} = \mathbf y \times \boldsymbol\Omega + \mathbf x \times \mathbf U"
@@ -32,12 +26,6 @@ _VELOCITIES: Final = (
 _ENERGY: Final = (
     r"T = \frac{1}{2} \mathbf x \cdot \mathsf A \mathbf x + \mathbf x \cdot \mathsf B \mathbf y "
     r"+ \frac{1}{2} \mathbf y \cdot \mathsf C \mathbf y"
-)
-_MADE_IMPULSE: Final = (
-    rf"(\mathbf x^*, \mathbf y^*)(t) = {_WAVES}",
-    r"\mathbf X(t) = \dot{\mathbf x}^* - \mathbf x^* \times \boldsymbol\Omega^*",
-    r"\mathbf L(t) = \dot{\mathbf y}^* - \mathbf y^* \times \boldsymbol\Omega^* "
-    r"- \mathbf x^* \times \mathbf U^*",
 )
 _CENTRE: Final = r"\dot{\mathbf c} = \mathsf R \mathbf U"
 
@@ -59,17 +47,12 @@ def equations(scene: Scene) -> list[str]:
 
 def _euler_equations(body: RigidBody) -> list[str]:
     loaded = "" if body.is_free or not _has_loads(body) else r" + \mathbf M" + _written(body)
-    if body.manufactured is not None:
-        return [f"{_EULER}{loaded}(t)", _MOMENTUM, *_MADE_OMEGA]
     damped = r" - c \mathbf H" if body.damping else ""
     wheels = r" + \mathbf h(t, \mathbf z)" if body.loads and body.loads.rotor else ""
     return [f"{_EULER}{damped}{loaded}", f"{_MOMENTUM}{wheels}"]
 
 
 def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
-    if body.manufactured is not None:
-        linear, angular = rf"{_LINEAR} + \mathbf X(t)", rf"{_ANGULAR} + \mathbf L(t)"
-        return [linear, angular, _VELOCITIES, _ENERGY, *_MADE_IMPULSE]
     force = r" - c \mathbf x" if body.damping else ""
     couple = r" - c \mathbf y" if body.damping else ""
     force += rf" + \mathbf X{_written(body)}" if body.loads or any(body.force) else ""

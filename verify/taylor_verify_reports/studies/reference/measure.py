@@ -15,7 +15,6 @@ from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.library import find
-from taylor_verify.scenes.manufactured import Manufactured
 from taylor_verify.scenes.scene import Scene
 
 DIGITS: Final = 32
@@ -41,7 +40,6 @@ def reference(scene: Scene) -> dict[str, Any]:
         "route": printed["route"],
         "digits": DIGITS,
         "body": _exact_parts(scene.body.parts()),
-        **_manufactured(scene.body.manufactured),
         **_written(scene),
         "initial": _initial(scene),
         "columns": _columns(scene, printed["rows"]),
@@ -60,17 +58,6 @@ def _columns(scene: Scene, rows: Sequence[dict[str, Any]]) -> dict[str, list[str
 
 
 # The scene, in exact text.
-
-
-def _manufactured(motion: Manufactured | None) -> dict[str, Any]:
-    """Return the manufactured motion of omega, or of x and y as one vector, by the time since the start.
-
-    The result is empty for a scene without one.
-    """
-    if motion is None:
-        return {}
-    waves = [{name: _exact(value) for name, value in vars(wave).items()} for wave in motion.waves]
-    return {"manufactured": {"constant": _exact(motion.constant), "waves": waves}}
 
 
 def _written(scene: Scene) -> dict[str, str]:
