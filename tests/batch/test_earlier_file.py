@@ -10,23 +10,29 @@ from typing import Any
 import pytest
 from builders.verdicts import row
 
+from taylor_verify.batch.comparison import compare_with_baseline
 from taylor_verify.batch.differences import compare
 from taylor_verify.batch.earlier_file import load
+from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import load as load_report
 from taylor_verify.records.store import write
+from taylor_verify.records.sums import with_sum
 
 
 def test_both_documents_are_read(tmp_path: Path) -> None:
     """verdicts.json of --out, and the document of --json, give the rows that were written."""
     made = [row(), row(quantity="T"), row(quantity="H2", verdict=Status.FAIL, max=math.nan)]
     write(tmp_path, made, [])
-    report, stored = load_report(tmp_path), load(tmp_path / "data" / "verdicts.json")
+    report, (stored, is_edited) = load_report(tmp_path), load(tmp_path / "data" / "verdicts.json")
+    assert is_edited is False
     assert (compare(report, stored).compared, compare(report, stored).all) == (3, ())
     file = tmp_path / "printed.json"
     document = {"verdicts": [{**v.row(), "of_later_versions": 1} for v in made], "summary": {}}
     file.write_text(json.dumps(document), encoding="utf-8")
-    assert (compare(load(file), made).compared, compare(load(file), made).all) == (3, ())
+    printed, is_edited = load(file)
+    assert is_edited is None
+    assert (compare(printed, made).compared, compare(printed, made).all) == (3, ())
 
 
 @pytest.mark.parametrize(
@@ -43,6 +49,11 @@ def test_both_documents_are_read(tmp_path: Path) -> None:
         ({"scene": None}, "expected a text, got None @ verdicts[1].scene"),
         ({"provenance": {}}, "got none @ verdicts[1].provenance.scene"),
         ({"provenance": None}, "expected an object, got None @ verdicts[1].provenance"),
+        ({"mean": 1e-14}, "no more than the largest error 5e-15, got 1e-14 @ verdicts[1].mean"),
+        (
+            {"rung": "f63"},
+            "expected a precision (f32 f64 f80 f128 mpN), got 'f63' @ verdicts[1].rung",
+        ),
         ({"quantity": "omega"}, "every row once, got more of euler/generic taylor f64 omega"),
     ],
 )
@@ -57,3 +68,34 @@ def test_a_row_that_is_none_is_refused_by_its_place(
         load(file)
     assert message in str(refused.value)
     assert str(file) in str(refused.value)
+
+
+DOCUMENT = {"verdicts": [row().row()], "summary": {"pass": 1}, "notes": ["a note, \u03c9"]}
+
+
+def test_a_printed_document_has_the_sum_of_its_content(tmp_path: Path) -> None:
+    """Another layout, order of keys or spelling of a number leaves it; another number or key does not."""
+    file, summed = tmp_path / "printed.json", with_sum(DOCUMENT)
+    respelt = json.dumps(dict(reversed(summed.items())), indent=4).replace("7.0", "70e-1")
+    others = ({**summed, "notes": []}, {**summed, "sha256": ""}, {**summed, "more": 1})
+    texts = {json.dumps(summed): False, respelt: False}
+    for text, is_edited in (texts | dict.fromkeys(map(json.dumps, others), True)).items():
+        file.write_text(text, encoding="utf-8")
+        assert load(file)[1] is is_edited
+
+
+def test_nothing_passes_by_an_edited_baseline(tmp_path: Path) -> None:
+    """A regression beside it is a failure all the same; without a sum there is a note."""
+    write(tmp_path, [row()], [])
+    file = tmp_path / "data" / "verdicts.json"
+    same, worse = (Judgement((each,), None) for each in (row(), row(500.0, bound=1e-9)))
+    assert compare_with_baseline(same, file).passed
+    file.write_text(file.read_text().replace("5e-15", "6e-15"))
+    doubted = compare_with_baseline(same, file)
+    assert (doubted.exit_status, compare_with_baseline(worse, file).exit_status) == (3, 1)
+    with pytest.raises(NotPassed, match="is not what a run has written, by its own sum"):
+        doubted.raise_for_failure()
+    file.with_name("verdicts.sha256").unlink()
+    alone = compare_with_baseline(same, file)
+    assert alone.passed
+    assert "has no sum" in alone.notes[0]

@@ -84,7 +84,7 @@ def unscored(scene: str, rung: str, quantity: str, status: Status, outcome: str)
     return Verdict(
         *(scene, "taylor", rung, "", quantity, status, outcome),
         reason=stated(Cause.STATED, because),
-        provenance=PROVENANCE,
+        provenance={**PROVENANCE, "scene": f"digest of {scene}"},
     )
 
 

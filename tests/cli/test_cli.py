@@ -121,10 +121,10 @@ def test_help_imports_nothing_heavy() -> None:
 def test_run_prints_one_document_with_every_key_of_the_contract(
     capsys: Captured, short: Path
 ) -> None:
-    """stdout holds {"verdicts", "summary"} and nothing else; the counts add up."""
+    """stdout holds one document and nothing else; the counts add up."""
     assert main(["run", str(short), "--rung", "f32", "f64", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
-    assert set(document) == {"verdicts", "summary"}
+    assert set(document) == {"verdicts", "summary", "sha256"}
     names = {
         *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
         *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
@@ -248,7 +248,7 @@ def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", noisy)
     assert main(["run", "euler/generic", "--json"]) == 3
     out, error = capfd.readouterr()
-    assert set(json.loads(out)) == {"verdicts", "summary"}
+    assert set(json.loads(out)) == {"verdicts", "summary", "sha256"}
     assert "noise from below" in error
     assert "noise from Python" in error
 

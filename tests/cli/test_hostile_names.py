@@ -19,8 +19,8 @@ from rich.text import Text
 
 from taylor_verify.cli import main
 from taylor_verify.cli.console import EscapingConsole, Page
+from taylor_verify.records.escapes import escaped
 from taylor_verify.report import csv_tables as sheets
-from taylor_verify.scenes.names import escaped
 
 ROOT = Path(__file__).resolve().parents[2]
 # Clear the screen, ring, a title for the window, the same in C1, and a turn of the direction.

@@ -31,6 +31,7 @@ from taylor_verify.cli import main
 from taylor_verify.records import schema, store
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
+from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, exit_status, read_row
 from taylor_verify.words import annotations, junit
 from taylor_verify.words.account import with_numbers as sentence
@@ -397,7 +398,8 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
     assert is_green(Path("r.xml").read_text(encoding="utf-8"))
     capsys.readouterr()
     # A file of another name is compared all the same: each run writes one.
-    Path("base.json").write_text(printed.replace("mine.csv", "other.csv"), encoding="utf-8")
+    of_another = with_sum(json.loads(printed.replace("mine.csv", "other.csv")))
+    Path("base.json").write_text(json.dumps(of_another), encoding="utf-8")
     assert main(call) == 0
     assert "the baseline is of the file other.csv, and this is mine.csv" in capsys.readouterr().err
     Path("base.json").write_text(printed, encoding="utf-8")
@@ -468,7 +470,7 @@ def test_junit_and_summary_are_written_beside_the_answer(
     Path("summary.md").write_text("of another command\n", encoding="utf-8")
     assert main(["run", str(short), "--junit", "a/b.xml", "--github", "--json"]) == 0
     out, error = capsys.readouterr()
-    assert set(json.loads(out)) == {"verdicts", "summary"}
+    assert set(json.loads(out)) == {"verdicts", "summary", "sha256"}
     assert is_green(Path("a/b.xml").read_text(encoding="utf-8"))
     assert Path("summary.md").read_text(encoding="utf-8").startswith("of another command\n## ta")
     assert "::" not in error

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from builders.verdicts import MIXED, RECORD
 
+from taylor_verify.batch.report import read_report
 from taylor_verify.cli import main
 from taylor_verify.records import store
 from taylor_verify_reports.studies.site import pages
@@ -64,8 +65,14 @@ DAMAGES: dict[str, tuple[Callable[[Rows], object], str]] = {
     "a word": (each(max="x"), "expected a number or null, got 'x' @ verdicts[0].max"),
     "many digits": (each(max=10**4000), "got "),
     "one row less": (lambda rows: rows.pop(), ""),
-    "no rows": (lambda rows: rows.clear(), ""),
-    "another solver": (each(solver="mine"), ""),
+    "no rows": (lambda rows: rows.clear(), "expected rows of a run, got none @ verdicts"),
+    "another solver": (each(solver="mine"), "expected a run with its time in timings.json, got"),
+    "another scene": (
+        each(scene="euler/none"),
+        "expected the digest of the scene's text, got none",
+    ),
+    "no precision": (each(rung="f63"), "expected a precision (f32 f64 f80 f128 mpN), got 'f63'"),
+    "a mean above all": (each(mean=1e9), "expected no more than the largest error"),
 }
 
 
@@ -82,6 +89,18 @@ def test_damaged_verdicts_are_refused(damage: str, report: Path, capsys: Capture
     assert fault in message
     assert "Error" not in message
     assert "sys." not in message
+
+
+@pytest.mark.parametrize("gone", [False, True])
+def test_verdicts_without_their_sum_are_edited(gone: bool, report: Path, capsys: Captured) -> None:
+    """A sum that was deleted says as little as a wrong one."""
+    file = report / "data" / store.SUM
+    file.unlink() if gone else file.write_text("")
+    status, message = published(report, capsys)
+    assert (status, message.count("\n")) == (2, 1)
+    assert "expected the verdicts that a run has written" in message
+    assert read_report(report).edited is (None if gone else True)
+    assert published(report, capsys, "--edited")[0] == 0
 
 
 def test_every_page_of_edited_verdicts_says_so(report: Path, capsys: Captured) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike, fspath
+from typing import Final
 
 from taylor_verify.batch import earlier_file
 from taylor_verify.batch.differences import (
@@ -19,6 +20,9 @@ from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
 
+_EDITED: Final = "is not what a run has written, by its own sum: nothing passes by it"
+_WITHOUT_SUM: Final = "has no sum: nothing says that it is what a run has written"
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -27,7 +31,8 @@ class Comparison:
     ``failures`` fail the comparison: what is worse than in a baseline, or whatever left the rounding class
     of a published row. ``undecided`` rows were asked another question before, and ``changes`` fail
     nothing; a comparison with published rows has neither. ``before`` are the earlier rows that were
-    asked for again, ``notes`` what else there is to say. With ``decides`` the comparison alone decides
+    asked for again, ``notes`` what else there is to say. Nothing passes by earlier rows that are
+    ``doubted``: they were edited since a run wrote them. With ``decides`` the comparison alone decides
     whether a run is red, whatever its own bounds say. The truth value is ``passed``.
     """
 
@@ -38,13 +43,14 @@ class Comparison:
     before: tuple[Verdict, ...]
     notes: tuple[str, ...] = ()
     decides: bool = False
+    doubted: bool = False
 
     @property
     def exit_status(self) -> int:
         """Exit status: 1 for a failure, 3 where something or all could not be compared, else 0."""
         if self.failures:
             return 1
-        return 3 if self.undecided or not self.compared else 0
+        return 3 if self.undecided or self.doubted or not self.compared else 0
 
     @property
     def passed(self) -> bool:
@@ -58,15 +64,26 @@ class Comparison:
         """Raise NotPassed, an AssertionError with a line for each difference, unless it passed."""
         if not self.passed:
             lines = [str(difference) for difference in (*self.failures, *self.undecided)]
+            lines += self.notes if self.doubted else ()
             raise NotPassed("\n".join(lines) or "no row was compared")
 
 
 @dataclass(frozen=True)
 class Earlier:
-    """The verdicts of an earlier run, read from ``source`` before a new run begins."""
+    """The verdicts of an earlier run, read from ``source`` before a new run begins.
+
+    ``edited`` says whether they were changed since, and is None where there is no sum.
+    """
 
     source: str
     verdicts: tuple[Verdict, ...]
+    edited: bool | None = False
+
+    @property
+    def _notes(self) -> tuple[str, ...]:
+        if self.edited is False:
+            return ()
+        return (f"{self.source} {_EDITED if self.edited else _WITHOUT_SUM}",)
 
     def compare_as_baseline(
         self, results: Judgements | Judgement, decides: bool = False
@@ -86,7 +103,8 @@ class Earlier:
             report.towards(Direction.OTHER_QUESTION),
         )
         changes = report.towards(Direction.BETTER, Direction.CHANGED, Direction.UNAVAILABLE)
-        return Comparison(report.compared, failures, undecided, changes, before, notes, decides)
+        compared = report.compared, failures, undecided, changes, before, (*self._notes, *notes)
+        return Comparison(*compared, decides, doubted=bool(self.edited))
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
@@ -95,7 +113,8 @@ class Earlier:
         failures = report.towards(
             *(each for each in Direction if each is not Direction.UNAVAILABLE)
         )
-        return Comparison(report.compared, failures, (), (), before)
+        compared = report.compared, failures, (), (), before, self._notes
+        return Comparison(*compared, doubted=bool(self.edited))
 
 
 def compare_with_baseline(
@@ -117,7 +136,7 @@ def read_baseline(file: str | PathLike[str]) -> Earlier:
     Raises records.faults.Refused for a file that cannot be read, and ValueError for one that holds
     something else.
     """
-    return Earlier(fspath(file), earlier_file.load(fspath(file)))
+    return Earlier(fspath(file), *earlier_file.load(fspath(file)))
 
 
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:

@@ -32,7 +32,8 @@ def read_report(folder: str | PathLike[str]) -> Earlier:
 
     Raises FileNotFoundError where there are none, and ValueError for a file that holds something else.
     """
-    return Earlier(fspath(folder), store.load(Path(folder)))
+    place = Path(folder)
+    return Earlier(fspath(folder), store.load(place), store.are_edited(place))
 
 
 def compare_with_published(
@@ -106,4 +107,6 @@ def remarks(results: Judgements | Judgement, comparison: Comparison | None = Non
             remark(difference, Status.UNDECIDED, f"not comparable: {difference}")
         for verdict in results.verdicts if not comparison.compared else ():
             remark(verdict, Status.UNDECIDED, "no row was compared with the baseline")
+        for verdict in results.verdicts if comparison.doubted else ():
+            remark(verdict, Status.UNDECIDED, comparison.notes[0])
     return remarked

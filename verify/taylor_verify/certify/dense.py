@@ -11,12 +11,14 @@ import numpy as np
 from flint import fmpq_poly
 
 from taylor_verify.certify.pieces import Piece, Pieces, merged, polynomial, rational
-from taylor_verify.records.faults import Refused, brief, refusal
+from taylor_verify.records.faults import Faults, Refused, brief, cut, near, refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.reading.table import exact_number
 from taylor_verify.scenes.scene import Scene
 
 Polynomials = list[fmpq_poly]
+
+_LISTS: Final = (list, tuple, np.ndarray)
 
 
 def columns_of(scene: Scene, count: int) -> list[str]:
@@ -191,36 +193,83 @@ def _columns(scene: Scene, name: str, count: int) -> Sequence[str]:
     """Return the columns of a quantity or a group, or of a single column."""
     if name == "attitude" and count == len(COLUMNS["quaternion"]):
         name = "quaternion"
+    known = {n: group.columns for n, group in scene.known_groups.items()}
+    if name != "impulse" and name not in {*known, *(c for group in known.values() for c in group)}:
+        raise refusal("a quantity or a column of the scene", name, "answer", near(name, known))
+    columns = known.get(name, (name,))
     if name == "impulse":
-        return [column for group in MOMENTA["kirchhoff"] for column in COLUMNS[group]]
-    columns = {n: group.columns for n, group in scene.known_groups.items()}.get(name, (name,))
+        columns = tuple(column for group in MOMENTA["kirchhoff"] for column in COLUMNS[group])
     if len(columns) != count:
         raise refusal(f"{len(columns)} components", count, name)
     return columns
 
 
 def of_document(document: Mapping[str, Any], scene: Scene) -> Pieces:
-    """Return the pieces of ``{"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}``."""
-    try:
-        breaks = [_exact(t) for t in document["breaks"]]
-        groups = {
-            n: _columns(scene, n, len(pieces[0])) for n, pieces in document["quantities"].items()
-        }
-        names = [column for columns in groups.values() for column in columns]
-        rows = []
-        for k in range(len(breaks) - 1):
-            each = [p for n in groups for p in document["quantities"][n][k]]
-            rows.append([polynomial(map(_exact, p)) for p in each])
-        lengths = {len(pieces) for pieces in document["quantities"].values()}
-        if lengths != {len(breaks) - 1} or any(len(row) != len(names) for row in rows):
-            raise ValueError("as many pieces as there are between breaks, each with all components")
-    except Refused:
-        raise
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        form = '{"breaks": [..], "quantities": {NAME: [[[c0, c1, ..], ..], ..]}}'
-        raise refusal(f"pieces as {form}", f"{type(error).__name__}: {error}", "answer") from None
-    ends = zip(pairwise(breaks), rows, strict=True)
-    return Pieces.of(Piece(a, b, dict(zip(names, row, strict=True))) for (a, b), row in ends)
+    """Return the pieces of ``{"breaks": [..], "quantities": {"omega": [[[c0, c1, ..], ..], ..]}}``.
+
+    Raises Refused with every fault and its place.
+    """
+    faults = Faults()
+    breaks = _numbers(document["breaks"], "breaks", faults)
+    columns: dict[str, Polynomials] = {}
+    if isinstance(document["breaks"], _LISTS) and len(document["breaks"]) < 2:
+        faults.add("two breaks at least", str(len(document["breaks"])), "breaks")
+    quantities = document["quantities"]
+    if not isinstance(quantities, Mapping) or not quantities:
+        expected = "an object with a list of pieces for each quantity"
+        raise refusal(expected, brief(quantities), "quantities")
+    for name, pieces in quantities.items():
+        count = _length(document["breaks"]) - 1
+        columns |= _of_quantity(scene, name, pieces, count, faults)
+    if faults.lines:
+        raise Refused(faults.lines)
+    rows = zip(*columns.values(), strict=True)
+    return Pieces.of(
+        Piece(a, b, dict(zip(columns, row, strict=True)))
+        for (a, b), row in zip(pairwise(breaks), rows, strict=True)
+    )
+
+
+def _of_quantity(
+    scene: Scene, name: str, pieces: Any, count: int, faults: Faults
+) -> dict[str, Polynomials]:
+    """Return the polynomials of each column of a quantity, one for each of so many pieces."""
+    place, many = f"quantities.{name}", f"{count} pieces, one between two breaks"
+    each = _list(pieces, many, place, faults, count if count > 0 else _length(pieces))
+    names = _columns(scene, name, _length(each[0])) if each else ()
+    components = f"{len(names)} components, each a list of coefficients"
+    rows = []
+    for k, piece in enumerate(each):
+        parts = _list(piece, components, f"{place}[{k}]", faults, len(names))
+        places = (f"{place}[{k}][{i}]" for i in range(len(parts)))
+        rows.append(
+            [polynomial(_numbers(p, at, faults)) for p, at in zip(parts, places, strict=True)]
+        )
+    is_whole = all(len(row) == len(names) for row in rows)
+    return dict(zip(names, map(list, zip(*rows, strict=True)), strict=True)) if is_whole else {}
+
+
+def _length(value: Any) -> int:
+    return len(value) if isinstance(value, _LISTS) else 0
+
+
+def _list(value: Any, expected: str, place: str, faults: Faults, count: int) -> Sequence[Any]:
+    """Return a list of so many entries; an empty one, and a fault, for anything else."""
+    if isinstance(value, _LISTS) and len(value) == count:
+        return value
+    faults.add(expected, f"{len(value)}" if isinstance(value, _LISTS) else brief(value), place)
+    return ()
+
+
+def _numbers(values: Any, place: str, faults: Faults) -> list[Fraction]:
+    """Return the numbers of a list, those of each fault left out."""
+    numbers = []
+    for k, value in enumerate(_list(values, "a list of numbers", place, faults, _length(values))):
+        try:
+            numbers.append(_exact(value))
+        except (ValueError, OverflowError):
+            faults.add("a finite number", cut(str(value)), f"{place}[{k}]")
+    return numbers
 
 
 def _exact(value: Any) -> Fraction:

@@ -58,7 +58,7 @@ _CI: Final = """
 --gate bound|baseline [bound]  what decides the exit status: the bounds (and --baseline besides), or the
   baseline alone, for an answer that is beyond its bounds and must not get worse; default: bound
 """
-_VERBS: Final = {
+OWN_VERBS: Final = {
     "list": (
         "list the shipped scenes, families, solvers, precisions and file formats",
         "list --json",
@@ -226,7 +226,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     if options.completion:
         options.act = partial(_complete, options.completion)
     elif options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
-        parser.error(f"expected a verb, got none ({', '.join(_VERBS)})")
+        parser.error(f"expected a verb, got none ({', '.join(OWN_VERBS)})")
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
     if hasattr(options, "unknown"):
@@ -247,7 +247,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
 def _unknown_verb(arguments: Sequence[str]) -> str:
     """Return the message for a first word that is no verb, with those that are near to it."""
     word = next(word for word in arguments if not word.startswith("-"))
-    known = [*_VERBS, *(verb.name for verb in verbs(_VERBS))]
+    known = [*OWN_VERBS, *(verb.name for verb in verbs(OWN_VERBS))]
     return f"expected a verb, got {word} ({near_word(word, known, '`taylor-verify --help` names them')})"
 
 
@@ -262,7 +262,7 @@ def _complete(shell: str, options: argparse.Namespace) -> Answer:
     from taylor_verify.cli.completion import completion
 
     del options
-    return completion(_parser([verb.name for verb in verbs(_VERBS)]), shell)
+    return completion(_parser([verb.name for verb in verbs(OWN_VERBS)]), shell)
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -313,7 +313,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     )
     parser.set_defaults(act=_greet, verb=parser, json=False, quiet=False, color=COLOURS[0])
     own = parser.add_subparsers(title="verbs", metavar=_VERB)
-    for name, (what, example, arguments) in _VERBS.items():
+    for name, (what, example, arguments) in OWN_VERBS.items():
         verb = _verb_parser(own, name, what, example)
         verb.set_defaults(act=partial(_act, name))
         for line in arguments.replace("\n  ", " ").split("\n"):
@@ -321,7 +321,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
                 add_argument(verb, line)
     first = next((word for word in words if not word.startswith("-")), "")
     # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
-    for plugged in verbs(_VERBS) if first not in _VERBS else ():
+    for plugged in verbs(OWN_VERBS) if first not in OWN_VERBS else ():
         if plugged.name in words:
             add(_verb_parser(own, plugged.name, *described(plugged)), plugged)
         elif package_of(plugged) == _OWN_PACKAGE:

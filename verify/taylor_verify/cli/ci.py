@@ -19,6 +19,7 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words.annotations import annotation_lines
 from taylor_verify.words.opening import opening
@@ -93,7 +94,7 @@ def concluded(
             status = WRONG_CALL
     last = f"\n{decision}" if decision else ""
     stated = None if decision else status
-    return Answer(status, content, lambda: f"{text(stated)}{last}", messages)
+    return Answer(status, with_sum(content), lambda: f"{text(stated)}{last}", messages)
 
 
 def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) -> str:
@@ -106,6 +107,7 @@ def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) ->
     else:
         undecided = len(comparison.undecided)
         outcome = f"{undecided} not comparable" if undecided else "no regression"
+        outcome += ", by rows that were edited" * comparison.doubted
     return f"decided by the baseline {file} alone: {outcome}; no pass by their own bounds: {others} rows"
 
 

@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.streams import MANNER
-from taylor_verify.scenes.names import escaped, one_line
+from taylor_verify.records.escapes import escaped, one_line
 
 # Piped output keeps whole rows: a table cut to 80 columns cannot be read by the next program.
 PIPED_WIDTH = 140

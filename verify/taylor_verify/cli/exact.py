@@ -50,7 +50,8 @@ def _of_events(options: argparse.Namespace) -> Answer:
 def _text_of_events(content: Mapping[str, Any]) -> str:
     page = Page()
     count = len(content["events"])
-    page.line(bold(content["scene"]), f": {count} times of {content['event']}, none missed")
+    how = "proven, and others that are undecided" if content["undecided"] else "none missed"
+    page.line(bold(content["scene"]), f": {count} times of {content['event']}, {how}")
     for event in content["events"]:
         page.line(f"t = {event['t']}   (radius {event['radius']})")
     for event in content["undecided"]:

@@ -8,8 +8,11 @@ from functools import partial
 from typing import Final
 
 from taylor_verify.cli.answer import PASS, Answer
+from taylor_verify.cli.arguments import OWN_VERBS
 from taylor_verify.cli.console import Page, bold
-from taylor_verify.records.plugins import KINDS, plugins
+from taylor_verify.cli.verbs import KIND as VERBS
+from taylor_verify.cli.verbs import verbs
+from taylor_verify.records.plugins import KINDS, Plugin, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.schema import schema, text
 from taylor_verify.scenes.families.library import family, family_names
@@ -37,7 +40,8 @@ def answer(options: argparse.Namespace) -> Answer:
     families = {name: family(name).title for name in family_names()}
     formats = {suffix: form.sentence for suffix, form in FORMATS.items()}
     formats |= {suffix: f"{plugin.name} {plugin.origin}" for suffix, plugin in plugged().items()}
-    packages = {kind: {p.name: p.package for p in plugins(kind)} for kind in KINDS}
+    added_by_kind = {kind: _added(kind) for kind in KINDS}
+    packages = {kind: {p.name: p.package for p in each} for kind, each in added_by_kind.items()}
     names_by_group = {
         **scenes,
         "families": list(families),
@@ -45,11 +49,19 @@ def answer(options: argparse.Namespace) -> Answer:
         "rungs": list(LADDER),
         "formats": list(formats),
     }
-    origins = {f"{p.name} ({kind})": p.origin for kind in KINDS for p in plugins(kind)}
+    origins = {f"{p.name} ({kind})": p.origin for kind in KINDS for p in added_by_kind[kind]}
     sentences = {**titles, **families, **remarks(), **formats, **origins}
     shown = partial(_text, {**names_by_group, "plug-ins": list(origins)}, sentences, GUIDE)
     document = {**names_by_group, "guide": dict(GUIDE), "plugins": packages}
     return Answer(PASS, document, shown)
+
+
+def _added(kind: str) -> list[Plugin]:
+    """Return the plug-ins of a kind without verbs whose names are ours: each is named on stderr."""
+    if kind != VERBS:
+        return list(plugins(kind))
+    left = {verb.name for verb in verbs(OWN_VERBS)}
+    return [plugin for plugin in plugins(kind) if plugin.name in left]
 
 
 def _text(

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Final, NoReturn
 
 from taylor_verify.cli.streams import print_out
-from taylor_verify.scenes.names import one_line
+from taylor_verify.records.escapes import one_line
 
 # Name, whether it must be given, sign, value, default and help of an argument.
 _ARGUMENT: Final = re.compile(r"([-\w]+)(!?)([*+]?)(?: ([^ ]+))?(?: \[(.+?)\])?(?:  (.*))?")

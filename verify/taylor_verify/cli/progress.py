@@ -11,7 +11,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.cli.streams import MANNER, say
-from taylor_verify.scenes.names import one_line
+from taylor_verify.records.escapes import one_line
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job

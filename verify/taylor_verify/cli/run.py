@@ -120,7 +120,11 @@ def _answer(
         comparison = published.compare_as_published(results)
         departures = tuple(map(str, comparison.failures))
         rows = f"{comparison.compared} rows compared with {published.source}"
-        messages += [*departures, f"{rows}: {len(departures)} departures from their rounding class"]
+        messages += [
+            *departures,
+            *comparison.notes,
+            f"{rows}: {len(departures)} departures from their rounding class",
+        ]
         against = Against(published.source, comparison.compared, departures)
         document["against"] = complete(against)
         status = graver(status, comparison.exit_status)

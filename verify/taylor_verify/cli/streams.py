@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from typing import Any, Final, TextIO
 
-from taylor_verify.scenes.names import escaped, one_line, without_commands
+from taylor_verify.records.escapes import escaped, one_line, without_commands
 
 
 class Manner:

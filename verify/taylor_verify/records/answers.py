@@ -173,6 +173,7 @@ class Answer:
     file: FileRead | None = None
     step: Annotated[Size | None, about("The step that the integrator of the file took.")] = None
     step_from: Annotated[str, about("The source that states the step.")] = ""
+    sha256: Annotated[str, about("The sum of the content, which `--baseline` asks.")] = ""
 
 
 @dataclass(frozen=True)
@@ -187,3 +188,4 @@ class FilesAnswer:
     summary: dict[Status, Count]
     notes: Sentences = ()
     baseline: AgainstBaseline | None = None
+    sha256: str = ""

@@ -18,6 +18,8 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from taylor_verify.records.escapes import one_line
+
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
@@ -114,8 +116,7 @@ def _readable(group: str) -> Iterator[EntryPoint]:
 
 
 def _in_one_line(error: BaseException) -> str:
-    text = "".join(c if c.isprintable() else " " for c in str(error))
-    return f"{type(error).__name__}: {text}"
+    return f"{type(error).__name__}: {one_line(str(error))}"
 
 
 def package_of(entry: EntryPoint) -> str:

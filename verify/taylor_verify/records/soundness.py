@@ -1,15 +1,18 @@
 """Stored rows that no run can have written: each is refused with its place.
 
-A damaged file reads like a sound one, so its rows are asked what every verdict keeps: sizes are not
-negative, a pass has its numbers and is within its bound, and no row is there twice.
+A damaged file reads like a sound one, so its rows are asked what every verdict has: sizes are not
+negative, none exceeds the largest, a pass has its numbers and is within its bound, and no row is there
+twice.
 """
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
+from taylor_verify.records.precisions import RUNG_PATTERN
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -17,17 +20,36 @@ _SIZES: Final = (
     *("max", "mean", "final", "bound", "attainable", "roundoff"),
     *("ratio", "tolerance", "residual", "remains", "seconds"),
 )
+_OF_A_PASS: Final = ("max", "mean", "final", "ratio", "bound", "attainable", "roundoff")
+# A mean of equal numbers may be above them by its roundings.
+_ROUNDINGS: Final = 1 + 2.0**-40
 
 
 def check_rows(placed: Mapping[str, Verdict]) -> None:
     """Raise ValueError for the first row, by its place in a document, that is no verdict's."""
+    if not placed:
+        raise ValueError("expected rows of a run, got none @ verdicts")
     for place, verdict in placed.items():
         _check_sizes(verdict, place)
         if verdict.verdict is Status.PASS:
             _check_pass(verdict, place)
-    rows = Counter(_named(verdict) for verdict in placed.values())
+        _check_run(verdict, place)
+    rows = Counter(" ".join(filter(None, (*run_of(v), v.quantity))) for v in placed.values())
     if twice := [row for row, count in rows.items() if count > 1]:
         raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
+
+
+def check_runs(placed: Mapping[str, Verdict], timed: Collection[tuple[str, ...]]) -> None:
+    """Raise ValueError for a row of a run that is not among the runs that were timed."""
+    for place, verdict in placed.items():
+        if run_of(verdict) not in timed:
+            run = " ".join(filter(None, run_of(verdict)))
+            raise ValueError(f"expected a run with its time in timings.json, got {run} @ {place}")
+
+
+def run_of(verdict: Verdict) -> tuple[str, ...]:
+    """Return what tells the run of a row from other runs."""
+    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
 
 
 def _check_sizes(verdict: Verdict, place: str) -> None:
@@ -36,17 +58,27 @@ def _check_sizes(verdict: Verdict, place: str) -> None:
         if value is not None and not value >= 0:
             expected = "expected a number that is not negative"
             raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
+    for name in ("mean", "final") if verdict.max is not None else ():
+        value = getattr(verdict, name)
+        if value is not None and not value <= verdict.max * _ROUNDINGS:
+            expected = f"expected no more than the largest error {verdict.max!r}"
+            raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
 
 
 def _check_pass(verdict: Verdict, place: str) -> None:
-    if verdict.max is None or verdict.bound is None:
-        name = "max" if verdict.max is None else "bound"
-        raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
+    for name in _OF_A_PASS:
+        if getattr(verdict, name) is None:
+            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
     if not verdict.max <= verdict.bound:
         expected = f"expected an error within its bound {verdict.bound!r} of a row that passed"
         raise ValueError(f"{expected}, got {verdict.max!r} @ {place}.max")
 
 
-def _named(verdict: Verdict) -> str:
-    run = (verdict.scene, verdict.solver, verdict.setting, verdict.rung, verdict.quantity)
-    return " ".join(filter(None, run))
+def _check_run(verdict: Verdict, place: str) -> None:
+    """Refuse a row whose run cannot be made again: no arithmetic, or no text of a scene."""
+    if not re.fullmatch(RUNG_PATTERN, verdict.rung):
+        expected = "expected a precision (f32 f64 f80 f128 mpN)"
+        raise ValueError(f"{expected}, got {verdict.rung!r:.60} @ {place}.rung")
+    if not isinstance(verdict.provenance.get("scene"), str):
+        expected = "expected the digest of the scene's text"
+        raise ValueError(f"{expected}, got none @ {place}.provenance.scene")

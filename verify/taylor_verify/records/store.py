@@ -3,7 +3,7 @@
     verdicts.json   every verdict, one a line, and the digest of each scene's text; the same on any
                     machine that computes the same;
                     shifts of time of failed gates alone: a passed one has them of its roundings
-    verdicts.sha256 its sum, which `publish` asks before it makes pages
+    verdicts.sha256 its sum, which is asked before a page or a comparison is made of them
     timings.json    seconds of every run; Python, processor and command of every machine
     records/        one file a run: the equations built and every sample's error; of which verdicts
                     they are, verdicts.sha256 says
@@ -13,7 +13,6 @@ Floats are written so that they read back to the last bit; one that is not finit
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -30,8 +29,9 @@ from taylor_verify.records.record import Record
 from taylor_verify.records.regular_file import bounded_bytes
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.runs import Run, runs
-from taylor_verify.records.soundness import check_rows
+from taylor_verify.records.soundness import check_rows, check_runs
 from taylor_verify.records.status import Status
+from taylor_verify.records.sums import line
 from taylor_verify.records.verdict import Verdict, read_row
 
 FOLDER: Final = "data"
@@ -72,8 +72,8 @@ def write(folder: Path, verdicts: Iterable[Verdict], records: Iterable[Record]) 
     texts: dict[str, str | Iterator[str]] = {
         **_record_texts(records),
         TIMINGS: laid_out({**_MADE_BY, **_timings(ordered_runs)}),
-        STAMP: _sum(text.encode(), f"../{VERDICTS}"),
-        SUM: _sum(text.encode(), VERDICTS),
+        STAMP: line(text.encode(), f"../{VERDICTS}"),
+        SUM: line(text.encode(), VERDICTS),
         VERDICTS: text,
     }
     return replace_files(data, texts, stale=_own_records(data))
@@ -87,28 +87,28 @@ def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
     """
     data = folder / FOLDER
     stale = [] if has_own_records(folder) else _own_records(data)
-    stamp = {STAMP: _sum(_stored_bytes(data / VERDICTS), f"../{VERDICTS}")}
+    stamp = {STAMP: line(_stored_bytes(data / VERDICTS), f"../{VERDICTS}")}
     return replace_files(data, {**_record_texts(records), **stamp}, stale=stale)
 
 
 def has_own_records(folder: Path) -> bool:
     """Return True unless the records in ``folder``/data say that they are those of other verdicts."""
-    return _agrees(folder / FOLDER, STAMP, f"../{VERDICTS}")
+    data = folder / FOLDER
+    return not (data / STAMP).exists() or _agrees(data, STAMP, f"../{VERDICTS}")
 
 
-def are_edited(folder: Path) -> bool:
+def are_edited(folder: Path) -> bool | None:
     """Return True if the verdicts in ``folder``/data are not those that their SHA-256 was made of.
 
-    Data of earlier versions have none. Raises OSError.
+    None where it is gone. Raises OSError.
     """
-    return not _agrees(folder / FOLDER, SUM, VERDICTS)
+    data = folder / FOLDER
+    (data / VERDICTS).stat()
+    return None if not (data / SUM).exists() else not _agrees(data, SUM, VERDICTS)
 
 
 def _agrees(data: Path, stated: str, named: str) -> bool:
-    file = data / stated
-    if not file.exists():
-        return True
-    return _stored_bytes(file) == _sum(_stored_bytes(data / VERDICTS), named).encode()
+    return _stored_bytes(data / stated) == line(_stored_bytes(data / VERDICTS), named).encode()
 
 
 def record_name(scene: str, solver: str, rung: str) -> str:
@@ -128,6 +128,8 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     try:
         placed = dict(_placed(stored, timed))
         check_rows(placed)
+        if timed is not None:
+            check_runs(placed, timed)
     except ValueError as error:
         raise ValueError(f"{error} @ {file}") from error
     return tuple(placed.values())
@@ -142,10 +144,10 @@ class _Verdicts:
     scenes: dict[str, str] = field(default_factory=dict)
 
 
-def _placed(stored: _Verdicts, timed: _Timed) -> Iterator[tuple[str, Verdict]]:
+def _placed(stored: _Verdicts, timed: _Timed | None) -> Iterator[tuple[str, Verdict]]:
     for place, row in enumerate(stored.verdicts):
         try:
-            read = verdict(row, stored.versions, timed.get(_key(row), {}))
+            read = verdict(row, stored.versions, (timed or {}).get(_key(row), {}))
         except ValueError as error:
             raise ValueError(_within(str(error), f"verdicts[{place}]")) from error
         yield f"verdicts[{place}]", with_digest(read, stored.scenes)
@@ -252,11 +254,6 @@ def _pieces_of(record: Record) -> Iterator[str]:
     return _pieces({**_MADE_BY, **vars(record), "gates": gates})
 
 
-def _sum(verdicts: bytes, named: str) -> str:
-    """Return the line that `sha256sum --check` reads, with the name of the file from its own place."""
-    return f"{hashlib.sha256(verdicts).hexdigest()}  {named}\n"
-
-
 def _own_records(data: Path) -> list[Path]:
     """Return the records of an earlier run: files that name their maker, and no others."""
     maker = laid_out(_MADE_BY).removesuffix("}\n") + ","
@@ -360,10 +357,10 @@ class _Timings:
     timings: tuple[_Timing, ...]
 
 
-def _timed(file: Path) -> _Timed:
-    """Return each run's seconds and machine; nothing where there is no such file."""
+def _timed(file: Path) -> _Timed | None:
+    """Return each run's seconds and machine; None where there is no such file."""
     if not file.exists():
-        return {}
+        return None
     stored, timed = read(file, _Timings), dict[tuple[Any, ...], dict[str, Any]]()
     for place, timing in enumerate(stored.timings):
         if not 0 <= timing.machine < len(stored.machines):

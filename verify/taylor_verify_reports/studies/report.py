@@ -25,7 +25,7 @@ _PAGES_OF_NO_STUDY = (
     ),
 )
 
-_CAUTION = f"**These numbers were edited**: `{store.VERDICTS}` is not what a run has written."
+_CAUTION = f"**These numbers were edited**: no run has written `{store.VERDICTS}` as it is."
 
 
 def publish(folder: Path | str) -> list[Path]:
@@ -56,8 +56,8 @@ def publish_index(folder: Path | str) -> list[Path]:
 
 
 def _with_caution(place: Path, texts: Mapping[str, str]) -> dict[str, str]:
-    """Return the pages, each with a sentence under its title if the verdicts were edited."""
-    if not store.are_edited(place):
+    """Return the pages, each with a sentence under its title if the verdicts may be edited."""
+    if store.are_edited(place) is False:
         return dict(texts)
     return {
         name: re.sub("^# .*$", rf"\g<0>\n\n{_CAUTION}", text, count=1, flags=re.MULTILINE)

@@ -128,11 +128,13 @@ def _check_sum(folder: Path, options: argparse.Namespace) -> None:
     if options.edited or "accuracy" in options.studies:
         return
     with _wrong_calls(folder, ""):
-        if store.are_edited(folder):
-            raise WrongCall(
-                f"expected the verdicts that a run has written, got others than {store.SUM} is made of "
-                f"@ {folder / store.FOLDER / store.VERDICTS} (`publish --edited` makes pages that say so)"
-            )
+        edited = store.are_edited(folder)
+    if edited is not False:
+        got = f"others than {store.SUM} is made of" if edited else f"them without {store.SUM}"
+        raise WrongCall(
+            f"expected the verdicts that a run has written, got {got} "
+            f"@ {folder / store.FOLDER / store.VERDICTS} (`publish --edited` makes pages that say so)"
+        )
 
 
 def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:

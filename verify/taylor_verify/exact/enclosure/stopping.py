@@ -13,7 +13,7 @@ from typing import Final
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.step import size_of
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.numbers.precision import float_text, power_of_two
+from taylor_verify.numbers.precision import double_text, float_text, power_of_two
 from taylor_verify.records.faults import shown
 
 MOST_STEPS: Final = 1_000_000
@@ -92,11 +92,11 @@ class Watch:
             limit = abs(now) + (self.most_steps - steps) * usual
             if abs(pending[0]) > limit:
                 time = next(time for time in reversed(pending) if abs(time) > limit)
-                needed = steps + abs(time - now) / usual
+                needed, usual_text = steps + abs(time - now) / usual, float_text(usual)
                 raise Unreached(
                     f"the Taylor series would take about {_brief(needed)} steps to reach "
-                    f"t = {self._shown(time)} from t = {float_text(self.begin + now)}; "
-                    f"expected at most {self.most_steps}",
+                    f"t = {self._shown(time)}, each of about {usual_text} from "
+                    f"t = {double_text(self.begin + now)} on; expected at most {self.most_steps}",
                     time,
                 )
 

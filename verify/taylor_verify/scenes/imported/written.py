@@ -9,11 +9,11 @@ from typing import Final
 
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.records.escapes import escaped
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes.imported.link import Link
 from taylor_verify.scenes.imported.reading import decimal
 from taylor_verify.scenes.imported.water import Water
-from taylor_verify.scenes.names import escaped
 
 _WIDTH: Final = 100
 _LONGEST_NAME: Final = 200

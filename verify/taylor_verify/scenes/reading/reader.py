@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Final, NamedTuple, TypeVar
 
 from taylor_verify.numbers.tensors import Vector
+from taylor_verify.records.escapes import one_line
 from taylor_verify.records.faults import Faults, Refused, cut, near, shown
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import MAIN, TRACKED, with_needs
@@ -27,7 +28,6 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.manufactured import Manufactured
 from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.hints import advice

@@ -18,9 +18,9 @@ from typing import Any, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.records.escapes import one_line
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.names import one_line
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.attitudes import one_attitude

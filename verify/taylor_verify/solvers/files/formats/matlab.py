@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.records.faults import cut, refusal
+from taylor_verify.records.faults import Refused, cut, refusal
 from taylor_verify.solvers.files.formats import hdf5, version4
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
@@ -65,6 +65,8 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise refusal("a MATLAB file of version 4 to 7.3", got, path)
     try:
         arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
+    except Refused:
+        raise
     except _BROKEN as error:
         raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     return _checked(arrays, part, path)
@@ -149,10 +151,11 @@ class _Reader:
         self, element: _Element, group: str = "", name: str = "", depth: int = 0
     ) -> Iterator[Array]:
         """Yield the array in an element, or the arrays of the struct in it; other elements hold none."""
-        if element.kind != _MATRIX or not len(element.data):
-            return
+        # Counted before anything else: zeros that are packed are elements without data.
         self.count += 1
         COLUMNS.check(self.count, self.path)
+        if element.kind != _MATRIX or not len(element.data):
+            return
         parts = self._elements(element.data)
         (flags,) = struct.unpack_from(f"{self.order}I", _next(parts).data)
         kind = flags & 0xFF

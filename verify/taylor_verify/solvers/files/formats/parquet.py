@@ -92,7 +92,8 @@ def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
     )
     names, texts, left = list[str](), list[str](), list[str]()
     for field in _flat(footer.schema_arrow.empty_table()).schema:
-        kind = field.type.value_type if _is_list(field.type) else field.type
+        has_inner = _is_list(field.type) or is_a.is_dictionary(field.type)
+        kind = field.type.value_type if has_inner else field.type
         if is_a.is_string(kind) or is_a.is_large_string(kind):
             texts.append(field.name)
         elif not any(is_such(kind) for is_such in numbers):
