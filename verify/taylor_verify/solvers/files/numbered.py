@@ -31,7 +31,7 @@ def by_number(
 def _elements(names: Sequence[str]) -> list[str]:
     """Return the names of the columns of one matrix, if the first is one whose name says nothing."""
     stem, bracket, _ = names[0].partition("[")
-    means = Name(Column(names[0], ())).readings
+    means = Name(Column(names[0], ())).is_known
     return [f"{stem}[{k}]" for k in range(len(names))] if bracket and not means else []
 
 

@@ -142,7 +142,7 @@ def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
     for array in read:
         width = prod(array.shape) // max(rows, 1)
         names = [f"{array.name}[{k}]" for k in range(width)]
-        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).readings:
+        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).is_known:
             example = ",".join(f"w{k}={name}" for k, name in enumerate(names[:2], start=1))
             shown = ", ".join(names[:_MOST_OF_MATRIX])
             more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""
