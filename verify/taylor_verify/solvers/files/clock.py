@@ -97,6 +97,11 @@ def _of_program(column: Column, names: Candidates) -> Spelling | None:
     return next(stated, None)
 
 
+def is_fraction(name: str) -> bool:
+    """Return True for a name that says parts of a second: ``nanosec``."""
+    return Name(Column(name, ())).key in _FRACTIONS
+
+
 def _is_called_a_time(name: Name) -> bool:
     return any(reading.spelling.group == "time" for reading in name.readings)
 

@@ -71,12 +71,8 @@ class Choice:
     @property
     def _remark(self) -> str:
         """What is said of the names; a program's quaternion has its scalar where the manual says so."""
-        is_of_program = self.group == "quaternion" and self.spelling.whose
-        return (
-            f"{shown_names(self.names[:1])} is the scalar"
-            if is_of_program
-            else self.spelling.remark
-        )
+        is_told = self.group == "quaternion" and (self.spelling.whose or self.rank is Rank.ASKED)
+        return f"{shown_names(self.names[:1])} is the scalar" if is_told else self.spelling.remark
 
 
 def shown_names(names: Sequence[Name]) -> str:
