@@ -30,6 +30,8 @@ _HEXADECIMAL = re.compile(
 )
 # C writes -nan(ind) too.
 _NOT_FINITE = re.compile(r"([+-]?(?:nan|inf|infinity))(?:\(\w*\))?", re.IGNORECASE)
+# Fortran writes D for an exponent, and leaves the letter out before three digits.
+_FORTRAN = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))(?:d([+-]?[0-9]+)|([+-][0-9]{3}))", re.I)
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE)
 _EXPONENT_BITS: Final = int(LARGEST_EXPONENT * math.log2(10))
 
@@ -72,6 +74,9 @@ def _from_text(text: str) -> Value:
     try:
         return exact_number(text)
     except ValueError:
+        fortran = _FORTRAN.fullmatch(text)
+        if fortran and (fortran[2] or "." in text):
+            return exact_number(f"{fortran[1]}e{fortran[2] or fortran[3]}")
         # Sound numbers are many, and are not asked this.
         if _DECIMAL_COMMA.fullmatch(text):
             raise ValueError("a number with a decimal point") from None

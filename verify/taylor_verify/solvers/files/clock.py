@@ -21,6 +21,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.choice import Candidates
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.spelling import Spelling
 from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.formats.column import Column, shown
 from taylor_verify.solvers.files.formats.epochs import is_epoch, seconds_in_log
@@ -62,8 +63,7 @@ def with_times(
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
     whole = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
-    units = Candidates([Name(column) for column in read], {}, {})
-    clocks = _clocks(whole, asked, scene, units)
+    clocks = _clocks(whole, asked, scene, Candidates([Name(column) for column in read], {}, {}))
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))
@@ -79,7 +79,7 @@ def with_times(
 
 
 def _clocks(
-    columns: Sequence[Column], asked: Sequence[str], scene: Scene | None, units: Candidates
+    columns: Sequence[Column], asked: Sequence[str], scene: Scene | None, names: Candidates
 ) -> list[_Clock]:
     """Return the columns that are asked for, or called a time, or else those with times of a calendar."""
     if asked:
@@ -87,14 +87,19 @@ def _clocks(
     else:
         times = [column for column in columns if _is_called_a_time(Name(column))]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
-    return [_Clock(column, scene, _unit(column, units)) for column in times]
+    return [_Clock(column, scene, _of_program(column, names)) for column in times]
 
 
-def _unit(column: Column, names: Candidates) -> Unit:
-    name = Name(column)
-    spelling = names.of_clock(name)
-    stated = in_brackets(spelling.unit, "time") if spelling else name.unit("time")
-    return stated or OWN
+def _of_program(column: Column, names: Candidates) -> Spelling | None:
+    """Return the spelling of a program that states the unit of a time, where the name does not."""
+    every = (reading.spelling for reading in Name(column).readings if reading.unit is OWN)
+    stated = (s for s in every if s.group == "time" and s.unit and names.has_signs(s))
+    return next(stated, None)
+
+
+def is_fraction(name: str) -> bool:
+    """Return True for a name that says parts of a second: ``nanosec``."""
+    return Name(Column(name, ())).key in _FRACTIONS
 
 
 def _is_called_a_time(name: Name) -> bool:
@@ -156,10 +161,23 @@ def _sums(
 class _Clock:
     """A column that may have the times."""
 
-    def __init__(self, column: Column, scene: Scene | None, unit: Unit) -> None:
-        self.column, self._scene = column, scene
-        # The unit that the name states, or the program's manual, by which its numbers are multiplied.
-        self._unit = unit
+    def __init__(self, column: Column, scene: Scene | None, spelling: Spelling | None) -> None:
+        self.column, self._scene, self._spelling = column, scene, spelling
+
+    @cached_property
+    def _habit(self) -> Spelling | None:
+        """The spelling of the program whose unit this is; None where somebody has made seconds of it."""
+        spelling = None if self._is_calendar else self._spelling
+        if spelling is None or spelling.unit in ("s", "d"):
+            return spelling
+        is_whole = all(number == number // 1 for number in self._numbers)
+        return spelling if is_whole and abs(self._numbers[-1]) > self._last else None
+
+    @cached_property
+    def _unit(self) -> Unit:
+        """The unit that the name states, or the program's manual, by which the numbers are multiplied."""
+        stated = in_brackets(self._habit.unit, "time") if self._habit else None
+        return stated or Name(self.column).unit("time") or OWN
 
     @cached_property
     def _is_calendar(self) -> bool:
@@ -193,9 +211,13 @@ class _Clock:
 
     @cached_property
     def is_of_the_day(self) -> bool:
-        """True for times of a calendar, and for such since 1970 that are beyond the scene."""
-        since_1970 = _CLOCK[0] <= self._first * self._factor < _CLOCK[1]
-        return self._is_calendar or (since_1970 and self._first * self._factor > self._last)
+        """True for times of a calendar, of a program's clock, and since 1970, that are not the scene's."""
+        first = self._first * self._factor
+        is_since_1970 = _CLOCK[0] <= first < _CLOCK[1] and first > self._last
+        if self._is_calendar or is_since_1970 or not self._habit or self._scene is None:
+            return self._is_calendar or is_since_1970
+        last, span = self._numbers[-1] * self._factor, abs(self._scene.clock.elapsed[-1])
+        return first != self._scene.clock.start and last > self._last + _NEAR * span
 
     @cached_property
     def _last(self) -> Fraction:
@@ -236,19 +258,24 @@ class _Clock:
         return (is_apart, is_beyond, -sum(float(time) in instants for time in self.times))
 
     def counted(self, place: str, faults: Faults) -> tuple[Column, list[str]]:
-        """Return the column, from the scene's start on where it is a clock of the day, and a note on it."""
+        """Return the column, from the scene's start on where it is a clock of the day, and notes on it."""
+        column, shown_name = self.column, cut(self.column.name)
+        notes = []
         try:
+            if habit := self._habit:
+                notes.append(f"`{shown_name}` is in {habit.unit}, the habit of {habit.whose}")
+                column = column._replace(name=f"{column.name} [{habit.unit}]")
             if not self.is_of_the_day:
-                return self.column, []
+                return column, notes
             values = [time / self._unit.factor for time in self.times]
         except ValueError:
             return self._without_faults(place, faults), []
-        name = Name(self.column)
-        bare = self.column.name.replace(name.unit_text, "").strip(" []()") or "t"
-        first = shown(self.column.values[0]).strip("'")
+        unit = Name(column).unit_text if self._is_calendar else ""
+        bare = column.name.replace(unit, "").strip(" []()") if unit else column.name
+        first = shown(column.values[0]).strip("'")
         parts = "" if self._parts == 1 else f", in {_PARTS[self._parts]}"
-        note = f"t counts from {first} of `{cut(self.column.name)}`{parts}, the first row"
-        return Column(bare if name.unit_text else self.column.name, values), [note]
+        notes.append(f"t counts from {first} of `{shown_name}`{parts}, the first row")
+        return Column(bare or "t", values), notes
 
     def _without_faults(self, place: str, faults: Faults) -> Column:
         """Return the column; the first time of a calendar that is none is a fault, and no second one."""

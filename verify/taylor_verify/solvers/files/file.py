@@ -28,7 +28,7 @@ from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.formats.reading import parted, read_table
-from taylor_verify.solvers.files.numbered import by_number
+from taylor_verify.solvers.files.numbered import named
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
 from taylor_verify.solvers.files.parts import Parts
 from taylor_verify.solvers.files.planar import with_zeros
@@ -136,8 +136,9 @@ def from_columns(
         if column.name in by_name:
             faults.add("every column once", f"`{cut(column.name)}` again", place)
         by_name[column.name] = column
-    named, planar = with_zeros(list(by_name.values()), scene)
-    clock = with_times(named, by_number(named, wanted, scene, place), scene, place, faults)
+    every, asked = named(list(by_name.values()), wanted, scene, place)
+    every, planar = with_zeros(every, scene)
+    clock = with_times(every, asked, scene, place, faults)
     own, asked = own_columns(scene), clock.wanted
     beside, left, asked = apart(clock.columns, asked, own, place, faults)
     selection = select(left, asked, place, faults)
@@ -151,8 +152,8 @@ def from_columns(
     for part in parts.of_rows(times, place, faults):
         groups, form, settled = one_attitude(part.groups, selection, place, faults)
         agreed += settled
-        instants, every = tuple(times[k] for k in part.places), {**COLUMNS, **own}
-        file = TrajectoryFile(place, instants, groups, part.digits, columns=every, form=form)
+        instants, names = tuple(times[k] for k in part.places), {**COLUMNS, **own}
+        file = TrajectoryFile(place, instants, groups, part.digits, columns=names, form=form)
         files.append(file)
     if faults.lines:
         raise Refused(faults.lines)

@@ -1,41 +1,73 @@
-"""Columns that are asked for by their number, from 1, and files in which nothing else names them."""
+"""Columns that are asked for by number, from 1, or under a usual name; files that nothing names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from typing import Final
 
 from taylor_verify.records.faults import refusal
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.clock import is_fraction
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.request import Request, is_ours
 from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.values import Value, exact
+
+# The columns of a trajectory of the TUM benchmark, t x y z qx qy qz qw, which has no header.
+_TUM: Final = ("t", "c1", "c2", "c3", "q1", "q2", "q3", "q0")
+_UNIT: Final = 0.01
 
 
-def by_number(
+def named(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str
-) -> Request:
-    """Return the request with the names of columns in place of their numbers.
+) -> tuple[list[Column], Request]:
+    """Return the columns under the usual names that are asked for, and the rest of the request by name.
 
-    Raises Refused for columns without a name of which none is asked for.
+    ``yaw=5`` and ``nanosec=2`` are such names. Raises Refused for columns without a name of which none is
+    asked for.
     """
     names = [column.name for column in columns]
     numbers = [str(k) for k in range(1, len(names) + 1)]
     if names and not wanted and names in (numbers, _elements(names)):
-        mend = f"say which is which: --columns {','.join(_example(names, scene))}"
+        mend = f"say which is which: --columns {_example(names, scene)}"
+        if len(names) == len(_TUM) and _is_unit(columns[4:]):
+            mend += f"; of a TUM trajectory --columns {_asked(_TUM, names)}"
         got = f"numbers alone, in {len(names)} column{'s' * (len(names) > 1)}"
         raise refusal("a header line that names the columns", got, place, mend)
     by_text = dict(zip(numbers, names, strict=True)) | {name: name for name in names}
-    return [(ours, by_text.get(theirs, theirs)) for ours, theirs in wanted]
+    asked = [(ours, by_text.get(theirs, theirs)) for ours, theirs in wanted]
+    usual = {theirs: ours for ours, theirs in asked if theirs in names and _is_usual(ours, scene)}
+    renamed = [column._replace(name=usual.get(column.name, column.name)) for column in columns]
+    return renamed, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
+
+
+def _is_usual(name: str, scene: Scene | None) -> bool:
+    """Return True for a name that is read where it stands in a header, and is none of ours."""
+    own = {column for state in scene.own_states for column in state.components} if scene else set()
+    is_known = bool(Name(Column(name, ())).readings) or is_fraction(name)
+    return is_known and not is_ours(name) and name not in own
 
 
 def _elements(names: Sequence[str]) -> list[str]:
     """Return the names of the columns of one matrix, if the first is one whose name says nothing."""
     stem, bracket, _ = names[0].partition("[")
-    means = Name(Column(names[0], ())).readings
+    means = Name(Column(names[0], ())).is_known
     return [f"{stem}[{k}]" for k in range(len(names))] if bracket and not means else []
 
 
-def _example(names: Sequence[str], scene: Scene | None) -> Iterator[str]:
+def _example(names: Sequence[str], scene: Scene | None) -> str:
     groups = [group.columns for group in scene.groups] if scene else [("w1", "w2", "w3")]
-    every = ["t", *(name for group in groups for name in group)]
-    return (f"{ours}={theirs}" for ours, theirs in zip(every, names, strict=False))
+    return _asked(["t", *(name for group in groups for name in group)], names)
+
+
+def _asked(ours: Sequence[str], names: Sequence[str]) -> str:
+    return ",".join(f"{own}={name}" for own, name in zip(ours, names, strict=False))
+
+
+def _is_unit(columns: Sequence[Column]) -> bool:
+    """Return True for the numbers of a quaternion in the first row."""
+    try:
+        row: Sequence[Value] = [exact(column.values[0]) for column in columns]
+    except (ValueError, IndexError):
+        return False
+    return abs(float(sum(number * number for number in row)) - 1) < _UNIT

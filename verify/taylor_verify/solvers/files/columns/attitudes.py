@@ -15,6 +15,7 @@ import numpy as np
 from taylor_verify.models.algebra import apply, transpose
 from taylor_verify.models.frame import rotation
 from taylor_verify.records.faults import Faults
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.solvers.files.columns.choice import Choice
 from taylor_verify.solvers.files.columns.forms import FORMS
@@ -68,13 +69,13 @@ def one_attitude(
     first, notes = _settled(every, choices, place, faults)
     if first:
         left[first.group] = first.rows
-    is_turned = selection.omega and selection.omega.spelling.turn is Turn.SPACE_AXES
-    if is_turned and "omega" in groups:
-        if first:
+    for group in selection.in_space:
+        if group in groups and first:
             make = _in_body_by_matrix if first.group == "attitude" else _in_body
-            left["omega"] = MadeRows([left["omega"], first.rows], make, 3)
-        else:
-            notes.append("w1 w2 w3 are left in space axes: the file has no attitude")
+            left[group] = MadeRows([left[group], first.rows], make, 3)
+        elif group in groups:
+            ours = " ".join(COLUMNS[group])
+            notes.append(f"{ours} are left in space axes: the file has no attitude")
     form = first.choice.group if first and first.choice.group in FORMS else ""
     return left, form, notes
 
@@ -136,11 +137,11 @@ def _transposed(row: Numbers) -> Numbers:
     return [row[3 * i + k] for k in range(3) for i in range(3)]
 
 
-def _in_body(omega: Numbers, q: Numbers) -> Numbers:
-    """Return R^T omega for a quaternion of any length."""
+def _in_body(velocity: Numbers, q: Numbers) -> Numbers:
+    """Return R^T v for a quaternion of any length."""
     square = sum(part * part for part in q)
-    return [part / square if square else nan for part in apply(transpose(rotation(q)), omega)]
+    return [part / square if square else nan for part in apply(transpose(rotation(q)), velocity)]
 
 
-def _in_body_by_matrix(omega: Numbers, R: Numbers) -> Numbers:
-    return apply([R[i::3] for i in range(3)], omega)
+def _in_body_by_matrix(velocity: Numbers, R: Numbers) -> Numbers:
+    return apply([R[i::3] for i in range(3)], velocity)

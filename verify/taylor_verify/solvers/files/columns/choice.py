@@ -32,6 +32,7 @@ class Rank(IntEnum):
     OURS = 1
     PROGRAM = 2
     USUAL = 3
+    BEHIND_A_WORD = 4
 
 
 @dataclass(frozen=True)
@@ -61,11 +62,17 @@ class Choice:
         form, spelling = FORMS.get(self.group), self.spelling
         parts = [f"{self.shown} taken as {form.words if form else ' '.join(GROUPS[self.group])}"]
         parts += [_TO_SPACE] if form and not spelling.turn else []
-        parts += [spelling.remark] if spelling.remark and not is_plain and not form else []
+        parts += [self._remark] if self._remark and not is_plain and not form else []
         parts += [str(spelling.turn)] if spelling.turn else []
         parts += [f"in {' and in '.join(words)}"] if words else []
         parts += [f"the habit of {spelling.whose}"] if spelling.whose else []
         return ", ".join(parts)
+
+    @property
+    def _remark(self) -> str:
+        """What is said of the names; a program's quaternion has its scalar where the manual says so."""
+        is_told = self.group == "quaternion" and (self.spelling.whose or self.rank is Rank.ASKED)
+        return f"{shown_names(self.names[:1])} is the scalar" if is_told else self.spelling.remark
 
 
 def shown_names(names: Sequence[Name]) -> str:
@@ -109,16 +116,19 @@ class Candidates:
         for (spelling, path), cells in self.cells.items():
             if spelling.group != group or not self._is_possible(spelling, path, chosen):
                 continue
-            if whole := self._whole(spelling, cells):
-                choices.setdefault(whole.names, whole)
+            if whole := self._whole(spelling, path, cells):
+                stronger = choices.get(whole.names, whole)
+                choices[whole.names] = min(stronger, whole, key=lambda choice: choice.rank)
         return list(choices.values())
 
     def _is_possible(self, spelling: Spelling, path: str, chosen: Mapping[str, Choice]) -> bool:
         is_alone = spelling.beside in ("", *chosen) and not spelling.unless & self._keys
-        return is_alone and self.keeps_company(spelling, path) and self.has_signs(spelling)
+        return is_alone and self.may_be(spelling, path)
 
-    def keeps_company(self, spelling: Spelling, path: str) -> bool:
+    def may_be(self, spelling: Spelling, path: str) -> bool:
         """Return True if the company of a spelling stands behind its path, and what it shuns does not."""
+        if not self.has_signs(spelling):
+            return False
         if not spelling.company and not spelling.apart_from:
             return True
         there = {key for key, place in self._parts if place == path}
@@ -134,16 +144,7 @@ class Candidates:
 
     def asked_unit(self, own: str, group: str) -> Unit:
         """Return the unit of a column that is asked for."""
-        name = self.asked[own]
-        if (spelling := self.of_clock(name)) and group == "time":
-            return in_brackets(spelling.unit, group) or OWN
-        return self.units.get(own) or name.unit(group) or OWN
-
-    def of_clock(self, name: Name) -> Spelling | None:
-        """Return the spelling of a program that states the unit of a time, where the name does not."""
-        spellings = (reading.spelling for reading in name.readings if reading.unit is OWN)
-        stated = (s for s in spellings if s.group == "time" and s.unit and self.has_signs(s))
-        return next(stated, None)
+        return self.units.get(own) or self.asked[own].unit(group) or OWN
 
     @cached_property
     def _parts(self) -> set[tuple[str, str]]:
@@ -151,7 +152,7 @@ class Candidates:
         readings = (reading for name in self.free for reading in name.readings)
         return {(r.spelling.keys[r.component], r.path) for r in readings}
 
-    def _whole(self, spelling: Spelling, cells: Cells) -> Choice | None:
+    def _whole(self, spelling: Spelling, path: str, cells: Cells) -> Choice | None:
         ours, doubt = GROUPS[spelling.group], spelling.doubt
         names: list[Name] = []
         units: list[Unit | None] = []
@@ -165,12 +166,17 @@ class Candidates:
             if len(hits) > 1:
                 doubt = doubt or f"{shown_names([name for name, _ in hits])} are alike"
             names.append(hits[0][0])
-            stated = in_brackets(spelling.unit, spelling.group)
+            # The clock of a file has its unit in its name.
+            stated = (
+                in_brackets(spelling.unit, spelling.group) if spelling.group != "time" else None
+            )
             units.append(stated if stated and hits[0][1] is OWN else hits[0][1])
         is_own = all(name.is_ours for name in names) and spelling.keys == ours
         if not is_own and self.numbered_beside(spelling.keys):
             return None
         rank = Rank.OURS if is_own else Rank.PROGRAM if spelling.whose else Rank.USUAL
+        if path.endswith("_") and not spelling.is_behind:
+            rank = Rank.BEHIND_A_WORD
         if not self.asked.keys().isdisjoint(ours):
             rank = Rank.ASKED
         return Choice(spelling.group, tuple(names), tuple(units), rank, spelling, doubt)

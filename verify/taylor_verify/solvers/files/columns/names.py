@@ -48,10 +48,10 @@ COMPONENTS: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
 _STEMS: Final = {
     "omega": (
         "w omega wb omegab wbody omegabody bodyomega angvel angularvelocity angularvelocitybody "
-        "angularrate angularrates twistangular gyro gyr gyroscope rate rates bodyrate bodyrates"
+        "angularrate angularrates twistangular pqr gyro gyr gyroscope rate rates bodyrate bodyrates"
     ),
     "linear_velocity": (
-        "u linvel linearvelocity linearvelocitybody bodyvelocity velocitybody vbody twistlinear"
+        "u uvw linvel linearvelocity linearvelocitybody bodyvelocity velocitybody vbody twistlinear"
     ),
     "linear_impulse": "linearimpulse impulselinear",
     "angular_impulse": "angularimpulse impulseangular",

@@ -33,12 +33,18 @@ _TERSE: Final = re.compile(r"[a-z]\d")
 _LONGEST_SUFFIX: Final = 3
 # A longer name has no readings: each path in it would be tried.
 _LONGEST: Final = 200
+# Words in front of a name that is then no state of the body.
+_OF_NO_STATE: Final = (
+    "cmd command des desired ref reference target goal sp setpoint err error bias cov std var acc accel "
+    "dot euler angle wheel wheels rw rotor motor cmg joint prop thruster noise"
+)
+_NO_STATE: Final = frozenset(_OF_NO_STATE.split())
 
 
 class Reading(NamedTuple):
     """A spelling that a name may belong to, its component there, and the path in front of it.
 
-    ``unit`` is None where the brackets hold no unit of this group.
+    ``unit`` is None where the brackets hold no unit of this group. A path that ends in _ is a word.
     """
 
     spelling: Spelling
@@ -97,6 +103,11 @@ class Name:
         suffixed = (as_suffix(end, group) for _, end in _without_units(name))
         return next((unit for unit in suffixed if unit is not None), OWN)
 
+    @property
+    def is_known(self) -> bool:
+        """True for a name that needs no sign of a program beside it."""
+        return any(not reading.spelling.signs for reading in self.readings)
+
     @cached_property
     def readings(self) -> tuple[Reading, ...]:
         """Possible readings; for each spelling the reading with the shortest path and without a suffix."""
@@ -104,18 +115,25 @@ class Name:
             return ()
         readings: dict[tuple[Spelling, int], Reading] = {}
         matched: set[str] = set()
-        if self._parts[1] is not None and self.whole_key in PLACES:
+        brackets = self._parts[1]
+        if brackets and not in_brackets(brackets, "time") and self.whole_key in PLACES:
             # The brackets belong to the name: P_{inertial}.
             return tuple(Reading(*place, "", OWN) for place in _places(self.whole_key, ""))
-        for path, name, is_behind in _tails(self._parts[0]):
+        for path, name in _tails(self._parts[0]):
             # The T of IMU.T is a temperature.
             if path and name == "t" and self.text.endswith("T"):
                 continue
-            every = (r for r in self._of(path, name) if r.spelling.is_behind is is_behind)
-            here = [r for r in every if r.spelling.group not in matched or is_behind]
-            for reading in here:
+            # A program's names are known behind any path: ATT.Roll is no attitude's roll of anybody.
+            every = [
+                reading
+                for reading in self._of(path, name)
+                if reading.spelling.whose or reading.spelling.group not in matched
+            ]
+            for reading in every:
                 readings.setdefault((reading.spelling, reading.component), reading)
-            matched |= {reading.spelling.group for reading in here}
+            matched |= {reading.spelling.group for reading in every}
+            if matched and path.endswith("_"):
+                break
         return tuple(readings.values())
 
     def _of(self, path: str, name: str) -> Iterator[Reading]:
@@ -131,23 +149,42 @@ class Name:
 
 def _places(name: str, path: str) -> Iterator[tuple[Spelling, int]]:
     key = letters(name)
-    # The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
-    is_terse = bool(path) and _TERSE.fullmatch(key) is not None
     for spelling, component in PLACES.get(key, ()):
-        is_bare = spelling.is_whole or (is_terse and not spelling.whose)
-        if not (path and is_bare):
+        if (
+            _is_behind(spelling, key, path)
+            if path.endswith("_")
+            else _is_after(spelling, key, path)
+        ):
             yield spelling, component
 
 
-def _tails(name: str) -> Iterator[tuple[str, str, bool]]:
-    """Yield the name, and what is left of it behind longer and longer paths, then behind a word and _."""
-    yield "", name, False
+def _is_after(spelling: Spelling, key: str, path: str) -> bool:
+    """Return True for a spelling that may stand alone, or behind a path.
+
+    The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
+    """
+    is_terse = _TERSE.fullmatch(key) is not None and not spelling.whose
+    return not spelling.is_behind and not (path and (spelling.is_whole or is_terse))
+
+
+def _is_behind(spelling: Spelling, key: str, path: str) -> bool:
+    """Return True for a spelling that may stand behind a word and _: base_orn_x."""
+    if spelling.is_behind:
+        return True
+    is_terse = spelling.is_whole or (_TERSE.fullmatch(key) is not None and key[0] != "q")
+    is_state = spelling.group != "time" and not spelling.doubt and not is_terse
+    return is_state and _NO_STATE.isdisjoint(re.split(r"[^a-z]+", path))
+
+
+def _tails(name: str) -> Iterator[tuple[str, str]]:
+    """Yield the name, and what is left of it behind longer and longer paths, then behind words and _."""
+    yield "", name
     for separator in re.finditer(r"[/.]", name):
         if separator.start():
-            yield name[: separator.start()], name[separator.end() :], False
-    before, _, last = name.rpartition("_")
-    if before:
-        yield before, last, True
+            yield name[: separator.start()], name[separator.end() :]
+    for separator in re.finditer("_", name):
+        if separator.start():
+            yield name[: separator.end()], name[separator.end() :]
 
 
 def _without_units(name: str) -> Iterator[tuple[str, str]]:

@@ -61,7 +61,7 @@ def asked_columns(
             pairs = [(name, theirs)]
         else:
             expected = "the name of one of our columns or groups"
-            faults.add(expected, f"`{cut(name)}`", at, near(name, (*KNOWN, *GROUPS)))
+            faults.add(expected, f"`{cut(name)}`", at, _near_ours(name))
             continue
         for ours, own in pairs:
             if own not in by_text:
@@ -76,6 +76,17 @@ def asked_columns(
                 if unit and ours in FORMS[group].angles:
                     units[ours] = unit
     return asked, units
+
+
+def is_ours(name: str) -> bool:
+    """Return True for a name that may be asked for: of a column, a group, or a form with a unit."""
+    return name in KNOWN or _group(name)[0] in GROUPS
+
+
+def _near_ours(name: str) -> str:
+    close = difflib.get_close_matches(name, (*KNOWN, *GROUPS), n=1)
+    groups = [group for group in GROUPS if group not in SEQUENCES[1:]]
+    return near(name, close or groups)
 
 
 def _group(name: str) -> tuple[str, Unit | None]:

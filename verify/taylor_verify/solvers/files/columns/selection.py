@@ -26,6 +26,7 @@ from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.request import Request, asked_columns
+from taylor_verify.solvers.files.columns.spelling import Turn
 from taylor_verify.solvers.files.columns.units import OWN, known_units
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.step import STEP_COLUMNS
@@ -47,13 +48,13 @@ class Taken(NamedTuple):
 class Selection(NamedTuple):
     """The columns that are taken, and sentences about what was taken and what was not.
 
-    The ``attitudes`` are descriptions of one, ``omega`` is the choice of the angular velocity.
+    The ``attitudes`` are descriptions of one; ``in_space`` are the velocities along space axes.
     """
 
     columns: tuple[Taken, ...]
     notes: tuple[str, ...]
     attitudes: tuple[Choice, ...] = ()
-    omega: Choice | None = None
+    in_space: tuple[str, ...] = ()
 
 
 def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
@@ -74,7 +75,8 @@ def select(columns: Sequence[Column], wanted: Request, place: str, faults: Fault
     notes = [choice.note for choice in chooser.chosen.values() if choice.note]
     attitudes = tuple(chooser.chosen[group] for group in ATTITUDES if group in chooser.chosen)
     sentences = (*notes, *chooser.notes, *chooser.left_out())
-    return Selection(tuple(taken), sentences, attitudes, chooser.chosen.get("omega"))
+    in_space = [g for g, c in chooser.chosen.items() if c.spelling.turn is Turn.SPACE_AXES]
+    return Selection(tuple(taken), sentences, attitudes, tuple(in_space))
 
 
 @dataclass
@@ -113,12 +115,11 @@ class _Chooser:
         if asked.keys() >= set(ours):
             names = tuple(asked[name] for name in ours)
             units = tuple(self.candidates.asked_unit(name, group) for name in ours)
-            spelling = self.candidates.of_clock(names[0]) if group == "time" else None
-            spelling = spelling or next(s for s in SPELLINGS if s.keys == ours and not s.whose)
+            spelling = next(s for s in SPELLINGS if s.keys == ours and not s.whose)
             return Choice(group, names, units, Rank.ASKED, spelling)
         every = self.candidates.of(group, self.chosen)
         clear = [choice for choice in every if not choice.doubt]
-        best = min((choice.rank for choice in clear), default=Rank.USUAL)
+        best = min((choice.rank for choice in clear), default=Rank.BEHIND_A_WORD)
         alike = [choice for choice in clear if choice.rank == best]
         if clear := self._of_best_frame(alike):
             if len(clear) == 1:
@@ -159,8 +160,9 @@ class _Chooser:
         every = [self.chosen[group] for group in ATTITUDES if group in self.chosen]
         sure = [choice for choice in every if not choice.doubt]
         is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
-        best = min((choice.rank for choice in sure), default=Rank.USUAL)
-        strongest = self._of_best_frame([c for c in sure if is_usual or c.rank == best])
+        best = min((choice.rank for choice in sure), default=Rank.BEHIND_A_WORD)
+        kept = range(Rank.BEHIND_A_WORD) if is_usual else ()
+        strongest = self._of_best_frame([c for c in sure if c.rank == best or c.rank in kept])
         for choice in every:
             if choice.doubt and not sure:
                 del self.chosen[choice.group]
@@ -225,7 +227,7 @@ class _Chooser:
         for (spelling, path), cells in self.candidates.cells.items():
             if spelling.group in self.chosen or spelling.is_whole or len(cells) < 2:
                 continue
-            if not self.candidates.keeps_company(spelling, path):
+            if not self.candidates.may_be(spelling, path):
                 continue
             lacking = [own for i, own in enumerate(GROUPS[spelling.group]) if i not in cells]
             present = [cells[i][0][0] for i in sorted(cells)]

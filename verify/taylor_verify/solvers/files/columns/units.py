@@ -91,7 +91,7 @@ _WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
         (
             Fraction(1),
             "the scene's unit of velocity",
-            "m/s m/sec m.s^-1 m.s-1 mps m_per_s meter/second",
+            "m/s m/sec m.s^-1 m.s-1 ms^-1 mps m_per_s meter/second",
         ),
         (Fraction(1, 100), "hundredths of the scene's unit of velocity", "cm/s"),
         (Fraction(1, 1000), "thousandths of the scene's unit of velocity", "mm/s"),

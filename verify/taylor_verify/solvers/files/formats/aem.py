@@ -42,24 +42,22 @@ from taylor_verify.solvers.values import Value, exact
 _BODY: Final = "SC_BODY"
 # Frames that turn with the earth or with an orbit: equations of motion have other terms in them.
 _TURNING: Final = (
-    "ITRF",
-    "DTRF",
-    "EFG",
-    "WGS",
-    "GTOD",
-    "TDR",
-    "GRC",
-    "LVLH",
-    "VVLH",
-    "RTN",
-    "RSW",
-    "RIC",
-    "QSW",
-    "TNW",
-    "NTW",
-    "VNC",
-    "SEZ",
-    "NSW",
+    *(
+        "ITRF",
+        "DTRF",
+        "EFG",
+        "WGS",
+        "GTOD",
+        "TDR",
+        "GRC",
+        "LVLH",
+        "VVLH",
+        "RTN",
+        "RSW",
+        "RIC",
+        "QSW",
+    ),
+    *("TNW", "NTW", "VNC", "SEZ", "NSW"),
 )
 _NOT_UNIFORM: Final = ("UT1", "GMST", "SCLK", "MET", "MRT")
 _BLANK: Final = b"\xef\xbb\xbf \t\r\n"
@@ -71,7 +69,7 @@ Row = Sequence[Value]
 Kind = TypeVar("Kind")
 
 
-def is_text(file: Content) -> bool:
+def is_one(file: Content) -> bool:
     """Return True for a file that begins like a CCSDS message in text, whatever its name."""
     return _beginning(file).startswith(b"CCSDS_")
 
@@ -215,8 +213,8 @@ def _angular_velocities(
         dots = [_body_to_space(rate, reverse) for rate in rates]
         velocities = [_of_derivative(q, dot) for q, dot in zip(turned, dots, strict=True)]
         return velocities, "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
-    if segment.kind == "EULER_ANGLE/DERIVATIVE":
-        return [], "ANGLE_1_DOT ... are rates of Euler angles, and are not read"
+    if segment.kind in ("EULER_ANGLE/DERIVATIVE", "EULER_ANGLE/RATE"):
+        return [], "rates of Euler angles are not read"
     if not segment.kind.endswith("/ANGVEL"):
         return [], ""
     stated = segment.metadata.get("ANGVEL_FRAME", "").upper()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -25,27 +25,15 @@ _STATES: Final[Mapping[str, tuple[str, ...]]] = {
     "QUATERNION/ANGVEL": QUATERNION + ANGULAR_VELOCITY,
     "EULER_ANGLE": ANGLES,
     "EULER_ANGLE/DERIVATIVE": ANGLES + tuple(f"{name}_DOT" for name in ANGLES),
+    "EULER_ANGLE/RATE": (*ANGLES, "X_RATE", "Y_RATE", "Z_RATE"),
     "EULER_ANGLE/ANGVEL": ANGLES + ANGULAR_VELOCITY,
 }
 _REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "ATTITUDE_TYPE")
 _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
 _VERSION: Final = "CCSDS_AEM_VERS"
-_METADATA, _STATE = "metadata", "attitudeState"
-# Roots of XML that is no attitude ephemeris.
-_OTHER_MESSAGES: Final = (
-    "apm",
-    "acm",
-    "oem",
-    "opm",
-    "omm",
-    "ocm",
-    "cdm",
-    "tdm",
-    "rdm",
-    "robot",
-    "sdf",
-    "mujoco",
-)
+_METADATA: Final = "metadata"
+# Roots of XML that is another document.
+_OTHER: Final = "apm acm aem oem opm omm ocm cdm tdm rdm robot sdf mujoco"
 
 
 @dataclass
@@ -152,17 +140,32 @@ def lines_of_message(file: Content, path: Path) -> Iterator[tuple[str, str]]:
 
 def in_xml(file: Content, path: Path) -> list[Segment]:
     """Return the segments in order, each state read and forgotten before the next one."""
-    message = _Message(path, ELEMENTS)
-    message.read(file.binary)
-    return message.segments
+    segments: list[Segment] = []
+
+    def begin(metadata: Mapping[str, str], place: str) -> None:
+        segments.append(Segment(metadata))
+        segments[-1].check(place)
+
+    def add(texts: Mapping[str, str], place: str) -> None:
+        _add(segments[-1], texts, place)
+
+    Message(path, "aem", "attitudeState", begin, add).read(file.binary)
+    return segments
 
 
-class _Message(Markup):
-    """The segments of a message: an element of metadata or of a state is read where it ends."""
+Take = Callable[[Mapping[str, str], str], None]
 
-    def __init__(self, path: Path, elements: Limit) -> None:
-        super().__init__(path, elements)
-        self.segments: list[Segment] = []
+
+class Message(Markup):
+    """A message of the CCSDS: metadata and states are handed over where their elements end.
+
+    ``root`` is the element of the message, ``state`` that of a state.
+    """
+
+    def __init__(self, path: Path, root: str, state: str, begin: Take, add: Take) -> None:
+        super().__init__(path, ELEMENTS)
+        self._root, self._state, self._take_metadata, self._take_state = root, state, begin, add
+        self._segments = 0
         # The texts of the elements since the last one that was read, and that of the open element.
         self._texts: dict[str, str] = {}
         self._text = ""
@@ -170,9 +173,9 @@ class _Message(Markup):
     def begin(self, name: str, attributes: Mapping[str, str]) -> None:
         del attributes
         tag = _local(name)
-        if tag in _OTHER_MESSAGES:
-            raise refusal("an attitude ephemeris (<aem>)", f"<{tag}>", self.path)
-        if tag in (_METADATA, _STATE):
+        if tag in _OTHER.split() and tag != self._root:
+            raise refusal("an attitude or orbit ephemeris (<aem>, <oem>)", f"<{tag}>", self.path)
+        if tag in (_METADATA, self._state):
             self._texts = {}
         self._text = ""
 
@@ -182,13 +185,14 @@ class _Message(Markup):
 
     def end(self, name: str) -> None:
         tag = _local(name)
+        self._segments += tag == _METADATA
+        place = f"{self.path}, segment {self._segments}"
         if tag == _METADATA:
-            self.segments.append(Segment(self._texts))
-            self.segments[-1].check(f"{self.path}, segment {len(self.segments)}")
-        elif tag == _STATE and not self.segments:
+            self._take_metadata(self._texts, place)
+        elif tag == self._state and not self._segments:
             raise refusal("metadata before the states", "none", self.path)
-        elif tag == _STATE:
-            _add(self.segments[-1], self._texts, f"{self.path}, segment {len(self.segments)}")
+        elif tag == self._state:
+            self._take_state(self._texts, place)
         elif text := self._text.strip():
             self._texts[tag] = text
         self._text = ""

@@ -21,6 +21,7 @@ from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, T
 _TIMES: Final = ("t", "time", "times", "tout", "timestamp")
 # Decimals in text are numbers too.
 _NUMBERS: Final = "fiuU"
+_SIGNALS: Final = ".signals.values"
 _MOST_LISTED: Final = 8
 _MOST_OF_MATRIX: Final = 30
 
@@ -53,7 +54,7 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
     The sizes that the file declares are checked before any array is read. An array of another length than
     the times, and one of no real numbers, is left out, and a note names it.
     """
-    inner = _without_common_group(_within(list(arrays), part, place))
+    inner = _without_common_group(_of_signals(_within(list(arrays), part, place)))
     _refuse_several(inner, place)
     numbers = [array for array in inner if array.kind in _NUMBERS and array.shape]
     rows = _rows_of_one(numbers[0], place) if len(numbers) == 1 else _rows(numbers)
@@ -76,6 +77,31 @@ def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
         groups = ", ".join(sorted({a.group for a in arrays} - {""})) or "none"
         raise refusal(f"one of the groups in the file ({groups})", f"`#{part}`", place)
     return inner
+
+
+def _of_signals(arrays: list[Array]) -> list[Array]:
+    """Return the signals that Simulink saves as structs with time, each by the name of its struct.
+
+    Their times are read once, if they are equal.
+    """
+    structs = [a.name.removesuffix(_SIGNALS) for a in arrays if a.name.endswith(_SIGNALS)]
+    if len(structs) == 1 and not Name(Column(f"{structs[0]}[0]", ())).readings:
+        return arrays
+    clocks = [array for array in arrays if array.name in {f"{name}.time" for name in structs}]
+    if not clocks or len({clock.shape for clock in clocks}) > 1 or not _are_equal(clocks):
+        return arrays
+    inner = tuple(f"{name}.{each}" for name in structs for each in ("signals", "time", "blockName"))
+    read = [
+        a._replace(name=a.name.removesuffix(_SIGNALS)) for a in arrays if a.name.endswith(_SIGNALS)
+    ]
+    left = [array for array in arrays if not array.name.startswith(inner)]
+    has_times = any(array.is_time for array in left)
+    return [*left, *read, *([] if has_times else [clocks[0]._replace(name="tout")])]
+
+
+def _are_equal(arrays: Sequence[Array]) -> bool:
+    first, *others = (array.load() for array in arrays)
+    return all(np.array_equal(first, other) for other in others)
 
 
 def _without_common_group(arrays: list[Array]) -> list[Array]:
@@ -115,11 +141,13 @@ def _rows_of_one(array: Array, place: object) -> int:
 
 
 def _rises(line: np.ndarray[Any, Any]) -> bool:
-    return len(line) > 1 and bool((np.diff(line) > 0).all())
+    return len(line) > 1 and bool((np.diff(line.astype(float)) > 0).all())
 
 
 def _columns(array: Array, rows: int) -> Iterator[Column]:
     values: Any = np.moveaxis(array.load(), array.shape.index(rows), 0)
+    # A stack of 3 x 1 x n has vectors in it.
+    values = values.reshape(rows, *(size for size in values.shape[1:] if size > 1))
     if values.size == rows:
         yield Column(array.name, values.reshape(rows))
         return
@@ -142,7 +170,7 @@ def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
     for array in read:
         width = prod(array.shape) // max(rows, 1)
         names = [f"{array.name}[{k}]" for k in range(width)]
-        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).readings:
+        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).is_known:
             example = ",".join(f"w{k}={name}" for k, name in enumerate(names[:2], start=1))
             shown = ", ".join(names[:_MOST_OF_MATRIX])
             more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
 from functools import cached_property
@@ -14,6 +15,19 @@ from taylor_verify.solvers.files.formats.column import LINE, LINES, no_utf8
 
 _BEGINNING: Final = 4096
 _CONTROL: Final = frozenset({*range(32), 127}) - frozenset(b"\t\n\r\f")
+
+
+# Bytes that are no UTF-8 are letters of Latin-1, such as the sign of degrees in a header.
+_LATIN_1: Final = "latin-1 in its place"
+
+
+def _as_latin_1(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeDecodeError):
+        raise error
+    return error.object[error.start : error.end].decode("latin-1"), error.end
+
+
+codecs.register_error(_LATIN_1, _as_latin_1)
 
 
 @final
@@ -58,7 +72,7 @@ class Content:
             raise no_utf8(self.beginning(2), self.path) from None
 
     def lines(self, longest: Limit = LINE) -> Iterator[str]:
-        """Yield the lines of a text in UTF-8 or 16, blank ones too, each with its end.
+        """Yield the lines of a text in UTF-8, Latin-1 or UTF-16, blank ones too, each with its end.
 
         Raises Refused for other bytes, and at the limits of a line and of their number.
         """
@@ -79,8 +93,8 @@ class Content:
 
     @cached_property
     def _text(self) -> TextIOWrapper:
-        encoding = self._encoding
-        return TextIOWrapper(self.binary, encoding=encoding)
+        errors = "strict" if self._encoding == "utf-16" else _LATIN_1
+        return TextIOWrapper(self.binary, self._encoding, errors)
 
     @cached_property
     def _encoding(self) -> str:

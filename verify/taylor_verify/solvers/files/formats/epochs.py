@@ -20,53 +20,20 @@ _EPOCH: Final = re.compile(rf"(?P<date>\d{{4}}-(?:\d{{2}}-\d{{2}}|\d{{3}}))T{_OF
 _ZONE: Final = r"\s*(?:Z|UTC|(?P<offset>[+-]\d{2}:?\d{2}))?"
 _DATE: Final = r"\d{4}[-/](?:\d{1,2}[-/]\d{1,2}|\d{3})|\d{1,2} [A-Za-z]{3} \d{4}"
 _IN_A_LOG: Final = re.compile(rf"(?:(?P<date>{_DATE})(?:T|\s+))?{_OF_DAY}{_ZONE}", re.ASCII)
-_MONTHS: Final = (
-    "jan",
-    "feb",
-    "mar",
-    "apr",
-    "may",
-    "jun",
-    "jul",
-    "aug",
-    "sep",
-    "oct",
-    "nov",
-    "dec",
+_MONTHS: Final = "jan feb mar apr may jun jul aug sep oct nov dec"
+# Halves of years whose last day had a second 23:59:60, in bulletins of the IERS; none after 2016.
+_LEAP_HALVES: Final = (
+    "1972-1 1972-2 1973-2 1974-2 1975-2 1976-2 1977-2 1978-2 1979-2 1981-1 1982-1 1983-1 1985-1 1987-2 "
+    "1989-2 1990-2 1992-1 1993-1 1994-1 1995-2 1997-1 1998-2 2005-2 2008-2 2012-1 2015-1 2016-2"
 )
-# Days of UTC that had a second 23:59:60, from the bulletins of the IERS; there was none after 2016.
-_LEAP_DAYS: Final = tuple(
-    date.fromisoformat(day).toordinal()
-    for day in (
-        "1972-06-30",
-        "1972-12-31",
-        "1973-12-31",
-        "1974-12-31",
-        "1975-12-31",
-        "1976-12-31",
-        "1977-12-31",
-        "1978-12-31",
-        "1979-12-31",
-        "1981-06-30",
-        "1982-06-30",
-        "1983-06-30",
-        "1985-06-30",
-        "1987-12-31",
-        "1989-12-31",
-        "1990-12-31",
-        "1992-06-30",
-        "1993-06-30",
-        "1994-06-30",
-        "1995-12-31",
-        "1997-06-30",
-        "1998-12-31",
-        "2005-12-31",
-        "2008-12-31",
-        "2012-06-30",
-        "2015-06-30",
-        "2016-12-31",
-    )
-)
+
+
+def _last_day(half: str) -> int:
+    year, which = half.split("-")
+    return date(int(year), *((6, 30) if which == "1" else (12, 31))).toordinal()
+
+
+_LEAP_DAYS: Final = tuple(map(_last_day, _LEAP_HALVES.split()))
 
 
 def seconds(text: str, is_utc: bool) -> Fraction:
@@ -125,7 +92,7 @@ def _ordinal(text: str) -> int:
                 raise ValueError
             return day
         if parts[1].isalpha():
-            parts = [parts[2], str(_MONTHS.index(parts[1].lower()) + 1), parts[0]]
+            parts = [parts[2], str(_MONTHS.split().index(parts[1].lower()) + 1), parts[0]]
         return date(*map(int, parts)).toordinal()
     except (ValueError, OverflowError):
         raise ValueError("an epoch on a day of the calendar") from None

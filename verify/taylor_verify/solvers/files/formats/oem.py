@@ -1,4 +1,4 @@
-"""The position in a CCSDS OEM (502.0-B), as text (KVN), every number exactly as written.
+"""The position in a CCSDS OEM (502.0-B), as text (KVN) or XML, every number exactly as written.
 
 A state is an epoch, a position in km and a velocity in km/s, in REF_FRAME. The position is that of the
 body's origin in space; the velocity is in space axes, and is not read.
@@ -6,7 +6,8 @@ body's origin in space; the velocity is in space axes, and is not read.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -14,12 +15,15 @@ from typing import Final
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.aem import check_clock, chosen, is_turning
-from taylor_verify.solvers.files.formats.aem_segment import lines_of_message
+from taylor_verify.solvers.files.formats.aem_segment import Message, lines_of_message
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.epochs import seconds
 
 _VERSION: Final = "CCSDS_OEM_VERS"
+_BEGINNING: Final = 1024
+_ROOT: Final = re.compile(rb"<(?:\w+:)?oem\b")
+_STATE: Final = ("EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT")
 _REQUIRED: Final = ("REF_FRAME", "TIME_SYSTEM", "START_TIME")
 # An epoch, a position, a velocity, and perhaps an acceleration.
 _LENGTHS: Final = (7, 10)
@@ -34,13 +38,18 @@ class _Segment:
 
 
 def is_one(file: Content) -> bool:
-    """Return True for a file that begins like an orbit ephemeris in text."""
-    return file.beginning(len(_VERSION) + 3).lstrip(b"\xef\xbb\xbf").startswith(_VERSION.encode())
+    """Return True for a file that begins like an orbit ephemeris, as text or XML."""
+    start = file.beginning(_BEGINNING).lstrip(b"\xef\xbb\xbf \t\r\n")
+    return start.startswith(_VERSION.encode()) or (
+        start[:1] == b"<" and _ROOT.search(start) is not None
+    )
 
 
 def read(file: Content, path: Path, part: str) -> Table:
     """Return t and c1 c2 c3; ``part`` is the number of a segment."""
-    segment = chosen(list(_segments(file, path)), part, path)
+    is_xml = file.beginning(_BEGINNING).lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+    segments = _in_xml(file, path) if is_xml else list(_segments(file, path))
+    segment = chosen(segments, part, path)
     metadata = segment.metadata
     if missing := [name for name in _REQUIRED if name not in metadata]:
         raise refusal(", ".join(_REQUIRED), f"no {', '.join(missing)}", path)
@@ -97,3 +106,21 @@ def _segments(file: Content, path: Path) -> Iterator[_Segment]:
         raise refusal(f"{block}_STOP", "the end of the file", path)
     if segment.states:
         yield segment
+
+
+def _in_xml(file: Content, path: Path) -> list[_Segment]:
+    """Return the segments of a message in XML."""
+    segments: list[_Segment] = []
+
+    def begin(metadata: Mapping[str, str], place: str) -> None:
+        del place
+        segments.append(_Segment(dict(metadata)))
+
+    def add(texts: Mapping[str, str], place: str) -> None:
+        if missing := [name for name in _STATE if name not in texts]:
+            raise refusal(" ".join(_STATE), f"no {missing[0]}", place)
+        segments[-1].states.append((place, [texts[name] for name in _STATE]))
+        ROWS.check(len(segments[-1].states), path)
+
+    Message(path, "oem", "stateVector", begin, add).read(file.binary)
+    return segments

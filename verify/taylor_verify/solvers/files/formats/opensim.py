@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.faults import cut, refusal
+from taylor_verify.solvers.files.columns.readings import Name
+from taylor_verify.solvers.files.columns.units import DIMENSION, OWN
 from taylor_verify.solvers.files.formats import delimited
 from taylor_verify.solvers.files.formats.column import Column, Table, check_size, refuse_part
 from taylor_verify.solvers.files.formats.content import Content
@@ -42,23 +44,26 @@ def read(file: Content, path: Path, part: str) -> Table:
         expected = f"DataType {', '.join(_ELEMENTS)}"
         raise refusal(expected, cut(stated["datatype"]), path)
     if not elements:
-        _refuse_degrees(stated.get("indegrees", "no"), path)
-        return table
+        is_in_degrees = stated.get("indegrees", "no").lower() == "yes"
+        return _in_degrees(table) if is_in_degrees else table
     clock, *others = table.columns
     check_size(len(others) * len(elements) + 1, rows, path)
     columns = [column for each in others for column in _apart(each, elements, path)]
     return table._replace(columns=[clock, *columns])
 
 
-def _refuse_degrees(stated: str, path: Path) -> None:
-    if stated.lower() == "yes":
-        mend = (
-            "write radians, or name the columns with their units (`wx [deg/s]`) in a file that ends "
-            "in .csv"
-        )
-        raise refusal(
-            "inDegrees=no, because it says not which columns it is about", "yes", path, mend
-        )
+def _in_degrees(table: Table) -> Table:
+    """Return the angles and their rates with the unit that the header states of all of them."""
+    named = [column._replace(name=column.name + _degrees(column)) for column in table.columns]
+    note = "inDegrees=yes: angles are in degrees, rates in degrees a second"
+    return Table(named, (*table.notes, note))
+
+
+def _degrees(column: Column) -> str:
+    """Return the unit of an angle or a rate of which the name says no unit; empty for other columns."""
+    readings = [reading for reading in Name(column).readings if reading.unit is OWN]
+    units = {"angle": " [deg]", "rate": " [deg/s]"}
+    return next((units.get(DIMENSION[r.spelling.group], "") for r in readings), "")
 
 
 def _apart(column: Column, ends: tuple[str, ...], path: Path) -> list[Column]:

@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.plugins import Plugin, free
 from taylor_verify.records.regular_file import regular_file
-from taylor_verify.solvers.files.formats import aem, oem, rosbag
+from taylor_verify.solvers.files.formats import aem, echo, octave, oem, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
@@ -53,11 +53,14 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".parquet": Format("columns of numbers", "parquet", "pyarrow"),
     ".aem": Format("attitude ephemeris of the CCSDS, as text or XML", "aem"),
     ".kvn": Format("attitude or orbit ephemeris of the CCSDS, as text", "aem"),
-    ".oem": Format("orbit ephemeris of the CCSDS, as text", "oem"),
-    ".xml": Format("attitude ephemeris of the CCSDS, as XML", "aem"),
+    ".oem": Format("orbit ephemeris of the CCSDS, as text or XML", "oem"),
+    ".xml": Format("attitude or orbit ephemeris of the CCSDS, as XML", "aem"),
     ".sto": Format("a table of OpenSim", "opensim"),
     ".mot": Format("a table of OpenSim", "opensim"),
     ".a": Format("attitudes of STK", "stk"),
+    ".42": Format("a quantity of 42, beside its time.42", "forty_two"),
+    ".yaml": Format("messages as ROS echoes them", "echo"),
+    ".yml": Format("messages as ROS echoes them", "echo"),
     ".h5": Format("datasets of numbers", "hdf5", "h5py"),
     ".hdf5": Format("datasets of numbers", "hdf5", "h5py"),
     ".nc": Format("NetCDF 4, which is HDF5", "hdf5", "h5py"),
@@ -122,10 +125,9 @@ def parted(file: str) -> tuple[Path, str]:
 
 def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
-    if oem.is_one(content):
-        return oem
-    if aem.is_text(content):
-        return aem
+    for known_by_content in (oem, aem, octave, echo):
+        if known_by_content.is_one(content):
+            return known_by_content
     known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
         expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"

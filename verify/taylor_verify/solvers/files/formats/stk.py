@@ -7,6 +7,7 @@ https://help.agi.com/stk/Content/stk/importfiles-01.htm.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Final
@@ -18,14 +19,20 @@ from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, alik
 from taylor_verify.solvers.files.formats.content import Content
 
 _LAST: Final = ("q1", "q2", "q3", "q0")
+_RATES: Final = tuple(f"w{k} [deg/s]" for k in (1, 2, 3))
+# STK turns the reference axes into those of the body, row by row.
+_MATRIX: Final = tuple(f"r{k}{i}" for i in (1, 2, 3) for k in (1, 2, 3))
 _DATA: Final[Mapping[str, tuple[str, ...]]] = {
     "attitudetimequaternions": _LAST,
     "attitudetimequatscalarfirst": ("q0", "q1", "q2", "q3"),
-    "attitudetimequatangvels": (*_LAST, *(f"w{k} [deg/s]" for k in (1, 2, 3))),
+    "attitudetimequatangvels": (*_LAST, *_RATES),
+    "attitudetimeangvels": _RATES,
+    "attitudetimedcm": _MATRIX,
+    "attitudetimedcmangvels": (*_MATRIX, *_RATES),
 }
 _DIGITS: Final = str.maketrans("123", "xyz")
 _POINTS, _AXES, _FORMAT = "numberofattitudepoints", "coordinateaxes", "timeformat"
-_FIXED: Final = ("fixed", "fixednolibration", "ecf", "custom")
+_FIXED: Final = ("fixed", "fixednolibration", "ecf", "custom", "topocentric")
 
 
 def read(file: Content, path: Path, part: str) -> Table:
@@ -45,7 +52,7 @@ def read(file: Content, path: Path, part: str) -> Table:
                     rows.append(words)
                 ROWS.check(len(rows), path)
             elif word.startswith("attitudetime"):
-                names = _named(word, words[0], keywords.get("sequence", ""), place)
+                names = _named(word, words[0], keywords.get("sequence", "313"), place)
             else:
                 keywords[word] = rest
         else:
@@ -68,12 +75,13 @@ def _lines(file: Content, path: Path) -> Iterator[tuple[str, list[str]]]:
 
 def _named(word: str, shown: str, sequence: str, place: str) -> tuple[str, ...]:
     axes = sequence.translate(_DIGITS)
-    if word == "attitudetimeeulerangles" and axes in FORMS:
-        return tuple(f"euler_{axes}_{k} [deg]" for k in (1, 2, 3))
+    if word.startswith("attitudetimeeulerangles") and axes in FORMS:
+        rates = [f"rate {k}" for k in (1, 2, 3)] if word.endswith("andrates") else []
+        return (*(f"euler_{axes}_{k} [deg]" for k in (1, 2, 3)), *rates)
     if word not in _DATA:
         kinds = (
-            "AttitudeTimeQuaternions, AttitudeTimeQuatScalarFirst, AttitudeTimeQuatAngVels, or "
-            "AttitudeTimeEulerAngles below a Sequence such as 321"
+            "AttitudeTime with Quaternions, QuatScalarFirst, QuatAngVels, AngVels, DCM, DCMAngVels, or "
+            "EulerAngles below a Sequence such as 321"
         )
         raise refusal(kinds, cut(shown), place, "write one of them, or a CSV file")
     return _DATA[word]
@@ -83,8 +91,9 @@ def _check(keywords: Mapping[str, str], rows: int, path: Path, faults: Faults) -
     points = keywords.get(_POINTS, str(rows))
     if points != str(rows):
         faults.add(f"{cut(points)} points as {_POINTS} says", str(rows), str(path))
-    axes = keywords.get(_AXES, "").split(" ")[0]
-    if is_turning(axes) or axes.lower() in _FIXED:
-        faults.add("CoordinateAxes that do not turn", cut(axes), str(path))
+    axes = keywords.get(_AXES, "")
+    if any(is_turning(word) or word.lower() in _FIXED for word in re.split(r"[\s/]+", axes)):
+        mend = "write quaternions relative to inertial axes, such as ICRF or J2000"
+        faults.add("CoordinateAxes that do not turn", cut(axes), str(path), mend)
     if keywords.get(_FORMAT, "EpSec").lower() != "epsec":
         faults.add("times in seconds (TimeFormat EpSec)", cut(keywords[_FORMAT]), str(path))
