@@ -89,9 +89,19 @@ def without_remarks(
     return given and bare(given), back and bare(back)
 
 
+INCLUDED = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
+# A page replaces the file of the repository that it includes.
+STAND_INS = {
+    (HERE / included).resolve(): page.resolve()
+    for page in HERE.glob("*.md")
+    for included in INCLUDED.findall(page.read_text(encoding="utf-8"))
+}
+
+
 def beyond(place: str) -> str:
     """Where a link leads: what lies beyond these pages comes along as a file, a picture is shown."""
     target = (HERE / place).resolve()
+    target = STAND_INS.get(target, target)
     if target.is_relative_to(HERE):
         return target.relative_to(HERE).as_posix()
     return place if target.suffix == ".svg" else f"path:{place}"
