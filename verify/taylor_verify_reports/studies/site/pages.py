@@ -89,7 +89,7 @@ def staged(folder: Path) -> Stage:
                 f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn, scene in motions)
                 for scene, drawn in pictures.items()
             },
-            **_front(stage),
+            **front(stage),
         }
     )
     return stage
@@ -127,7 +127,7 @@ def _svg(picture: Picture) -> str:
     return smaller(content(picture, "svg").decode())
 
 
-def _front(stage: Stage) -> dict[str, str]:
+def front(stage: Stage) -> dict[str, str]:
     """Return the front page, made of the README, and the page of results, which lists the report."""
     made = {SCENES, _GATES.removesuffix(".md")}
     pages = sorted({*made, *stage.report_pages}, key=_reading_order)
