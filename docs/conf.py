@@ -9,8 +9,12 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import redirect_stdout, suppress
+from io import StringIO
 from pathlib import Path
 from typing import Any
+
+from taylor_verify.cli.arguments import parse
 
 # Settings are names of this file for Sphinx: those of all pages first.
 from taylor_verify_reports.studies.site.conf import *  # noqa: F403
@@ -89,9 +93,37 @@ def without_remarks(
     return given and bare(given), back and bare(back)
 
 
+# A section of the page of the command line whose heading is a verb.
+VERB = re.compile(r"^## ([a-z]+)\n.*?(?=^## )", re.MULTILINE | re.DOTALL)
+
+
+def help_of(verb: str) -> str:
+    with redirect_stdout(StringIO()) as out, suppress(SystemExit):
+        parse([verb, "--help"])
+    return out.getvalue()
+
+
+def with_help(_app: Any, page: str, content: list[str]) -> None:
+    """End each verb's section with the text of its --help, which has every option."""
+    if page.endswith("command-line"):
+        content[0] = VERB.sub(
+            lambda section: f"{section[0]}```text\n{help_of(section[1])}```\n\n", content[0]
+        )
+
+
+INCLUDED = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
+# A page replaces the file of the repository that it includes.
+STAND_INS = {
+    (HERE / included).resolve(): page.resolve()
+    for page in HERE.glob("*.md")
+    for included in INCLUDED.findall(page.read_text(encoding="utf-8"))
+}
+
+
 def beyond(place: str) -> str:
     """Where a link leads: what lies beyond these pages comes along as a file, a picture is shown."""
     target = (HERE / place).resolve()
+    target = STAND_INS.get(target, target)
     if target.is_relative_to(HERE):
         return target.relative_to(HERE).as_posix()
     return place if target.suffix == ".svg" else f"path:{place}"
@@ -109,6 +141,7 @@ def linked_from_included(_app: Any, path: Path, _page: str, content: list[str]) 
 def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", told)
     app.connect("autodoc-process-signature", without_remarks)
+    app.connect("source-read", with_help)
     # The pages of the whole site lie elsewhere, with their links as they have to be.
     if Path(app.srcdir) == HERE:
         app.connect("source-read", linked_from_page)

@@ -137,12 +137,12 @@ def test_the_figures_of_a_difference_are_its_limit_and_its_reason() -> None:
     """A row that still passes, at 8 attainable, is worse than an eleventh of it, and better in reverse."""
     (worse,) = compare([row(8 / 11)], [row(8)]).all
     assert str(worse) == (
-        "expected at most 7.27e-14 (10 x the larger of the former 7.27e-15 and 0.5 attainable, "
-        "5e-15: rounding explains no more), got 8e-14 "
+        "expected at most 7.27e-14 (10 x the larger of the earlier error 7.27e-15 and "
+        "0.5 roundoff floors, 5e-15), got 8e-14 "
         "@ euler/generic f64 omega max (and mean, final, ratio)"
     )
     (better,) = compare([row(8)], [row(8 / 11)]).all
-    assert str(better).startswith("expected at least 8e-15 (the former 8e-14 over 10: ")
+    assert str(better).startswith("expected at least 8e-15 (the earlier error 8e-14 over 10)")
 
 
 def test_more_steps_excuse_no_error() -> None:

@@ -44,7 +44,7 @@ def test_a_call_without_a_verb_greets_with_three_commands(
     for command in commands:
         assert callable(parse(shlex.split(command)[1:]).act)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert all(f"\ntaylor-verify {verb} " in readme for verb in verbs)
+    assert all(re.search(rf"^(\$ )?taylor-verify {verb} ", readme, re.MULTILINE) for verb in verbs)
     assert __version__ in out
     assert error == ""
 

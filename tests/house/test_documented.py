@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import builtins
 import importlib
+import importlib.util
 import inspect
 import re
 import tomllib
@@ -78,12 +79,20 @@ def test_every_verb_has_a_section() -> None:
     assert {verb for verb in VERBS if f"taylor-verify {verb} " not in first} <= {"list"}
 
 
-@pytest.mark.parametrize("verb", VERBS)
-def test_every_option_is_documented(verb: str) -> None:
-    """The page of the command line, or that of sweeps for its verb, has each option of --help."""
-    options = re.findall(r"--[a-z][a-z-]*", help_of(verb))
-    assert "--json" in options
-    assert missing(options, COMMAND_LINE) == []
+def test_every_option_is_on_the_site() -> None:
+    """The page of the command line, as the site has it, ends the section of each verb with its --help."""
+    spec = importlib.util.spec_from_file_location("conf", DOCS / "conf.py")
+    assert spec is not None
+    assert spec.loader is not None
+    conf = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(conf)
+    content = [COMMAND_LINE.read_text(encoding="utf-8")]
+    conf.with_help(None, "docs/command-line", content)
+    sections = dict(re.findall(r"^## (\w+)$(.*?)(?=^## )", content[0], re.MULTILINE | re.DOTALL))
+    for verb in VERBS:
+        options = set(re.findall(r"--[a-z][a-z-]*", help_of(verb)))
+        assert "--json" in options
+        assert {option for option in options if option not in sections[verb]} == set()
 
 
 # Scenes.
@@ -166,11 +175,13 @@ def exceptions() -> set[str]:
     return public
 
 
-def test_every_exception_is_documented() -> None:
-    """The tables of errors have each exception of the package and no other, with the text when."""
+def test_every_exception_of_a_call_is_documented() -> None:
+    """Errors has each exception of the reference, with the text when, and none that there is not."""
     page = (DOCS / "errors.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `(taylor_verify[\w.]+)` \| (.+) \| (.+) \|$", page, re.MULTILINE)
-    assert {name for name, *_ in rows} == exceptions()
+    texts = [page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")]
+    public = {name for text in texts for name in re.findall(r"autoexception:: ([\w.]+)", text)}
+    assert public <= {name for name, *_ in rows} <= exceptions()
     assert len(rows) == len({name for name, *_ in rows})
 
 

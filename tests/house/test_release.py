@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import tomllib
@@ -71,6 +72,22 @@ def test_the_classifiers_are_the_pythons_that_are_allowed() -> None:
     named = [c.rpartition(" ")[2] for c in metadata["classifiers"] if ":: Python ::" in c]
     jobs = read(ROOT / ".github" / "workflows" / "check.yml")["jobs"]
     assert named == jobs["check"]["strategy"]["matrix"]["python"] == allowed
+
+
+def test_links_of_the_readme_work_from_a_package_index() -> None:
+    """Each relative link leads to the repository once there is an address; pictures are raw files."""
+    spec = importlib.util.spec_from_file_location("readme", ROOT / "recipe" / "readme.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    readme = text_of("README.md")
+    assert module.absolute(readme, "") == readme
+    address = "https://example.org/blob/main"
+    links = re.findall(r"\]\(([^()\s]+)\)", module.absolute(readme, address))
+    assert {link.split("/")[3] for link in links} == {"blob", "raw"}
+    assert all(link.startswith("https://example.org/") for link in links)
+    assert project()["tool"]["hatch"]["metadata"]["hooks"]["custom"]["path"] == "recipe/readme.py"
 
 
 # The pinned versions.

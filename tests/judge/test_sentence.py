@@ -102,11 +102,11 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
     "slow clock": (
         lambda: exact([t * (1 - Fraction(1, 10**6)) for t in TIMES]),
         repr, ErrorKind.PHASE_DRIFT,
-        "the error is a drift of phase: the clock runs slow by 1e-06 of the time, and ",
+        "the error is a drift of phase: the clock runs slow by 1e-06 per unit of time, and ",
     ),
     "RK4": (
         runge_kutta_4, repr, ErrorKind.PHASE_DRIFT,
-        "the error is a drift of phase: the clock runs slow by 6.15e-13 of the time, and ",
+        "the error is a drift of phase: the clock runs slow by 6.15e-13 per unit of time, and ",
     ),
     "offset": (
         lambda: changed(lambda omega, t: omega + np.array([1e-5, -1e-5, 2e-5])),
@@ -161,7 +161,7 @@ def test_a_loss_of_energy_is_told_from_a_gain(tmp_path: Path) -> None:
     """T of an omega that shrinks in proportion to t is lost steadily; of one that grows it is gained."""
     lost = judged("loss")["T"]
     assert lost.sentence.startswith("T: 6 digits are kept up to t = 100 (largest error 2e-07); ")
-    assert "it grows in proportion to t: a steady loss; above what f64 arithmetic" in lost.sentence
+    assert "it grows in proportion to t: a steady loss; larger than f64 rounding" in lost.sentence
     assert lost.change == pytest.approx(-2e-7, rel=0.01)
     assert lost.exponent == pytest.approx(1, abs=0.05)
     file = write_csv(tmp_path / "gain.csv", changed(lambda omega, t: omega * (1 + 1e-9 * t)))

@@ -158,7 +158,7 @@ def test_a_clock_that_runs_wrong_drifts(pace: str) -> None:
         assert shift.remains <= 60 * abs(float(pace)) * 1e-15
         word = "slow" if float(pace) > 0 else "fast"
         assert (
-            f"drifting: its clock runs {word} by {abs(float(pace)):.3g} of"
+            f"drifting: its clock runs {word} by {abs(float(pace)):.3g} per"
             in shift.terms().sentence()
         )
 
@@ -332,7 +332,7 @@ def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
 
 
 def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
-    """Only conserved quantities are gated if rounding may carry the state as far as it is large."""
+    """Only conserved quantities are gated if roundoff alone may be as large as the state."""
     # Beside the unstable axis by 1e-12, and for several flips: e^(t/sqrt 3) grows beyond 2^53.
     edge = replace(
         load("euler/generic"),
@@ -343,7 +343,7 @@ def test_a_vacuous_gate_says_what_is_gated_in_its_place() -> None:
     problem = pose(edge, rung("f64"))
     _, omega, *conserved = judgement(problem, Taylor(), Taylor().solve(problem)).verdicts
     assert omega.verdict is Status.VACUOUS
-    assert "only the conserved quantities are gated there" in omega.because
+    assert "only the conserved quantities are gated" in omega.because
     assert all(v.verdict is not Status.VACUOUS for v in conserved)
 
 
@@ -438,4 +438,7 @@ def test_a_clock_that_is_early_and_drifts_is_told_both(with_first: bool) -> None
     shift = next(v for v in check("euler/generic", early).verdicts if v.quantity == "omega")
     assert shift.shift == "drifting"
     assert shift.trend == pytest.approx(-1e-3, rel=1e-6)
-    assert "its clock runs fast by 0.001 of the time and is early by 0.02 at t = 0" in shift.because
+    assert (
+        "its clock runs fast by 0.001 per unit of time and is early by 0.02 at t = 0"
+        in shift.because
+    )

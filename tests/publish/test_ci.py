@@ -191,7 +191,7 @@ def test_a_failure_says_what_a_person_needs() -> None:
     (failure,) = ElementTree.fromstring(junit.junit([row(Status.FAIL)])).iter("failure")
     assert failure.get("message") == (
         "omega: 11 digits are right (largest error 3.3e-12); 10 x attainable; one rounding a step; "
-        "above what f64 arithmetic would leave; largest error 3.30e-12 (max|omega|) at t = 7, where "
+        "larger than f64 rounding explains; largest error 3.30e-12 (max|omega|) at t = 7, where "
         "2.00e-13 is allowed; up to 165 times what perfect rounding would leave at t = 6.5"
     )
     assert (failure.text or "").startswith("euler/generic on f64: omega fail\nomega: 11 digits")

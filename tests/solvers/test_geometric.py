@@ -412,7 +412,7 @@ def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str
         return " ".join(capsys.readouterr().out.split())
 
     text = printed("implicit-midpoint")
-    assert "the error is a drift of phase: the clock runs slow by 2.52e-06 of the time" in text
+    assert "the error is a drift of phase: the clock runs slow by 2.52e-06 per unit of time" in text
     text = printed("splitting")
     assert "no shift of time explains the error" in text
     assert re.search(

@@ -266,11 +266,3 @@ def test_every_study_has_a_name_of_its_own() -> None:
     for kind in ("path", "options"):
         values = [value for study in STUDIES if (value := getattr(study, kind))]
         assert len(set(values)) == len(values)
-
-
-@pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
-def test_the_pages_of_docs_name_every_study(study: Study[object]) -> None:
-    """The table of `publish` names each study, so that a new one cannot be left out."""
-    page = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
-    table = page.partition("## publish")[2].partition("\n## ")[0]
-    assert f"`{study.name}`" in table

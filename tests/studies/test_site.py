@@ -21,6 +21,7 @@ from taylor_verify.solvers.files.file import read
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
+from taylor_verify_reports.studies.site.pages import front
 from taylor_verify_reports.studies.site.scene_page import scene_page
 from taylor_verify_reports.studies.site.stage import Stage
 from taylor_verify_reports.studies.source import Report
@@ -358,6 +359,25 @@ def test_a_site_of_committed_files_alone_is_whole(
     pages = {name: Page(text) for name, text in read.items()}
     assert {place_of(scene) for scene in SCENES} < set(pages)
     links_resolve(pages, files)
+
+
+def test_the_readme_is_the_front_page(tmp_path: Path) -> None:
+    """The front page is the README of the checkout; the report stands below the page of results."""
+    files = {
+        "README.md": "# Read me\n",
+        "docs/conf.py": CONF,
+        "docs/index.md": INDEX.replace("method", "results"),
+        "docs/results.md": "# Results\n",
+        "reports/claims.md": "# Claims\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    made = front(Stage(tmp_path / "reports", tmp_path / "docs"))
+    assert made["index.md"].startswith("# Read me\n")
+    assert "\ndocs/results\n" in made["index.md"]
+    assert "claims" not in made["index.md"]
+    assert "\n/reports/claims\n" in made["docs/results.md"]
 
 
 def test_the_pages_of_parts_stand_below_their_page(tmp_path: Path) -> None:

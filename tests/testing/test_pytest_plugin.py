@@ -105,7 +105,7 @@ def test_my_simulator(verify_solver):
             '>       verify_solver("euler/generic", still)',
             "E       Failed: fail, likely cause: no gyroscopic term; worst: omega: *",
             "E       still on euler/generic, f64, against the exact motion * data (*): 1 of 4 * no pass",
-            "E       fail  euler/generic f64 omega: no digit is right at t = * (error *); *; above what "
+            "E       fail  euler/generic f64 omega: no digit is right at t = * (error *); *; larger than "
             "f64 * since t = *; largest error * (max|omega|) * is allowed; up to * times what perfect *",
             "E       pass  euler/generic f64 T: *",
             "E       pass  euler/generic f64 H2: *",

@@ -263,15 +263,14 @@ def has_grown(was: float | None, now: float | None, level: float) -> bool:
 def _most(was: float | None, level: float) -> str:
     if was is None:
         return format_number(was)
-    larger = f"the larger of the former {was:.3g} and {LEVEL:g} attainable, {level:.3g}"
-    limit = FACTOR * max(was, level)
-    return f"at most {limit:.3g} ({FACTOR:g} x {larger}: rounding explains no more)"
+    larger = f"the larger of the earlier error {was:.3g} and {LEVEL:g} roundoff floors, {level:.3g}"
+    return f"at most {FACTOR * max(was, level):.3g} ({FACTOR:g} x {larger})"
 
 
 def _least(was: float | None) -> str:
     if was is None:
         return format_number(was)
-    return f"at least {was / FACTOR:.3g} (the former {was:.3g} over {FACTOR:g}: rounding explains no less)"
+    return f"at least {was / FACTOR:.3g} (the earlier error {was:.3g} over {FACTOR:g})"
 
 
 def _attainable(old: Verdict, new: Verdict) -> float:

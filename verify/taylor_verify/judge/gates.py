@@ -64,12 +64,12 @@ def judge(
         if status is Status.FAIL and (is_explained or not attainable[worst] <= tolerance):
             reason = reason.with_remark(Cause.FINE_TOLERANCE, _TOO_FINE)
     if status is Status.VACUOUS:
-        open_at = f"the bound reaches {float(np.max(bounds)):.2g}, and the answer zero is off by 1"
-        instead = "; only the conserved quantities are gated there" if errors.is_state else ""
-        far = (
-            f"rounding alone may carry {errors.quantity} as far as it is large: {open_at}{instead}"
+        instead = "; only the conserved quantities are gated" if errors.is_state else ""
+        large = (
+            f"roundoff alone may be as large as {errors.quantity} itself, which is an error of 1: "
+            f"the bound reaches {float(np.max(bounds)):.2g}{instead}"
         )
-        reason = reason.with_remark(Cause.VACUOUS, far)
+        reason = reason.with_remark(Cause.VACUOUS, large)
     if status is Status.UNDECIDED:
         wide = f"the truth is wider than 1/{_TRUTH_SHARE} of the bound"
         reason = reason.with_remark(Cause.WIDE_TRUTH, wide)

@@ -103,7 +103,7 @@ def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:
     equations: PrincipalEuler | TensorEuler
     if any(numbers[name] for name in _PRODUCTS):
         differences = {"D11": k1 - k3, "D22": k2 - k3}
-        definitions, begin = _DEVIATIONS, "a sphere is taken away from K: "
+        definitions, begin = _DEVIATIONS, "K less a multiple of the unit matrix: "
     else:
         differences = dict(zip(_DIFFERENCES, (k3 - k2, k1 - k3, k2 - k1), strict=True))
         definitions, begin = _DIFFERENCES, "principal axes: "

@@ -345,7 +345,7 @@ def late(shift: float) -> str:
 
 def pace(trend: float) -> str:
     """Return the pace of a clock in words, by the shift that it makes in a unit of time."""
-    return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} of the time"
+    return f"{'slow' if trend > 0 else 'fast'} by {abs(trend):.3g} per unit of time"
 
 
 def _figure(value: float | None, digits: int = 2) -> str:

@@ -74,7 +74,8 @@ def _left(verdict: Verdict) -> Iterator[str]:
         return
     shift, remains = verdict.reason.shift, ""
     if verdict.remains is not None:
-        remains = f", and {verdict.remains:.2g} remains{shift.rows_in_words() if shift else ''}"
+        rows = shift.rows_in_words() if shift else ""
+        remains = f", and without this {verdict.remains:.2g} remains{rows}"
     if kind is ErrorKind.ROUNDOFF:
         yield "what is left is roundoff"
     elif kind in _STORED:
@@ -128,14 +129,15 @@ def _tendency(verdict: Verdict) -> str:
 def _bound(verdict: Verdict) -> str:
     """Return the bound in words, and since when the error is above it."""
     tolerance = verdict.tolerance
-    limit = f"what {verdict.rung} arithmetic would leave"
-    if tolerance is not None:
-        limit = f"the tolerance of {tolerance:.3g}{_allowed_by_arithmetic(verdict)}"
     if verdict.error_kind is ErrorKind.NOT_FINITE:
         return ""
+    if tolerance is None:
+        is_above = verdict.verdict is Status.FAIL
+        return f"larger than {verdict.rung} rounding explains{_since(verdict)}" if is_above else ""
+    limit = f"the tolerance of {tolerance:.3g}{_allowed_by_arithmetic(verdict)}"
     if verdict.verdict is Status.FAIL:
         return f"above {limit}{_since(verdict)}"
-    return f"within {limit}" if tolerance is not None and verdict.verdict is Status.PASS else ""
+    return f"within {limit}" if verdict.verdict is Status.PASS else ""
 
 
 def _since(verdict: Verdict) -> str:

@@ -26,8 +26,7 @@ _MEANINGS: Final[Mapping[Status, str]] = {
     Status.PASS: "the error of every sample is within its bound",
     Status.FAIL: "an error exceeds its bound or is no number, or the solver did not finish",
     Status.UNDECIDED: "the exact solution is not known sharply enough to judge by",
-    Status.VACUOUS: "rounding alone may carry the answer as far as the motion is large: "
-    "the bound forbids nothing",
+    Status.VACUOUS: "roundoff alone may be as large as the motion: no answer could fail",
     Status.REFUSED: "the numbers of this rung cannot hold the scene",
     Status.UNAVAILABLE: "this machine does not have the rung",
 }

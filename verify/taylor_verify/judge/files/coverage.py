@@ -127,7 +127,7 @@ def complete_verdict(
     """Return the row on what was not judged: undecided, or vacuous if a ``partial`` answer is accepted."""
     status = Status.VACUOUS if partial else Status.UNDECIDED
     whole = f"`taylor-verify question {scene.name} --csv` prints the header and the times of a whole file"
-    asked = "a part is all that --partial asks for" if partial else "--partial accepts a part"
+    asked = "accepted, as --partial says" if partial else "--partial accepts a part"
     sentence = f"not judged: {', '.join(lack)}; {whole}; {asked}"
     row = (scene, Recorded({}, setting=file), rung, COMPLETE, status, Outcome.FINISHED)
     reason, roundoff = stated(Cause.INCOMPLETE, sentence), float(rung.unit_roundoff)

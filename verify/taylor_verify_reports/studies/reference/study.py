@@ -1,4 +1,4 @@
-"""The study of the reference: the exact trajectory of every shipped scene, in digits."""
+"""The study of the reference: the exact trajectory of every scene of the standard set, in digits."""
 
 from __future__ import annotations
 

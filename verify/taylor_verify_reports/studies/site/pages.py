@@ -13,28 +13,31 @@ from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
-from taylor_verify.records.runs import Run, gravest
-from taylor_verify.records.verdict import summary
+from taylor_verify.records.runs import gravest
 from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
 from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.site.extension import SCENES
 from taylor_verify_reports.studies.site.scene_page import (
     drawing_of,
-    made_with,
     motion_place,
     scene_page,
-    shown,
 )
-from taylor_verify_reports.studies.site.stage import FRONT, REPORTS, Stage, docs_beside, smaller
+from taylor_verify_reports.studies.site.stage import (
+    DOCS,
+    FRONT,
+    README,
+    REPORTS,
+    Stage,
+    docs_beside,
+    smaller,
+)
 from taylor_verify_reports.studies.source import Document, Report
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
+_RESULTS: Final = f"{DOCS}/results.md"
 # Fewer pictures are drawn in this process, because to start others takes as long as some drawings.
 _MANY: Final = 20
-# The scene of the errors on the front page.
-_EXAMPLE: Final = "euler/generic"
-_FRONT: Final = (Path(__file__).parent / "front.md").read_text(encoding="utf-8")
 _SCENES: Final = (
     "A scene is one motion, given in exact numbers. A number is the largest error of the main quantity, "
     "relative to its size: the angular velocity of a rigid body, the impulse of a solid in a fluid. *Over "
@@ -86,7 +89,7 @@ def staged(folder: Path) -> Stage:
                 f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn, scene in motions)
                 for scene, drawn in pictures.items()
             },
-            FRONT: _front(report, stage, pictures.get(_EXAMPLE, ())),
+            **front(stage),
         }
     )
     return stage
@@ -124,56 +127,21 @@ def _svg(picture: Picture) -> str:
     return smaller(content(picture, "svg").decode())
 
 
-def _front(report: Report, stage: Stage, pictures: Sequence[Picture]) -> str:
-    pages = [f"{SCENES}.md", _GATES, *stage.report_pages]
-    return _FRONT.format(
-        counts=_counts(report.runs),
-        by_rung=_table_by_rung(report),
-        picture="\n\n".join(shown(report, picture, REPORTS) for picture in pictures),
-        blind=_blind(report),
-        made_with=made_with(report),
-        pages="\n".join(sorted({p.removesuffix(".md") for p in pages}, key=_reading_order)),
-        docs=stage.toctrees(),
-    )
-
-
-def _table_by_rung(report: Report) -> str:
-    """Return the table of rungs on the front page of the report; empty without that page."""
-    blocks = report.read("README.md").split("\n\n")
-    return next((block for block in blocks if block.startswith("| rung")), "")
+def front(stage: Stage) -> dict[str, str]:
+    """Return the front page, made of the README, and the page of results, which lists the report."""
+    made = {SCENES, _GATES.removesuffix(".md")}
+    pages = sorted({*made, *stage.report_pages}, key=_reading_order)
+    listed = "\n".join(["```{toctree}", ":hidden:", "", *(f"/{page}" for page in pages), "```"])
+    front, results = f"{stage.text(README)}\n{stage.toctrees()}\n", stage.text(_RESULTS)
+    if results:
+        return {FRONT: front, _RESULTS: f"{results}\n{listed}\n"}
+    return {FRONT: f"{front}\n{listed}\n"}
 
 
 def _reading_order(page: str) -> tuple[int, str]:
     """Return the key by which pages are sorted: the front page, the scenes, then by depth and name."""
     first = (f"{REPORTS}/README", SCENES)
     return (first.index(page) if page in first else 2 + page.count("/"), page)
-
-
-def _counts(runs: Sequence[Run]) -> str:
-    """Return a table of the numbers of scenes, runs and verdicts; a zero stands only for pass and fail."""
-    verdicts = [verdict for run in runs for verdict in run.verdicts]
-    by_status = summary(verdicts).items()
-    counts = {
-        "scenes": len({run.scene for run in runs}),
-        "runs": len(runs),
-        "verdicts": len(verdicts),
-        **{name: count for name, count in by_status if count or name in ("pass", "fail")},
-    }
-    return table([f"{name}:" for name in counts], [list(map(str, counts.values()))])
-
-
-def _blind(report: Report) -> str:
-    """Return the number of broken solvers that the conserved quantities do not see, in words."""
-    finished = [s for s in report.sights if s.is_finished and s.seen_by]
-    unseen = [s for s in finished if not any(s.is_seen_by(name) for name in s.conserved)]
-    energy = [s for s in finished if s.is_missed_by("T")]
-    if not finished:
-        return "Only a comparison with the exact motion does."
-    return (
-        f"Of {len(finished)} solvers that were broken on purpose and ran to their end, "
-        f"{len(energy)} pass the gate of the energy and {len(unseen)} pass that of every "
-        "conserved quantity their scene has. The comparison with the exact motion sees them all."
-    )
 
 
 def _scenes(report: Report) -> str:

@@ -21,6 +21,7 @@ from taylor_verify_reports.studies.site.links import relinked
 DOCS: Final = "docs"
 REPORTS: Final = "reports"
 FRONT: Final = "index.md"
+README: Final = "README.md"
 
 # In bytes. Larger files are sheets and data, which are packed to a tenth of their size.
 _LARGE: Final = 30_000
@@ -58,7 +59,7 @@ class Stage:
         self._pages = dict(self._markdown())
         self._places = {*self._pages}
         # The front page replaces the list of docs, and a page replaces the file that it includes.
-        self._stand_ins = {f"{DOCS}/index.md": FRONT}
+        self._stand_ins = {f"{DOCS}/index.md": FRONT, README: FRONT}
         for place, file in self._pages.items():
             for included in _INCLUDED.findall(file.read_text(encoding="utf-8")):
                 self._stand_ins[_joined(place, included)] = place
@@ -86,6 +87,13 @@ class Stage:
         """Return the pages below a page, such as tables/engines-mujoco below tables/engines."""
         pages = (place.removesuffix(".md") for place in self._pages)
         return [page for page in pages if page.startswith(f"{parent}-")]
+
+    def text(self, place: str) -> str:
+        """Return the text of a file of the checkout; empty if there is none, a title of a README."""
+        file = self._origin(place)
+        if file is not None and file.is_file():
+            return file.read_text(encoding="utf-8")
+        return "# taylor-verify\n" if place == README else ""
 
     def toctrees(self) -> str:
         """Return the lists of pages of docs/index.md, for the navigation; empty without docs."""

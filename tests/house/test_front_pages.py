@@ -1,19 +1,14 @@
-"""The tutorials: what a reader types works, and what the pages show is what is printed."""
+"""The front pages: what a reader types works, and what the pages show is what is printed."""
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 from builders.worked import DOCS, Numbers, Untrue, blocks, compare, work
 
-TUTORIALS = sorted((DOCS / "tutorials").glob("*.md"))
-# A tutorial for each role, and for each use.
-NAMES = (
-    *("check-my-satellite", "check-my-simulator", "check-my-vehicle", "choose-my-precision"),
-    *("gate-my-ci", "gate-my-cpp", "judge-my-engine"),
-)
+FRONT_PAGES = sorted((DOCS / "for").glob("*.md"))
+NAMES = ("engine-author", "integrator-author", "satellite", "teacher", "vehicle")
 
 
 @pytest.fixture(autouse=True)
@@ -23,34 +18,32 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(name, raising=False)
 
 
-# They judge a dozen files and look for the cause of each error, or start many programs.
-LONG = ("check-my-satellite", "check-my-vehicle", "gate-my-ci", "gate-my-cpp", "judge-my-engine")
+# They judge several files and look for the cause of each error.
+LONG = ("engine-author", "satellite", "vehicle")
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in LONG else [])
-    for page in TUTORIALS
+    for page in FRONT_PAGES
 ]
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_tutorial_is_true(page: Path, tmp_path: Path) -> None:
+def test_a_front_page_is_true(page: Path, tmp_path: Path) -> None:
     """Worked from top to bottom in an empty folder, every block does what the page says."""
-    text = page.read_text(encoding="utf-8")
-    for compiler in ("cc", "c++"):
-        if f"$ {compiler} " in text and shutil.which(compiler) is None:
-            pytest.skip(f"no compiler {compiler}")
     assert work(page, tmp_path) >= 5
 
 
-def test_each_role_has_a_tutorial() -> None:
-    """Satellite, simulator, vehicle, precision, CI in Python and C, CI in C++, engine."""
-    assert tuple(page.stem for page in TUTORIALS) == NAMES
+def test_each_reader_has_a_front_page() -> None:
+    """Engine, integrator, satellite, class, vehicle; each says what is known in the end."""
+    assert tuple(page.stem for page in FRONT_PAGES) == NAMES
+    assert all("## What you know now\n" in page.read_text(encoding="utf-8") for page in FRONT_PAGES)
 
 
-def test_every_command_of_a_tutorial_is_run() -> None:
+def test_every_command_of_a_front_page_is_run() -> None:
     """No block of commands or of Python is in a form that the reading of pages passes over."""
-    for page in TUTORIALS:
-        text = page.read_text(encoding="utf-8")
-        assert text.count("```") == 2 * sum(block.language != "given" for block in blocks(text))
+    for page in FRONT_PAGES:
+        text, lists = page.read_text(encoding="utf-8"), "```{toctree}"
+        fences = text.count("```") - 2 * text.count(lists)
+        assert fences == 2 * sum(block.language != "given" for block in blocks(text))
         assert "~~~" not in text
 
 
