@@ -1,4 +1,4 @@
-"""The gallery: pictures of errors and of quartics are true to their data, and its page names them."""
+"""The gallery: pictures of errors are true to their data, and its page names them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from itertools import combinations
 from math import floor, inf, log
 from pathlib import Path
 
-import numpy as np
 import pytest
 from builders import reports
 from hypothesis import given
@@ -23,7 +22,7 @@ from taylor_verify.plotting.picture import Picture, plotting
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery import page as gallery
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.source import Report
 
@@ -77,25 +76,10 @@ def test_the_half_millisecond_is_found() -> None:
     assert early["residual"] <= 1e-10 * early["error"]
 
 
-# The quartic
-
-
-def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
-    """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
-    for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
-        series = potential.series(stored().portrait(f"kirchhoff/{scene}") or {})
-        z, X = series.curve.T
-        top = X[(z >= series.interval[0]) & (z <= series.interval[1])].max()
-        for end in series.interval:
-            assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
-        assert (np.diff(z) > 0).all()
-        assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
-
-
 # The whole gallery
 
 
-@pytest.mark.parametrize("end", ["generic-errors", "kirchhoff-potential", "controls-shifts"])
+@pytest.mark.parametrize("end", ["generic-errors", "controls-shifts"])
 def test_no_text_is_cut(end: str) -> None:
     """All names, numbers and notes lie within their pictures, to a tenth of a millimetre."""
     picture = next(one.picture for one in shown() if one.picture.stem.endswith(end))

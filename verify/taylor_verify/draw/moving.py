@@ -7,14 +7,16 @@ between two rows the body turns by a tenth of a radian, or by more if it turns v
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.draw import components, mesh, momentum_sphere, polhode, spheres
-from taylor_verify.draw.axis_path import fixed_direction, momentum_of
+from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.mesh import Face, Mesh
+from taylor_verify.draw.surface import SPHERE, Surface
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.rows import quaternions
 
@@ -30,7 +32,6 @@ _FRAME: Final = 0.09
 _STILL: Final = 1e-6
 # Digits of a number on the page: no eye sees the next one.
 _DIGITS: Final = 4
-_OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 
 
 def moving(document: Document) -> dict[str, Any]:
@@ -76,12 +77,7 @@ def _upright(document: Document, attitudes: Numbers) -> Numbers | None:
         return None
     momentum, _ = momentum_of(document)
     up = fixed_direction(np.einsum("nij,nj->ni", attitudes, momentum))
-    if up is None:
-        return None
-    first = np.eye(3)[int(np.abs(up).argmin())]
-    first = first - (first @ up) * up
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(up, first), up])
+    return None if up is None else upright(up)
 
 
 def _body(document: Document, centres: Numbers) -> Mesh:
@@ -111,53 +107,22 @@ def _face(face: Face) -> dict[str, Any]:
 
 def _inset(document: Document) -> dict[str, Any] | None:
     """Return the curve in the body: the polhode, H of a body with wheels, or the linear impulse."""
-    for curve_of in (_direction,) if document["body"] is None else (_polhode, _momentum):
-        try:
-            return curve_of(document)
-        except NotDrawn:
-            pass
+    for surface_of in (polhode.surface, momentum_sphere.surface, spheres.surface):
+        with suppress(NotDrawn):
+            return _on_surface(surface_of(document))
     return None
 
 
-def _direction(document: Document) -> dict[str, Any]:
-    letter, rows = next(iter(spheres.directions_of(document).items()))
-    return _on_surface((1.0, 1.0, 1.0), rows, (), letter, f"direction of {letter} in the body")
-
-
-def _polhode(document: Document) -> dict[str, Any]:
-    curve = polhode.series(document)
-    name = f"polhode: {_OMEGA} in the body"
+def _on_surface(drawn: Surface) -> dict[str, Any]:
+    borders = [curve for curve in drawn.curves if curve.look["gid"] == "separatrix"]
     return {
-        **_on_surface(curve.semi_axes, curve.course, curve.separatrices, _OMEGA, name),
-        "sinks": curve.sinks,
-    }
-
-
-def _momentum(document: Document) -> dict[str, Any]:
-    sphere = momentum_sphere.series(document)
-    levels = momentum_sphere.level_lines(sphere.wheels, sphere.size, sphere.saddles)
-    lines = [line for level in levels for line in level]
-    name = "H in the body, on its sphere"
-    return _on_surface((sphere.size,) * 3, sphere.course, lines, "H", name)
-
-
-def _on_surface(
-    semi_axes: tuple[float, float, float],
-    course: Numbers,
-    curves: Sequence[Numbers],
-    letter: str,
-    name: str,
-) -> dict[str, Any]:
-    """Return a course on an ellipsoid, with other curves on it; ``letter`` names the axes."""
-    view = polhode.facing(course, semi_axes)
-    return {
-        "semi": _rounded(semi_axes, 6),
-        "course": _rounded(course),
-        "curves": [_rounded(curve) for curve in curves],
-        "letter": letter,
-        "name": name,
-        "view": {"azimuth": view.azimuth, "elevation": view.elevation},
-        "sinks": False,
+        "semi": _rounded(drawn.semi_axes or SPHERE, 6),
+        "course": _rounded(drawn.course),
+        "curves": [_rounded(curve.points) for curve in borders],
+        "letter": drawn.letter,
+        "name": drawn.name,
+        "view": {"azimuth": drawn.side.azimuth, "elevation": drawn.side.elevation},
+        "sinks": drawn.sinks,
     }
 
 

@@ -19,7 +19,7 @@ from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import whole
 from taylor_verify_reports.studies.controls import picture as shifts
 from taylor_verify_reports.studies.controls.document import CONTROLS
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.source import Document, Report
 
@@ -81,7 +81,6 @@ def shown(report: Report) -> Iterator[Shown]:
         portrait = _portrait(report, scene)
         for kind in kinds:
             yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(report, portrait))
-    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(report))
     yield Shown("Errors split in lateness and the rest", *_shifts(report))
 
 
@@ -116,10 +115,10 @@ def _polhode(report: Report, portrait: Document) -> Made:
 
 
 def _axis(report: Report, portrait: Document) -> Made:
-    path = axis_path.series(portrait)
-    still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
+    path = axis_path.surface(portrait)
+    still = "".join(f"; the cross is the direction of its {mark.name}" for mark in path.marks)
     caption = (
-        f"{code(portrait['scene'])}: where body axis {path.axis} points in space, from light to dark with "
+        f"{code(portrait['scene'])}: where {path.name} points in space, from light to dark with "
         f"time, on the unit sphere{still}."
     )
     return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
@@ -149,17 +148,6 @@ def _errors(report: Report, portrait: Document) -> Made:
     return picture, caption, tuple(record_name(scene, rung) for rung in records)
 
 
-def _quartics(report: Report) -> Made:
-    caption = (
-        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
-        "The body swings between two simple roots; it only approaches a double root, like an "
-        "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
-        "pair."
-    )
-    picture = potential.picture([_portrait(report, scene) for scene in QUARTICS], "kirchhoff")
-    return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
-
-
 def _shifts(report: Report) -> Made:
     caption = (
         "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
@@ -182,14 +170,6 @@ _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]],
     ("kirchhoff/falling-away", (_axis, _path, _errors)),
     ("manufactured/kirchhoff-path", (_path,)),
     ("manufactured/euler-resonance", (_errors,)),
-)
-QUARTICS: Final = (
-    "kirchhoff/whole-motion",
-    "kirchhoff/two-real-roots",
-    "kirchhoff/falling-away",
-    "kirchhoff/half-turn",
-    "kirchhoff/algebraic",
-    "kirchhoff/ellipsoid-disc",
 )
 
 

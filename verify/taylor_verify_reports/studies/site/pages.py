@@ -17,7 +17,7 @@ from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
 from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
+from taylor_verify_reports.studies.gallery.pictures import errors_over_time
 from taylor_verify_reports.studies.site.extension import SCENES
 from taylor_verify_reports.studies.site.scene_page import (
     drawing_of,
@@ -63,10 +63,7 @@ def staged(folder: Path) -> Stage:
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
-    pictures = {
-        scene: _pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
-        for scene in report.scenes
-    }
+    pictures = {scene: _pictures_of(scene, report.records(scene)) for scene in report.scenes}
     drawings = _drawn(
         [
             picture
@@ -100,14 +97,11 @@ def _motions(report: Report) -> Iterator[tuple[str, str]]:
                 yield scene, page(moving(portrait))
 
 
-def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
-    """Return the static pictures of a scene: errors over time, and the quartic of its orbit."""
-    runs, pictures = list(records.values()), []
-    if errors_over_time.panels_of(errors_over_time.series(runs)):
-        pictures.append(errors_over_time.picture(scene, runs))
-    if portrait.get("potential"):
-        pictures.append(potential.picture([portrait], scene))
-    return pictures
+def _pictures_of(scene: str, records: Mapping[str, Document]) -> list[Picture]:
+    """Return the static picture of a scene, if an error is above zero: errors over time."""
+    runs = list(records.values())
+    has_errors = errors_over_time.panels_of(errors_over_time.series(runs))
+    return [errors_over_time.picture(scene, runs)] if has_errors else []
 
 
 def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
