@@ -155,7 +155,7 @@ def test_faces_of_a_body_look_outwards(scene: str) -> None:
 
 
 def test_weight_points_downwards() -> None:
-    """A top hangs on its tip at the origin with its lid where its weight acts, and space has weight below."""
+    """A top stands on its tip, the origin; its lid is where the weight acts, and the weight points down."""
     shown = moving(document("loads/heavy-top"))
     (weight,) = shown["hung"]
     at = np.array([0.3, 0.1, 0.5])
