@@ -89,20 +89,18 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
 
 
 def lengthened(scene: Scene, document: Document) -> Document:
-    """Return the motion over a longer span, if the body turns less than twice in that of the scene.
+    """Return the motion over a longer span, if loads turn the body less than twice in that of the scene.
 
     It is at most ``LONGEST`` times as long, and ends before the motion cannot be computed.
     """
-    extent, factor = span(scene), 2
-    while turns(_attitudes(document["course"])) < _TURNS and factor <= LONGEST:
-        longer = replace(scene.clock, instants=(scene.clock.start + factor * extent,))
+    factor = 1 if scene.body.loads else LONGEST
+    while factor < LONGEST and turns(_attitudes(document["course"])) < _TURNS:
+        factor *= 2
+        longer = replace(scene.clock, instants=(scene.clock.start + factor * span(scene),))
         try:
-            after = motion(replace(scene, clock=longer))
+            document = motion(replace(scene, clock=longer))
         except Unsettled:
             break
-        if after["course"]["t"][-1] == document["course"]["t"][-1]:
-            break
-        document, factor = after, 2 * factor
     return document
 
 
