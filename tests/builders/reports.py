@@ -178,7 +178,6 @@ def for_gallery() -> Path:
     every = [("euler/generic", rung) for rung in RUNGS]
     write_runs(place, [*every, *((s, "f64") for s in gallery.scenes() if s != "euler/generic")])
     PORTRAITS.write(place, map(portrait_without_run, gallery.scenes()))
-    write_controls(place)
     return place
 
 

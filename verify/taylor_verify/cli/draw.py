@@ -104,7 +104,7 @@ def _pictures(
     drawings = pictures(document, others) if others or not names else {}
     if files and (not names or ERRORS in names):
         drawings[ERRORS] = file_errors.picture(
-            document, {file.name: record(file) for file in files}
+            document, {file.name: record(file).document() for file in files}
         )
     elif ERRORS in names:
         raise WrongCall(

@@ -1,7 +1,7 @@
 """Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-Its data are data/portraits (the motion), data/records (the errors of a run) and data/controls.json (broken
-solvers). The page is figures/README.md.
+Its data are data/portraits (the motion) and data/records (the errors of a run). The page is
+figures/README.md.
 """
 
 from __future__ import annotations
@@ -12,14 +12,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.draw import axis_path, centre_path, file_errors, polhode
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import whole
-from taylor_verify_reports.studies.controls import picture as shifts
-from taylor_verify_reports.studies.controls.document import CONTROLS
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.source import Document, Report
 
@@ -81,7 +78,6 @@ def shown(report: Report) -> Iterator[Shown]:
         portrait = _portrait(report, scene)
         for kind in kinds:
             yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(report, portrait))
-    yield Shown("Errors split in lateness and the rest", *_shifts(report))
 
 
 def _portrait(report: Report, scene: str) -> Document:
@@ -139,25 +135,11 @@ def _errors(report: Report, portrait: Document) -> Made:
     if not records:
         raise FileNotFoundError(2, "no such file", report.folder / record_name(scene, "f64"))
     caption = (
-        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(records)}, in units "
-        "of the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
-        "roundings leave on regular orbits, 1/2 for a conserved quantity, 3/2 for state and attitude. Near "
-        "an unstable motion the state's error grows faster for a while, whatever the rung."
+        f"{code(scene)}: the errors of {_SOLVER} on {', '.join(records)}, in units of the rung's own "
+        "roundoff u, beside the error that perfect rounding would leave."
     )
-    picture = errors_over_time.picture(scene, [*records.values()], portrait["course"]["t"][0])
+    picture = file_errors.picture(portrait, records, in_roundoffs=True)
     return picture, caption, tuple(record_name(scene, rung) for rung in records)
-
-
-def _shifts(report: Report) -> Made:
-    caption = (
-        "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
-        "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
-        "body read half a millisecond early has a large error and almost no rest: every conserved "
-        "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
-        "of its samples are late."
-    )
-    verdicts = CONTROLS.load(report.folder).verdicts
-    return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
 
 
 _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]], ...]] = (

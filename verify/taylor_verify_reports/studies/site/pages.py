@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.pool import LocalPool, available_cores
+from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
@@ -17,7 +18,6 @@ from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import summary
 from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time
 from taylor_verify_reports.studies.site.extension import SCENES
 from taylor_verify_reports.studies.site.scene_page import (
     drawing_of,
@@ -63,7 +63,10 @@ def staged(folder: Path) -> Stage:
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
-    pictures = {scene: _pictures_of(scene, report.records(scene)) for scene in report.scenes}
+    pictures = {
+        scene: _pictures_of(report.portrait(scene), report.records(scene))
+        for scene in report.scenes
+    }
     drawings = _drawn(
         [
             picture
@@ -97,11 +100,11 @@ def _motions(report: Report) -> Iterator[tuple[str, str]]:
                 yield scene, page(moving(portrait))
 
 
-def _pictures_of(scene: str, records: Mapping[str, Document]) -> list[Picture]:
-    """Return the static picture of a scene, if an error is above zero: errors over time."""
-    runs = list(records.values())
-    has_errors = errors_over_time.panels_of(errors_over_time.series(runs))
-    return [errors_over_time.picture(scene, runs)] if has_errors else []
+def _pictures_of(portrait: Document | None, records: Mapping[str, Document]) -> list[Picture]:
+    """Return the picture of the errors over time of a scene whose motion is stored; none without errors."""
+    with suppress(NotDrawn):
+        return [file_errors.picture(portrait, records, in_roundoffs=True)] if portrait else []
+    return []
 
 
 def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
