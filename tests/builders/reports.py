@@ -177,9 +177,7 @@ def for_gallery() -> Path:
     place = folder()
     every = [("euler/generic", rung) for rung in RUNGS]
     write_runs(place, [*every, *((s, "f64") for s in gallery.scenes() if s != "euler/generic")])
-    scenes = dict.fromkeys((*gallery.scenes(), *gallery.QUARTICS))
-    PORTRAITS.write(place, map(portrait_without_run, scenes))
-    write_controls(place)
+    PORTRAITS.write(place, map(portrait_without_run, gallery.scenes()))
     return place
 
 

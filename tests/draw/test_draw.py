@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from taylor_verify.cli import main
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.components import series
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.course import lengthened, motion, turns
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import KINDS, pictures
@@ -31,8 +31,8 @@ HAS = {
     "euler/separatrix": {"polhode", "momentum", "time", "herpolhode", "axis"},
     "euler/damped": {"polhode", "time", "herpolhode", "axis"},
     "euler/damped-negative": {"polhode", "time", "herpolhode", "axis"},
-    "euler/gyrostat": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
-    "euler/gyrostat-dual-spin": {"momentum", "bifurcation", "time", "herpolhode", "axis"},
+    "euler/gyrostat": {"momentum", "time", "herpolhode", "axis"},
+    "euler/gyrostat-dual-spin": {"momentum", "time", "herpolhode", "axis"},
     "euler/moment-along-axis": {"time", "axis"},
     "euler/rest": {"time", "axis"},
     "kirchhoff/whole-motion": {"time", "axis", "spheres", "path"},
@@ -139,7 +139,10 @@ def test_quaternions_turn_as_their_matrices(scene: str) -> None:
     assert (q[1:] * q[:-1]).sum(axis=1).min() >= 0
 
 
-@pytest.mark.parametrize("scene", ["euler/tennis-racket", "euler/nesc-brick", "euler/axisymmetric"])
+@pytest.mark.parametrize(
+    "scene",
+    ["euler/tennis-racket", "euler/nesc-brick", "loads/heavy-top", "kirchhoff/remus-100"],
+)
 def test_faces_of_a_body_look_outwards(scene: str) -> None:
     """Each prism of a body is closed: its faces' areas, as vectors, add to nothing."""
     areas = []
@@ -149,6 +152,27 @@ def test_faces_of_a_body_look_outwards(scene: str) -> None:
         areas.append(np.cross(spokes[:-1], spokes[1:]).sum(axis=0))
         assert "n" not in face or areas[-1] @ np.array(face["n"]) > 0
     assert np.abs(np.sum(areas, axis=0)).max() <= 1e-2
+
+
+def test_weight_points_downwards() -> None:
+    """A top stands on its tip, the origin; its lid is where the weight acts, and the weight points down."""
+    shown = moving(document("loads/heavy-top"))
+    (weight,) = shown["hung"]
+    at = np.array([0.3, 0.1, 0.5])
+    assert weight["arrow"][2] < 0
+    assert weight["arrow"][:2] == [0, 0]
+    assert np.cross(weight["at"], at) == pytest.approx([0, 0, 0], abs=1e-3)
+    assert np.min([np.linalg.norm(face["p"], axis=1).min() for face in shown["faces"]]) == 0
+
+
+def test_a_short_motion_is_animated_over_a_longer_span() -> None:
+    """The span doubles until the body has turned twice; a motion with two turns stays as it is."""
+    top = read(SAMPLED.replace("samples = 5", "samples = 2"), "sampled")
+    short, whole = motion(top, 20), lengthened(top, motion(top, 20))
+    assert turns(np.array(short["course"]["attitude"]).reshape(-1, 3, 3)) < 2
+    assert whole["course"]["t"][-1] in [2.0 * 2**k for k in range(1, 5)]
+    racket = document("euler/tennis-racket")
+    assert lengthened(load("euler/tennis-racket"), racket) is racket
 
 
 def test_the_racket_flips_in_space() -> None:
@@ -264,7 +288,7 @@ def test_errors_of_a_file_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixtur
     [
         (["euler/generic", "--out", "a.gif"], r"expected \.svg, \.pdf, \.png"),
         (["euler/generic", "--animate", "--out", "a.svg"], r"expected \.html"),
-        (["euler/generic", "--only", "path,bifurcation,x"], "(?s)a body with wheels.*got 'x'"),
+        (["euler/generic", "--only", "path,spheres,x"], "(?s)a solid in a fluid.*got 'x'"),
         (["euler/generic", "--only", "errors"], "expected trajectory files"),
         (["euler/generic", "bad.csv"], "expected a column `t`"),
         (["euler/rest", "--animate"], "got a body at rest"),

@@ -65,8 +65,8 @@ def test_the_outline_is_on_the_surface_and_nothing_is_seen_beyond_it(
 @pytest.mark.parametrize("scene", ["euler/generic", "euler/separatrix", "euler/full-tensor"])
 def test_a_polhode_is_on_its_ellipsoid(scene: str) -> None:
     """All points have length one in units of the semi-axes, because the energy is conserved."""
-    series = polhode.series(document(scene))
-    for points in (series.course, *series.separatrices):
+    series = polhode.surface(document(scene))
+    for points in (series.course, *(curve.points for curve in series.curves)):
         q = points / np.array(series.semi_axes)
         assert np.abs(np.square(q).sum(axis=1) - 1).max() <= 1e-7
 
@@ -75,9 +75,9 @@ def test_the_separatrix_scene_runs_along_a_separatrix() -> None:
     """The course of the separatrix scene lies in the plane of a curve, that of a plain scene in none."""
 
     def distance(scene: str) -> float:
-        series = polhode.series(document(scene))
+        series = polhode.surface(document(scene))
         q = series.course / np.array(series.semi_axes)
-        curves = [curve / np.array(series.semi_axes) for curve in series.separatrices]
+        curves = [curve.points / np.array(series.semi_axes) for curve in series.curves]
         normals = [np.cross(curve[0], curve[40]) for curve in curves]
         return min(float(np.abs(q @ n).max() / np.linalg.norm(n)) for n in normals)
 
@@ -96,7 +96,7 @@ def test_the_separatrix_scene_runs_along_a_separatrix() -> None:
 def test_a_scene_without_a_polhode_is_refused(scene: str, what: str) -> None:
     """A fluid, a moment that changes with time, or no motion at all: there is no such surface."""
     with pytest.raises(NotDrawn, match=f"{what}.* @ {scene}"):
-        polhode.series(document(scene))
+        polhode.surface(document(scene))
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_a_scene_without_a_polhode_is_refused(scene: str, what: str) -> None:
 )
 def test_the_axis_is_that_of_the_motion(scene: str, axis: int) -> None:
     """The axis is that of symmetry or of the polhode; the momentum of a free motion is marked."""
-    series = axis_path.series(document(scene))
-    assert series.axis == axis
-    assert np.abs(np.linalg.norm(series.path, axis=1) - 1).max() <= 1e-7
-    assert (series.fixed is None) == scene.startswith("manufactured")
+    series = axis_path.surface(document(scene))
+    assert series.name == f"body axis {axis}"
+    assert np.abs(np.linalg.norm(series.course, axis=1) - 1).max() <= 1e-7
+    assert (not series.marks) == scene.startswith("manufactured")

@@ -225,8 +225,8 @@ def test_a_command_can_be_typed(command: str) -> None:
     assert [scene for scene in scenes if scene not in names()] == []
 
 
-def test_pictures_of_the_docs_are_those_of_their_commands() -> None:
-    """Each picture of the page says what its command says of it now."""
+def test_the_picture_of_the_docs_is_that_of_its_command() -> None:
+    """The picture of the racket shows what `draw` says of it today."""
     text = (DOCS / "pictures" / "racket.svg").read_text(encoding="utf-8")
     assert pictures(motion(load("euler/tennis-racket")), ["time"])["time"].alt in text
 

@@ -1,4 +1,4 @@
-"""The gallery: pictures of errors and of quartics are true to their data, and its page names them."""
+"""The gallery: pictures of errors are true to their data, and its page names them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
-from math import floor, inf, log
+from math import floor, inf
 from pathlib import Path
 
 import numpy as np
@@ -18,16 +18,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.ticker import FixedLocator
 
 from taylor_verify.cli import main
+from taylor_verify.draw import file_errors
 from taylor_verify.plotting import log_axes
 from taylor_verify.plotting.picture import Picture, plotting
-from taylor_verify_reports.studies.controls import picture as shifts
-from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.gallery import page as gallery
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.source import Report
 
-RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 LOWERED = str.maketrans(RAISED, "-0123456789")
 
@@ -44,58 +41,26 @@ def shown() -> tuple[gallery.Shown, ...]:
 # Errors
 
 
-def test_what_a_logarithm_cannot_show_is_left_out() -> None:
+def test_errors_of_rungs_are_in_their_own_roundoffs() -> None:
     """The start, an error of zero and what is no number have no place; the others are in units of u."""
-    gate = {"quantity": "omega", "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7]}
+    gate = {
+        "quantity": "omega",
+        "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7],
+        "attainable": [1e-7] * 6,
+    }
     times = [10.0, 9.0, 8.0, 7.0, 6.0, 5.0]
     record = {"rung": "f32", "times": times, "unit_roundoff": 1e-7, "gates": [gate]}
-    points = errors_over_time.series([record])["omega"]["f32"]
-    assert points == [(1.0, pytest.approx(2)), (5.0, pytest.approx(4))]
-    with pytest.raises(ValueError, match="expected errors above zero, got none @ euler/generic"):
-        errors_over_time.picture("euler/generic", [])
-
-
-def test_the_powers_are_those_of_brouwers_law() -> None:
-    """All panels have one dashed line, straight in logarithms, of slope 1/2 or 3/2."""
-    records = stored().records("euler/generic")
-    with plotting():
-        figure = errors_over_time.picture("euler/generic", [*records.values()]).figure()
-    slopes = []
-    for axes in figure.axes:
-        (line,) = [one for one in axes.get_lines() if str(one.get_gid()).startswith("power")]
-        (t0, e0), (t1, e1) = line.get_xydata()
-        slopes.append(log(e1 / e0) / log(t1 / t0))
-        assert [one.get_gid() for one in axes.get_lines() if one is not line] == list(RUNGS)
-    assert slopes == pytest.approx([0.5, 1.5])
-
-
-def test_the_half_millisecond_is_found() -> None:
-    """The defect that is read half a millisecond early has that shift, and next to nothing is left."""
-    rows = {row["solver"]: row for row in shifts.series(CONTROLS.load(stored().folder).verdicts)}
-    early = rows["half-a-millisecond-early"]
-    assert early["shift"] == pytest.approx(-5e-4, rel=1e-6)
-    assert early["residual"] <= 1e-10 * early["error"]
-
-
-# The quartic
-
-
-def test_the_curve_touches_zero_at_the_ends_of_the_interval() -> None:
-    """The ends are corners of the drawn curve, X3 is zero there, and the roots near by are inside."""
-    for scene in ("whole-motion", "two-real-roots", "falling-away", "half-turn", "algebraic"):
-        series = potential.series(stored().portrait(f"kirchhoff/{scene}") or {})
-        z, X = series.curve.T
-        top = X[(z >= series.interval[0]) & (z <= series.interval[1])].max()
-        for end in series.interval:
-            assert abs(X[np.flatnonzero(z == end)[0]]) <= 1e-6 * top
-        assert (np.diff(z) > 0).all()
-        assert sum(count for _, count in series.roots) + 2 * (series.pair is not None) == 4
+    ((line,),) = file_errors.panels_of({"f32": record}, 10.0, in_roundoffs=True).values()
+    is_drawn = np.isfinite(line.errors)
+    assert line.times[is_drawn].tolist() == [9.0, 5.0]
+    assert line.errors[is_drawn] == pytest.approx([2, 4])
+    assert line.floor[is_drawn] == pytest.approx([1, 1])
 
 
 # The whole gallery
 
 
-@pytest.mark.parametrize("end", ["generic-errors", "kirchhoff-potential", "controls-shifts"])
+@pytest.mark.parametrize("end", ["generic-errors", "attitude-errors"])
 def test_no_text_is_cut(end: str) -> None:
     """All names, numbers and notes lie within their pictures, to a tenth of a millimetre."""
     picture = next(one.picture for one in shown() if one.picture.stem.endswith(end))
@@ -166,7 +131,7 @@ def test_the_page_shows_every_picture_and_where_it_comes_from() -> None:
     text = gallery.page(shown())
     stems = [one.picture.stem for one in shown()]
     assert text.startswith("<!-- made by taylor-verify publish; do not edit -->\n")
-    assert len(set(stems)) == len(stems) >= 20
+    assert len(set(stems)) == len(stems) >= 18
     assert re.findall(r"\]\(([\w-]+)\.svg\)", text) == stems
     named = re.findall(r"(?:\]\(\.\./|`)((?:data|reference)/[^)`]+)[)`]", text)
     assert len(named) > len(stems)

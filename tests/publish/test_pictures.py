@@ -26,8 +26,9 @@ from taylor_verify.plotting.style import (
     look_of,
     look_of_rung,
 )
-from taylor_verify.tradeoff.pictures import trade
-from taylor_verify.tradeoff.pictures.series import front_of, panels_of, series_of
+from taylor_verify.tradeoff import work_precision as trade
+from taylor_verify.tradeoff.document import label
+from taylor_verify.tradeoff.work_precision import front_of, panels_of, series_of
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -218,7 +219,7 @@ def test_a_line_joins_neighbours_that_are_sound_and_nothing_else(crowded: dict) 
 
 
 def test_every_sound_point_is_drawn_once_a_panel(crowded: dict) -> None:
-    """Sound points of a family are all on its lines or at the border."""
+    """Sound points of a family are all on its lines."""
     for one in many()["points"]:
         if one["standing"] != "sound" or one["error"] == 0:
             continue
@@ -229,28 +230,6 @@ def test_every_sound_point_is_drawn_once_a_panel(crowded: dict) -> None:
             for axes in crowded["time"].axes
         ]  # fmt: skip
         assert max(panels) == 1
-
-
-def test_what_is_no_answer_stands_alone_at_the_border(crowded: dict) -> None:
-    """Failures are crosses, false successes hollow, each a mark without a line, each at its time."""
-    marks = [
-        (line.get_gid(), line)
-        for axes in crowded["time"].axes
-        for line in axes.get_lines()
-        if line.get_gid() in ("failed", "false success", "exact")
-    ]
-    assert sorted(gid for gid, _ in marks) == ["exact", "failed", "failed", "false success"]
-    for gid, line in marks:
-        assert line.get_linestyle() == "None"
-        assert len(line.get_xydata()) == 1
-        # A failed run was not timed again: its only time is that of the first solve.
-        assert line.get_xdata()[0] == {"failed": 0.5, "false success": 0.02}.get(
-            gid, line.get_xdata()[0]
-        )
-    shapes = {gid: line.get_marker() for gid, line in marks}
-    assert shapes["failed"] == "x"
-    hollow = next(line for gid, line in marks if gid == "false success")
-    assert hollow.get_markerfacecolor() == "#FFFFFF" != hollow.get_markeredgecolor()
 
 
 def test_the_front_is_that_of_the_trade(crowded: dict) -> None:
@@ -279,8 +258,8 @@ def test_the_front_agrees_with_the_judgement() -> None:
     scene = load("euler/generic")
     asked = [one for one in all_settings(scene, ["f32", "f64"]) if one.family.startswith("taylor")]
     made = trade_off(scene, asked, repeats=1).document()
-    points = front_of(series_of(made, "seconds"))
-    assert [one.label for one in points] == made["front"]
+    points = front_of(made, "seconds")
+    assert [label(one["solver"], one["setting"], one["rung"]) for one in points] == made["front"]
     assert next(p.stem for p in trade.pictures(made)) == "euler-generic-time"
 
 
@@ -428,9 +407,9 @@ def test_without_matplotlib_the_error_says_what_to_install(
 
 
 def test_the_alt_text_has_the_numbers() -> None:
-    """The alternative text names the fastest and the most accurate setting, and counts failures."""
+    """The alternative text names the fastest and the most accurate setting, and counts the front."""
     time = trade.pictures(many())[0].alt
-    front = front_of(series_of(many(), "seconds"))
-    assert front[0].label in time
-    assert front[-1].label in time
-    assert time.endswith("Marked at the border: 1 false success, 2 failed.")
+    front = front_of(many(), "seconds")
+    for row in (front[0], front[-1]):
+        assert label(row["solver"], row["setting"], row["rung"]) in time
+    assert time.endswith(f"{len(front)} settings are beaten by none.")

@@ -15,8 +15,6 @@ from builders.reports import every_portrait, portrait_without_run
 
 from taylor_verify.cli import main
 from taylor_verify.draw.course import FIGURES
-from taylor_verify.exact.kirchhoff.displaced import symmetric_origin
-from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.file_names import of_scene
@@ -26,7 +24,6 @@ from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.portraits.equations import equations
-from taylor_verify_reports.studies.portraits.measure import roots
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,10 +42,6 @@ def stored(scene: str) -> dict[str, Any]:
     own = PORTRAITS.find(every_portrait(), scene)
     assert own is not None
     return own
-
-
-def with_quartic() -> list[str]:
-    return [name for name in SCENES if stored(name)["potential"]]
 
 
 # What is there
@@ -133,61 +126,6 @@ def test_the_principal_frame_makes_the_tensor_again() -> None:
             inertia = np.array([[float(entry) for entry in row] for row in body.inertia])
             assert np.linalg.det(axes) == pytest.approx(1, abs=1e-8)
             assert np.abs(axes.T @ np.diag(moments) @ axes - inertia).max() <= 1e-8 * moments.max()
-
-
-def test_the_axial_impulse_follows_the_quartic() -> None:
-    """X3(x3) = (x1 y2 - x2 y1)^2 all along the course: Hydromechanics 49 (9), with the axes renamed.
-
-    y is about the point where T is of Clebsch's form: y - d x x, with d from the origin to it.
-    """
-    for name in with_quartic():
-        portrait = stored(name)
-        axis = int(portrait["potential"]["variable"][1:]) - 1
-        i, k = (axis + 1) % 3, (axis + 2) % 3
-        x, y = (np.array(portrait["course"][f"{what}_impulse"]).T for what in ("linear", "angular"))
-        coefficients = portrait["potential"]["coefficients"]
-        value = np.polyval(coefficients, x[axis])
-        largest = np.polyval(np.abs(coefficients), np.abs(x[axis]))
-        d = [float(entry) for entry in symmetric_origin(solid(load(name))[0])]
-        y = y - np.cross(d, x.T).T
-        moment = x[i] * y[k] - x[k] * y[i]
-        gap = np.abs(value - moment**2)
-        assert (gap <= 1e-7 * largest.max()).all()
-    assert len(with_quartic()) >= 20
-
-
-def test_the_interval_is_where_the_axial_impulse_goes() -> None:
-    """The interval lies between roots of the quartic; X3 is positive inside, and the course stays there."""
-    for name in with_quartic():
-        portrait = stored(name)
-        own = portrait["potential"]
-        low, high = own["interval"]
-        course = np.array(portrait["course"]["linear_impulse"]).T[int(own["variable"][1:]) - 1]
-        size = max(abs(low), abs(high))
-        assert low - 1e-8 * size <= course.min()
-        assert course.max() <= high + 1e-8 * size
-        real = [re for re, im in own["roots"] if im == 0]
-        assert all(min(abs(end - root) for root in real) <= 1e-8 * size for end in (low, high))
-        inside = np.linspace(low, high, 33)[1:-1]
-        largest = np.polyval(np.abs(own["coefficients"]), np.abs(inside)).max()
-        assert (np.polyval(own["coefficients"], inside) >= -1e-8 * largest).all()
-
-
-def test_a_repeated_root_is_told_from_two_near_ones() -> None:
-    """(z - 1)^2 (z^2 + 1) has 1 twice; moved apart by 1e-20 they are equal in nine digits only."""
-    assert roots([Fraction(c) for c in (1, -2, 2, -2, 1)]) == [
-        [1.0, 0.0],
-        [1.0, 0.0],
-        [0.0, -1.0],
-        [0.0, 1.0],
-    ]
-    split = Fraction(1, 10**20)
-    near = roots([Fraction(1), Fraction(-2), 1 - split**2])
-    assert near == [[1.0, 0.0], [1.0, 0.0]]
-    assert roots([Fraction(1), Fraction(-2), 1 + Fraction(1, 10**8)]) == [
-        [1.0, -1e-4],
-        [1.0, 1e-4],
-    ]
 
 
 # The equations

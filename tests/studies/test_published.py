@@ -314,7 +314,7 @@ def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
     kinds: dict[Any, list[Picture]] = {}
     for picture in drawable():
         kinds.setdefault(picture.figure.func, []).append(picture)
-    assert len(kinds) >= 10
+    assert len(kinds) >= 9
     for same in kinds.values():
         picture = min(same, key=lambda one: published_as(one).stat().st_size)
         assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem

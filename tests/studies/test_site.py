@@ -222,7 +222,6 @@ def test_a_scene_has_everything(site: dict[str, str | bytes], pages: dict[str, P
     assert headings | blocks <= set(page.anchors)
     assert "../motions/kirchhoff-whole-motion.html" in page.loads
     assert "_images/kirchhoff-whole-motion-errors.svg" in site
-    assert "_images/kirchhoff-whole-motion-potential.svg" in site
 
 
 @building

@@ -15,7 +15,7 @@ from taylor_verify.cli.inputs import known_rungs, read_scene, require_matplotlib
 from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.course import lengthened, motion
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
@@ -46,7 +46,7 @@ def answer(options: argparse.Namespace) -> Answer:
     if options.animate and (names or files):
         raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
-        document = _document(scene)
+        document = _document(scene, options.animate)
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
@@ -86,10 +86,11 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
     return scene, files
 
 
-def _document(scene: Scene) -> dict[str, Any]:
-    """Return the motion to be drawn. Raises WrongCall if it cannot be computed."""
+def _document(scene: Scene, is_animated: bool) -> dict[str, Any]:
+    """Return the motion to be drawn, a short one longer to be animated. Raises WrongCall without it."""
     with wrong_calls(f" @ {scene.name}", Unsettled):
-        return motion(scene)
+        document = motion(scene)
+        return lengthened(scene, document) if is_animated else document
 
 
 def _pictures(
@@ -103,7 +104,7 @@ def _pictures(
     drawings = pictures(document, others) if others or not names else {}
     if files and (not names or ERRORS in names):
         drawings[ERRORS] = file_errors.picture(
-            document, {file.name: record(file) for file in files}
+            document, {file.name: record(file).document() for file in files}
         )
     elif ERRORS in names:
         raise WrongCall(

@@ -8,61 +8,38 @@ impulse keeps its direction in space, and the picture marks that direction.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.draw.caption import captioned
-from taylor_verify.draw.stage import END, START, Look, Stage, scale
-from taylor_verify.draw.view import Ellipsoid, Numbers, View
+from taylor_verify.draw.stage import CROSS
+from taylor_verify.draw.surface import Mark, Surface, figure
+from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Document = Mapping[str, Any]
 
-# In inches.
-_HEIGHT: Final = 3.4
-_STAGE: Final = 4.2
-_SPHERE: Final = Ellipsoid((1.0, 1.0, 1.0))
 # A course has nine digits: a direction that changes by less than this stands still.
 _AT_REST: Final = 1e-6
-_WIDTH: Final = 1.3
-_FIXED: Final[Look] = {
-    "linestyle": "none",
-    "marker": "x",
-    "markersize": 6,
-    "markeredgecolor": "#A83C00",
-    "markeredgewidth": 1.6,
-}
 
 
-@dataclass(frozen=True)
-class Series:
-    """The axis in space, one unit vector a time, and its number in the body.
-
-    ``fixed`` is the direction of the momentum in space, None if it changes. ``fixed_name`` names that
-    vector.
-    """
-
-    times: Numbers
-    path: Numbers
-    axis: int
-    fixed: Numbers | None
-    fixed_name: str
-
-
-def series(portrait: Document) -> Series:
-    """Return the path of the axis."""
+def surface(portrait: Document) -> Surface:
+    """Return the path of the axis, and the direction of a momentum that space keeps."""
     course = portrait["course"]
     attitudes = np.array(course["attitude"]).reshape(-1, 3, 3)
     axis = _axis_of(portrait)
     momentum, name = momentum_of(portrait)
     fixed = fixed_direction(np.einsum("nij,nj->ni", attitudes, momentum))
-    return Series(np.array(course["t"]), attitudes[:, :, axis - 1], axis, fixed, name)
+    return Surface(
+        times=np.array(course["t"]),
+        course=attitudes[:, :, axis - 1],
+        letter="",
+        name=f"body axis {axis}",
+        axes=("x", "y", "z (space)"),
+        marks=() if fixed is None else (Mark(fixed, CROSS, name),),
+    )
 
 
 def fixed_direction(vectors: Numbers) -> Numbers | None:
@@ -72,6 +49,15 @@ def fixed_direction(vectors: Numbers) -> Numbers | None:
         return None
     directions = vectors / sizes
     return directions[0] if np.abs(directions - directions[0]).max() <= _AT_REST else None
+
+
+def upright(direction: Numbers) -> Numbers:
+    """Return the rotation (3, 3) that makes a direction in space point upwards."""
+    up = direction / (np.linalg.norm(direction) or 1.0)
+    first = np.eye(3)[int(np.abs(up).argmin())]
+    first = first - (first @ up) * up
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(up, first), up])
 
 
 def _axis_of(portrait: Document) -> int:
@@ -103,32 +89,10 @@ def momentum_of(portrait: Document) -> tuple[Numbers, str]:
 
 def picture(portrait: Document) -> Picture:
     """Return the path of one scene's axis."""
-    track = series(portrait)
-    still = "" if track.fixed is None else f" The direction of the {track.fixed_name} is marked."
+    drawn = surface(portrait)
+    still = "".join(f" The direction of the {mark.name} is marked." for mark in drawn.marks)
     alt = (
-        f"Body axis {track.axis} of {portrait['scene']} on the unit sphere in space, from "
-        f"t = {track.times[0]:g} to t = {track.times[-1]:g}, darker as time goes on.{still}"
+        f"{drawn.name.capitalize()} of {portrait['scene']} on the unit sphere in space, from "
+        f"t = {drawn.times[0]:g} to t = {drawn.times[-1]:g}, darker as time goes on.{still}"
     )
-    return captioned(portrait, "axis", "Axis in space", alt, partial(_figure, track))
-
-
-def _figure(track: Series, words: str) -> Figure:
-    stage = Stage.around(_SPHERE, View.facing(_middle(track.path)), _STAGE, _HEIGHT)
-    stage.course(track.path, _WIDTH, 3)
-    marks = [(track.path[0], START, "start"), (track.path[-1], END, "end")]
-    if track.fixed is not None:
-        marks.append((track.fixed, _FIXED, track.fixed_name))
-    for point, look, name in marks:
-        stage.mark(point, look, clip_on=False, gid=name)
-    stage.name_axes(_SPHERE.semi_axes, ("x", "y", "z (space)"))
-    path = {"color": scale()(0.6), "linewidth": _WIDTH}
-    entries = [(path, f"body axis {track.axis}"), *((look, name) for _, look, name in marks)]
-    stage.legend(entries, f"Faint: on the far side. {words}".rstrip(), 2.8)
-    stage.time_bar(track.times, 0.85)
-    return stage.figure
-
-
-def _middle(path: Numbers) -> list[float]:
-    mean = path.mean(axis=0)
-    # A path all round the sphere has no middle: any view is as good.
-    return mean.tolist() if float(np.linalg.norm(mean)) > 0.05 else [1.0, 0.7, 0.5]
+    return captioned(portrait, "axis", "Axis in space", alt, partial(figure, drawn))

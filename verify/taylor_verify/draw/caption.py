@@ -12,6 +12,8 @@ from taylor_verify.plotting.wording import stem_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
+SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
 _WAYS: Final = {
     "arb": "exact, by closed form with proven bounds",
     "mpmath": "exact, by closed form",

@@ -6,7 +6,7 @@ flip time 2K/lam of its orbit.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from itertools import cycle
@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, captioned
+from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
-from taylor_verify.plotting.palette import INK, PAPER, QUIET
+from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
-from taylor_verify.plotting.style import SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,16 +34,14 @@ LINES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#A83C00", "linewidth": 1.5, "dashes": (5, 1.6)},
     {"color": "#1C8578", "linewidth": 1.5, "dashes": (1.4, 1.2)},
 )
-SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
 _LETTERS: Final = {
     "moment": ("M", "moment, body axes"),
     "force": ("X", "force, body axes"),
     "couple": ("L", "couple, body axes"),
 }
 _FLIP: Final[dict[str, Any]] = {"color": QUIET, "linewidth": 0.8, "gid": "flip"}
-# Room beyond the values, in parts of their extent; the flip time above them takes more.
+# Room beyond the values, in parts of their extent.
 _ROOM: Final = 0.06
-_HEADROOM: Final = 0.2
 # Room at the end of the times, for half a number.
 _ASIDE: Final = 0.03
 
@@ -91,7 +88,7 @@ def series(document: Document) -> Series:
         )
         return Series(times, (*panels, *_acting(document)), (), None)
     rows = np.array(course["omega"]) @ np.array(body["axes"]).T
-    panel = Panel("\N{GREEK SMALL LETTER OMEGA}", "angular velocity, principal axes", rows)
+    panel = Panel(OMEGA, "angular velocity, principal axes", rows)
     numbers = {row["name"]: float(row["value"]) for row in document["analytic"]}
     flips: tuple[float, ...] = ()
     # The flips are in the time of the scene. With damping the flip time of the orbit is in another time.
@@ -136,12 +133,12 @@ def _figure(components: Series, words: str) -> Figure:
     entries: list[Entry] = [
         (dict(look), ", ".join(_components_named(components, k))) for k, look in enumerate(LINES)
     ]
-    entries += [(_FLIP, "flip: the middle component is 0")] if components.flips else []
+    if components.flips:
+        pace = "" if components.flip_time is None else f", every {components.flip_time:.5g}"
+        entries.append((_FLIP, f"flip: the middle component is 0{pace}"))
     figure, places = sheet(len(components.panels), entries, words, _HEIGHT)
     for axes, panel in zip(places, components.panels, strict=True):
         _draw(axes, components, panel)
-        if len(components.flips) > 1 and components.flip_time is not None:
-            _write_flip_time(axes, components.flips, components.flip_time)
     return figure
 
 
@@ -164,29 +161,9 @@ def _draw(axes: Axes, components: Series, panel: Panel) -> None:
         axes.axvline(flip, zorder=1, **_FLIP)
     low, high = float(panel.rows.min()), float(panel.rows.max())
     extent = (high - low) or abs(high) or 1.0
-    above = _HEADROOM if len(components.flips) > 1 and components.flip_time is not None else _ROOM
     first, last = sorted((float(components.times[0]), float(components.times[-1])))
     axes.set(xlim=(first, last + _ASIDE * (last - first)), xlabel="time t")
     axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    axes.set(ylim=(low - _ROOM * extent, high + above * extent))
+    axes.set(ylim=(low - _ROOM * extent, high + _ROOM * extent))
     axes.axhline(0, color=QUIET, linewidth=0.5, zorder=0)
     axes.set_title(panel.name, pad=4)
-
-
-def _write_flip_time(axes: Axes, flips: Sequence[float], flip_time: float) -> None:
-    """Write the flip time between the first two flips."""
-    low, top = axes.get_ylim()
-    height = top - 0.09 * (top - low)
-    arrow = {"arrowstyle": "<|-|>", "color": INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (flips[0], height), (flips[1], height), arrowprops=arrow, zorder=4)
-    axes.text(
-        (flips[0] + flips[1]) / 2,
-        height,
-        f"{flip_time:.5g}",
-        size=SMALL,
-        ha="center",
-        va="center",
-        zorder=5,
-        gid="flip time",
-        bbox={"facecolor": PAPER, "linewidth": 0, "pad": 1.5},
-    )

@@ -20,6 +20,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.draw.acting_loads import acting_on
+from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
@@ -40,6 +41,9 @@ INTERVALS: Final = 360
 PERIODS: Final = 3
 # Radians that a body may turn between two rows.
 _TURN: Final = 0.1
+# A motion with fewer turns is drawn over a longer span where it moves, at most so many times as long.
+_TURNS: Final = 2.0
+LONGEST: Final = 16
 # The most parts of an interval.
 _MOST: Final = 8
 # Digits of a number in the course. The motion is computed to one digit more: a component that is smaller
@@ -76,10 +80,56 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
         "body": _inertia_ellipsoid(scene),
         "axis": body.axis_of_symmetry if isinstance(body, ImmersedBody) else None,
         "semi_axes": None if shape is None else [float(a) for a in shape.semi_axes],
+        "hung": _hung(scene),
+        "mass_matrix": _mass_matrix(scene),
         "rotor": [float(v) for v in rotor] if rotor else None,
         "is_free": body.is_free,
         "damping": float(body.damping),
     }
+
+
+def lengthened(scene: Scene, document: Document) -> Document:
+    """Return the motion over a longer span, if loads turn the body less than twice in that of the scene.
+
+    It is at most ``LONGEST`` times as long, and ends before the motion cannot be computed.
+    """
+    factor = 1 if scene.body.loads else LONGEST
+    while factor < LONGEST and turns(_attitudes(document["course"])) < _TURNS:
+        factor *= 2
+        longer = replace(scene.clock, instants=(scene.clock.start + factor * span(scene),))
+        try:
+            document = motion(replace(scene, clock=longer))
+        except Unsettled:
+            break
+    return document
+
+
+def turns(attitudes: Numbers) -> float:
+    """Return the sum of the angles between neighbours of attitudes (n, 3, 3), in turns."""
+    return float(_angles(attitudes).sum()) / (2 * np.pi)
+
+
+def _attitudes(course: Document) -> Numbers:
+    return np.array(course["attitude"]).reshape(-1, 3, 3)
+
+
+def _angles(attitudes: Numbers) -> Numbers:
+    cosines = (np.einsum("nij,nij->n", attitudes[1:], attitudes[:-1]) - 1) / 2
+    return np.asarray(np.arccos(np.clip(cosines, -1, 1)))
+
+
+def _hung(scene: Scene) -> list[tuple[list[float], list[float]]]:
+    """Return weight and buoyancy: a force in space, and its point of the body."""
+    hung = scene.body.loads.hung if scene.body.loads else ()
+    return [([float(v) for v in force], [float(v) for v in at]) for force, at in hung]
+
+
+def _mass_matrix(scene: Scene) -> list[list[float]] | None:
+    """Return M of (x, y) = M (U, Omega); None for a rigid body."""
+    body = scene.body
+    if not isinstance(body, ImmersedBody):
+        return None
+    return [[float(v) for v in row] for row in body.mass_matrix]
 
 
 def _orbit_of(scene: Scene) -> Elements:
@@ -133,10 +183,8 @@ def _course_of(scene: Scene, exact: Solution, extent: Fraction, intervals: int) 
 
 def _enough(course: Document) -> int:
     """Return the number of parts of an interval in which the body turns little; `_MOST` at most."""
-    turned = np.array(course["attitude"]).reshape(-1, 3, 3)
-    cosines = (np.einsum("nij,nij->n", turned[1:], turned[:-1]) - 1) / 2
     # Rows show angles below half a turn only, however fast the body is: more parts than these do not help.
-    return min(ceil(float(np.arccos(np.clip(cosines.min(), -1, 1))) / _TURN), _MOST)
+    return min(ceil(float(_angles(_attitudes(course)).max()) / _TURN), _MOST)
 
 
 def _rounded(entries: Sequence[mpf]) -> list[float]:

@@ -1,8 +1,7 @@
-"""Bodies as faces that can be turned: a brick, a racket, an ellipsoid, or a frame without a shape.
+"""Bodies as faces that can be turned: a brick, a racket, a top, an ellipsoid, or a block without a shape.
 
 A face is a convex polygon in body axes with the name of its colour. ``plus`` and ``minus`` are the two
-ends of the axis that turns over, ``side`` and ``edge`` the rest of a body. ``axis1`` to ``axis3`` are the
-rods of a frame.
+ends of the axis that turns over, ``side`` and ``edge`` the rest of a body.
 """
 
 from __future__ import annotations
@@ -10,17 +9,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import sqrt
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.draw.view import Numbers
+from taylor_verify.draw.view import Ellipsoid, Numbers
 
 # The least thickness of a body, in parts of its length: a thinner one could not be seen edge on.
 _THINNEST: Final = 0.05
 # A body whose greatest moment is, within this part, the sum of the others is flat: it is drawn as a racket.
 _FLAT: Final = 0.06
-_RING: Final = 40
+_RING: Final = 36
+# The height of a top; its rim is at distance 1 from its tip.
+LID: Final = 0.88
 _STRINGS: Final = 6
 _MERIDIANS: Final = 32
 _PARALLELS: Final = 16
@@ -166,13 +168,31 @@ def ellipsoid(semi_axes: Sequence[float]) -> Mesh:
     return Mesh(tuple(faces), "the solid, in its own size")
 
 
-def frame(length: float) -> Mesh:
-    """Return three rods along the axes of a body."""
-    faces: list[Face] = []
-    for i in range(3):
-        half = np.full(3, 0.05 * length)
-        half[i] = length / 2
-        shift = np.eye(3)[i] * length / 2
-        name = f"axis{i + 1}"
-        faces += [Face(side.corners + shift, name) for side in box(half, [(name, name)] * 3)]
-    return Mesh(tuple(faces), "the axes of the body")
+def block(mass_matrix: Numbers, least: float) -> Mesh:
+    """Return a block for a body in a fluid without a shape: the less mass along an axis, the longer.
+
+    A body resists an acceleration along its length less than one across it. ``mass_matrix`` (6, 6) is that
+    of (x, y) = M (U, Omega); the block has about its radius of gyration, and at least the size ``least``.
+    """
+    masses, columns = np.linalg.eigh(mass_matrix[:3, :3])
+    axes = np.array([*columns.T[:2], np.cross(columns[:, 0], columns[:, 1])])
+    gyration = sqrt(np.trace(mass_matrix[3:, 3:]) / np.trace(mass_matrix[:3, :3]))
+    half = max(gyration, least / 2) * np.maximum(masses[0] / masses, _THINNEST)
+    faces = [Face(face.corners @ axes, face.colour) for face in box(half, _BLOCK)]
+    return Mesh(tuple(faces), "a block, longest where it has the least mass with that of the fluid")
+
+
+# Colours of the faces at both ends of the axes of least, middle and greatest mass.
+_BLOCK: Final = (("side", "edge"), ("side", "edge"), ("plus", "minus"))
+
+
+def top(towards: Numbers) -> Mesh:
+    """Return a top that is held at its tip, the origin; its lid is in this direction, in body axes."""
+    along = towards / np.linalg.norm(towards)
+    across = Ellipsoid((1.0,) * 3).circle(along)[:: 180 // _RING]
+    rim = LID * along + np.sqrt(1 - LID**2) * across
+    sides = [
+        Face(np.array([np.zeros(3), p, q]), ("plus", "minus")[4 * k // _RING % 2])
+        for k, (p, q) in enumerate(pairwise(rim))
+    ]
+    return Mesh((*sides, Face(rim[:0:-1], "side")), "a top, held at its tip")

@@ -1,20 +1,23 @@
 """A motion to be animated: the body in space, a curve in the body, and components against time.
 
-Space is turned so that a constant H points upwards. The course is the exact one of the other pictures:
-between two rows the body turns by a tenth of a radian, or by more if it turns very often.
+Space is turned so that weight points downwards, or else a constant H upwards. The course is the exact one
+of the other pictures: between two rows the body turns by a tenth of a radian, or by more if it turns often.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.draw import components, mesh, momentum_sphere, polhode, spheres
-from taylor_verify.draw.axis_path import fixed_direction, momentum_of
+from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
 from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.course import turns
 from taylor_verify.draw.mesh import Face, Mesh
+from taylor_verify.draw.surface import SPHERE, Surface
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.rows import quaternions
 
@@ -24,13 +27,15 @@ Document = Mapping[str, Any]
 _TURN: Final = 2.4
 # Limits of the whole animation, in seconds.
 _SHORTEST, _LONGEST = 6.0, 40.0
-# The length of the axes of a body without a shape, in parts of its path.
-_FRAME: Final = 0.09
+# The least length of a body without a shape, in parts of its path.
+_LEAST: Final = 0.06
+# The length of the largest weight, in parts of the body's reach.
+_ARROW: Final = 0.6
+_MOMENTUM_UP: Final = ", H upwards"
 # An attitude that changes by less than this is constant.
 _STILL: Final = 1e-6
 # Digits of a number on the page: no eye sees the next one.
 _DIGITS: Final = 4
-_OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 
 
 def moving(document: Document) -> dict[str, Any]:
@@ -43,23 +48,24 @@ def moving(document: Document) -> dict[str, Any]:
     centres = np.array(course.get("centre", [[0.0] * 3]))
     if not max(np.ptp(attitudes, axis=0).max() - _STILL, np.ptp(centres, axis=0).max()) > 0:
         raise NotDrawn(f"expected a motion to animate, got a body at rest @ {document['scene']}")
-    upright = _upright(document, attitudes)
+    up, words = _up(document, attitudes)
+    attitudes, centres = up @ attitudes, centres @ up.T
     parts = components.series(document)
     times = course["t"]
     body = _body(document, centres)
     middle = (centres.min(axis=0) + centres.max(axis=0)) / 2
     away = float(np.linalg.norm(centres - middle, axis=1).max())
-    turned = attitudes if upright is None else upright @ attitudes
     return {
         "title": document["title"],
         "caption": f"{caption(document)} Drag to turn.",
         "alt": f"{document['scene']} from t = {times[0]:g} to t = {times[-1]:g}, moving: {body.name}.",
-        "name": body.name + ("" if upright is None else ", H upwards"),
+        "name": f"{body.name}{words}",
         "times": _rounded(times, 7),
-        "quaternions": _rounded(quaternions(turned), 5),
+        "quaternions": _rounded(quaternions(attitudes), 5),
         "centres": _rounded(centres, 5) if "centre" in course else None,
         "faces": [_face(face) for face in body.faces],
-        "arrow": upright is not None,
+        "arrow": words == _MOMENTUM_UP,
+        "hung": list(_hung(document, up, body.reach)),
         "middle": _rounded(middle, 6),
         # The largest distance of anything from the middle, at any time.
         "reach": away + body.reach if "centre" in course else max(body.reach, 1.0),
@@ -70,33 +76,49 @@ def moving(document: Document) -> dict[str, Any]:
     }
 
 
-def _upright(document: Document, attitudes: Numbers) -> Numbers | None:
-    """Return the rotation of space that makes H point upwards; None if H has no constant direction."""
+def _up(document: Document, attitudes: Numbers) -> tuple[Numbers, str]:
+    """Return the rotation of space that makes weight point down, or else H up, and its words."""
+    for force, _ in document["hung"][:1]:
+        return upright(-np.array(force)), ", weight downwards"
     if document["body"] is None:
-        return None
+        return np.eye(3), ""
     momentum, _ = momentum_of(document)
     up = fixed_direction(np.einsum("nij,nj->ni", attitudes, momentum))
-    if up is None:
-        return None
-    first = np.eye(3)[int(np.abs(up).argmin())]
-    first = first - (first @ up) * up
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(up, first), up])
+    return (np.eye(3), "") if up is None else (upright(up), _MOMENTUM_UP)
+
+
+def _hung(document: Document, up: Numbers, reach: float) -> Iterator[dict[str, Any]]:
+    """Yield weight and buoyancy: the point of the body, and an arrow in space of its size."""
+    largest = max((float(np.linalg.norm(force)) for force, _ in document["hung"]), default=1.0)
+    for force, at in document["hung"]:
+        arrow = _ARROW * reach / largest * (up @ np.array(force))
+        place = _at_tip(at) if document["body"] is not None else np.array(at)
+        yield {"at": _rounded(place), "arrow": _rounded(arrow)}
+
+
+def _at_tip(at: Sequence[float]) -> Numbers:
+    """Return the middle of the lid of a top, which shows the direction of the centre of mass alone."""
+    return np.array(at) / (float(np.linalg.norm(at)) or 1.0) * mesh.LID
 
 
 def _body(document: Document, centres: Numbers) -> Mesh:
     body, shape = document["body"], document["semi_axes"]
     if body is not None:
+        places = [np.array(at) for _, at in document["hung"] if any(at)]
+        if places:
+            return mesh.top(places[0])
         return mesh.rigid(np.array(body["principal_moments"]), np.array(body["axes"]))
     if shape is not None:
         return mesh.ellipsoid(shape)
-    return mesh.frame(_FRAME * float(np.ptp(centres, axis=0).max()) or 1.0)
+    least = _LEAST * float(np.ptp(centres, axis=0).max())
+    return mesh.block(np.array(document["mass_matrix"]), least)
 
 
-def _shown(document: Document, parts: components.Series) -> Sequence[components.Panel]:
-    """Return the first panel of the motion, and those of loads and own states."""
-    first = len(parts.panels) - len(document["acting"])
-    return (parts.panels[0], *parts.panels[first:])
+def _shown(document: Document, parts: components.Series) -> Iterator[components.Panel]:
+    """Yield the first panel of the motion, and those of loads and own states that are not all zero."""
+    acting = parts.panels[len(parts.panels) - len(document["acting"]) :]
+    yield parts.panels[0]
+    yield from (panel for panel in acting if panel.rows.any())
 
 
 def _panel(panel: components.Panel) -> dict[str, Any]:
@@ -111,61 +133,28 @@ def _face(face: Face) -> dict[str, Any]:
 
 def _inset(document: Document) -> dict[str, Any] | None:
     """Return the curve in the body: the polhode, H of a body with wheels, or the linear impulse."""
-    for curve_of in (_direction,) if document["body"] is None else (_polhode, _momentum):
-        try:
-            return curve_of(document)
-        except NotDrawn:
-            pass
+    for surface_of in (polhode.surface, momentum_sphere.surface, spheres.surface):
+        with suppress(NotDrawn):
+            return _on_surface(surface_of(document))
     return None
 
 
-def _direction(document: Document) -> dict[str, Any]:
-    letter, rows = next(iter(spheres.directions_of(document).items()))
-    return _on_surface((1.0, 1.0, 1.0), rows, (), letter, f"direction of {letter} in the body")
-
-
-def _polhode(document: Document) -> dict[str, Any]:
-    curve = polhode.series(document)
-    name = f"polhode: {_OMEGA} in the body"
+def _on_surface(drawn: Surface) -> dict[str, Any]:
+    borders = [curve for curve in drawn.curves if curve.look["gid"] == "separatrix"]
     return {
-        **_on_surface(curve.semi_axes, curve.course, curve.separatrices, _OMEGA, name),
-        "sinks": curve.sinks,
-    }
-
-
-def _momentum(document: Document) -> dict[str, Any]:
-    sphere = momentum_sphere.series(document)
-    levels = momentum_sphere.level_lines(sphere.wheels, sphere.size, sphere.saddles)
-    lines = [line for level in levels for line in level]
-    name = "H in the body, on its sphere"
-    return _on_surface((sphere.size,) * 3, sphere.course, lines, "H", name)
-
-
-def _on_surface(
-    semi_axes: tuple[float, float, float],
-    course: Numbers,
-    curves: Sequence[Numbers],
-    letter: str,
-    name: str,
-) -> dict[str, Any]:
-    """Return a course on an ellipsoid, with other curves on it; ``letter`` names the axes."""
-    view = polhode.facing(course, semi_axes)
-    return {
-        "semi": _rounded(semi_axes, 6),
-        "course": _rounded(course),
-        "curves": [_rounded(curve) for curve in curves],
-        "letter": letter,
-        "name": name,
-        "view": {"azimuth": view.azimuth, "elevation": view.elevation},
-        "sinks": False,
+        "semi": _rounded(drawn.semi_axes or SPHERE, 6),
+        "course": _rounded(drawn.course),
+        "curves": [_rounded(curve.points) for curve in borders],
+        "letter": drawn.letter,
+        "name": drawn.name,
+        "view": {"azimuth": drawn.side.azimuth, "elevation": drawn.side.elevation},
+        "sinks": drawn.sinks,
     }
 
 
 def _seconds(attitudes: Numbers) -> float:
     """Return how long the motion plays, so that the eye can follow each turn."""
-    cosines = (np.einsum("nij,nij->n", attitudes[1:], attitudes[:-1]) - 1) / 2
-    turns = float(np.arccos(np.clip(cosines, -1, 1)).sum()) / (2 * np.pi)
-    return min(max(_TURN * turns, _SHORTEST), _LONGEST)
+    return min(max(_TURN * turns(attitudes), _SHORTEST), _LONGEST)
 
 
 def _rounded(values: Numbers | Iterable[float], digits: int = _DIGITS) -> Any:

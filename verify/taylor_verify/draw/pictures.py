@@ -8,7 +8,6 @@ from typing import Any, Final
 
 from taylor_verify.draw import (
     axis_path,
-    bifurcation,
     centre_path,
     components,
     herpolhode,
@@ -25,7 +24,6 @@ Document = Mapping[str, Any]
 KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
     "polhode": polhode.picture,
     "momentum": momentum_sphere.picture,
-    "bifurcation": bifurcation.picture,
     "time": components.picture,
     "herpolhode": herpolhode.picture,
     "axis": axis_path.picture,

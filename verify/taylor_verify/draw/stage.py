@@ -48,6 +48,13 @@ _STRETCHES: Final = 40
 _EDGE: Final[Look] = {"linestyle": "none", "markeredgecolor": INK, "markeredgewidth": 0.9}
 START: Final[Look] = {**_EDGE, "marker": "o", "markersize": 5, "markerfacecolor": PAPER}
 END: Final[Look] = {**_EDGE, "marker": "s", "markersize": 5, "markerfacecolor": INK}
+CROSS: Final[Look] = {
+    **_EDGE,
+    "marker": "x",
+    "markersize": 6,
+    "markeredgecolor": "#A83C00",
+    "markeredgewidth": 1.6,
+}
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Gallery: pictures of some motions and of their errors, made from stored data alone.
 
-Its data are data/portraits (the motion), data/records (the errors of a run) and data/controls.json (broken
-solvers). The page is figures/README.md.
+Its data are data/portraits (the motion) and data/records (the errors of a run). The page is
+figures/README.md.
 """
 
 from __future__ import annotations
@@ -12,14 +12,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Final
 
-from taylor_verify.draw import axis_path, centre_path, polhode
+from taylor_verify.draw import axis_path, centre_path, file_errors, polhode
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.words.markdown import code, prose
 from taylor_verify.words.page import whole
-from taylor_verify_reports.studies.controls import picture as shifts
-from taylor_verify_reports.studies.controls.document import CONTROLS
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.source import Document, Report
 
@@ -81,8 +78,6 @@ def shown(report: Report) -> Iterator[Shown]:
         portrait = _portrait(report, scene)
         for kind in kinds:
             yield Shown(f"{scene}: {prose(portrait['title'])}", *kind(report, portrait))
-    yield Shown("Clebsch's body: where the axial impulse may go", *_quartics(report))
-    yield Shown("Errors split in lateness and the rest", *_shifts(report))
 
 
 def _portrait(report: Report, scene: str) -> Document:
@@ -116,10 +111,10 @@ def _polhode(report: Report, portrait: Document) -> Made:
 
 
 def _axis(report: Report, portrait: Document) -> Made:
-    path = axis_path.series(portrait)
-    still = "" if path.fixed is None else f"; the cross is the direction of its {path.fixed_name}"
+    path = axis_path.surface(portrait)
+    still = "".join(f"; the cross is the direction of its {mark.name}" for mark in path.marks)
     caption = (
-        f"{code(portrait['scene'])}: where body axis {path.axis} points in space, from light to dark with "
+        f"{code(portrait['scene'])}: where {path.name} points in space, from light to dark with "
         f"time, on the unit sphere{still}."
     )
     return axis_path.picture(portrait), caption, (PORTRAITS.name(portrait["scene"]),)
@@ -140,36 +135,11 @@ def _errors(report: Report, portrait: Document) -> Made:
     if not records:
         raise FileNotFoundError(2, "no such file", report.folder / record_name(scene, "f64"))
     caption = (
-        f"{code(scene)}: the largest error of {_SOLVER} up to each time on {', '.join(records)}, in units "
-        "of the rung's own roundoff u. Dashed, through the middle of all: the powers of time that random "
-        "roundings leave on regular orbits, 1/2 for a conserved quantity, 3/2 for state and attitude. Near "
-        "an unstable motion the state's error grows faster for a while, whatever the rung."
+        f"{code(scene)}: the errors of {_SOLVER} on {', '.join(records)}, in units of the rung's own "
+        "roundoff u, beside the error that perfect rounding would leave."
     )
-    picture = errors_over_time.picture(scene, [*records.values()], portrait["course"]["t"][0])
+    picture = file_errors.picture(portrait, records, in_roundoffs=True)
     return picture, caption, tuple(record_name(scene, rung) for rung in records)
-
-
-def _quartics(report: Report) -> Made:
-    caption = (
-        "The quartic X3 of Clebsch's body, whose root the axial impulse follows: x3'^2 = r^2 X3(x3). "
-        "The body swings between two simple roots; it only approaches a double root, like an "
-        "exponential, and a triple one like 1/t^2. With two real roots the other two are a complex "
-        "pair."
-    )
-    picture = potential.picture([_portrait(report, scene) for scene in QUARTICS], "kirchhoff")
-    return picture, caption, tuple(PORTRAITS.name(scene) for scene in QUARTICS)
-
-
-def _shifts(report: Report) -> Made:
-    caption = (
-        "Solvers that were broken on purpose: the largest error of each, and the rest after the best "
-        "shift of time. The shift of a sound run is as random as its roundings, and is not stored. A "
-        "body read half a millisecond early has a large error and almost no rest: every conserved "
-        "quantity is right. If the second mark lies on the first, the motion is wrong, or only some "
-        "of its samples are late."
-    )
-    verdicts = CONTROLS.load(report.folder).verdicts
-    return shifts.picture(verdicts, "controls"), caption, (CONTROLS.name,)
 
 
 _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]], ...]] = (
@@ -182,14 +152,6 @@ _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]],
     ("kirchhoff/falling-away", (_axis, _path, _errors)),
     ("manufactured/kirchhoff-path", (_path,)),
     ("manufactured/euler-resonance", (_errors,)),
-)
-QUARTICS: Final = (
-    "kirchhoff/whole-motion",
-    "kirchhoff/two-real-roots",
-    "kirchhoff/falling-away",
-    "kirchhoff/half-turn",
-    "kirchhoff/algebraic",
-    "kirchhoff/ellipsoid-disc",
 )
 
 

@@ -39,10 +39,6 @@ html_copy_source = False
 html_domain_indices = html_use_index = False
 # Search results have no excerpts, because a page that is opened as a file cannot read other pages.
 html_show_search_summary = False
-html_theme_options = {
-    "light_css_variables": {"color-problem": "#A83C00"},
-    "dark_css_variables": {"color-problem": "#F0976A"},
-}
 pygments_style = "default"
 pygments_dark_style = "monokai"
 # Only commands are copied, without prompts and output.

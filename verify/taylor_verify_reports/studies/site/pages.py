@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.pool import LocalPool, available_cores
+from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
@@ -16,7 +17,6 @@ from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import gravest
 from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
-from taylor_verify_reports.studies.gallery.pictures import errors_over_time, potential
 from taylor_verify_reports.studies.site.extension import SCENES
 from taylor_verify_reports.studies.site.scene_page import (
     drawing_of,
@@ -67,7 +67,7 @@ def staged(folder: Path) -> Stage:
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
     pictures = {
-        scene: _pictures_of(scene, report.portrait(scene) or {}, report.records(scene))
+        scene: _pictures_of(report.portrait(scene), report.records(scene))
         for scene in report.scenes
     }
     drawings = _drawn(
@@ -103,14 +103,11 @@ def _motions(report: Report) -> Iterator[tuple[str, str]]:
                 yield scene, page(moving(portrait))
 
 
-def _pictures_of(scene: str, portrait: Document, records: Mapping[str, Document]) -> list[Picture]:
-    """Return the static pictures of a scene: errors over time, and the quartic of its orbit."""
-    runs, pictures = list(records.values()), []
-    if errors_over_time.panels_of(errors_over_time.series(runs)):
-        pictures.append(errors_over_time.picture(scene, runs))
-    if portrait.get("potential"):
-        pictures.append(potential.picture([portrait], scene))
-    return pictures
+def _pictures_of(portrait: Document | None, records: Mapping[str, Document]) -> list[Picture]:
+    """Return the picture of the errors over time of a scene whose motion is stored; none without errors."""
+    with suppress(NotDrawn):
+        return [file_errors.picture(portrait, records, in_roundoffs=True)] if portrait else []
+    return []
 
 
 def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:

@@ -10,8 +10,8 @@ from typing import Final
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.standing import Standing
+from taylor_verify.tradeoff import work_precision
 from taylor_verify.tradeoff.document import TradePoint
-from taylor_verify.tradeoff.pictures import trade as of_one_scene
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
@@ -119,7 +119,7 @@ def pictures(trades: Trades) -> list[Picture]:
 
 def _of_trade(trade: Trade) -> list[Picture]:
     """Return the pictures of one scene; none if no setting is sound."""
-    return of_one_scene.pictures(trade.document()) if trade.sound else []
+    return work_precision.pictures(trade.document()) if trade.sound else []
 
 
 # The cost of digits.
