@@ -13,15 +13,15 @@
 # step = 0.002
 # integrator = ["Euler", "implicit", "implicitfast", "RK4", "discrete"]
 # inertia = ["full", "principal"]
-# given = ["stage", "step"]
+# given = ["per-stage", "per-step"]
 # ///
 """MuJoCo: a body with a free joint, without gravity, geometry and damping.
 
 `inertia=full` hands over the tensor as `fullinertia`, and MuJoCo's compiler finds the principal axes.
 `inertia=principal` hands over ours, as `diaginertia` and `quat`, and tells the compiler's error from
 that of the integrator. The remark says how far the compiled tensor is from the one that was given.
-What acts on the body is a passive force with `given=stage`, which MuJoCo asks for in each stage of a
-step; with `given=step` it is an applied one, set before a step and held over it.
+What acts on the body is a passive force with `given=per-stage`, which MuJoCo asks for in each stage of a
+step; with `given=per-step` it is an applied one, set before a step and held over it.
 
 qvel[3:6] is omega in body axes, qpos[3:7] the attitude, scalar first.
 """
@@ -51,7 +51,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     require_integrator(settings)
     model = mujoco.MjModel.from_xml_string(mjcf(body, settings))
 
-    pushed_in_steps = body.is_pushed and settings.given == "step"
+    pushed_in_steps = body.is_pushed and settings.given == "per-step"
     pushed_in_calls = body.is_pushed and not pushed_in_steps
 
     def push(model: Any, data: Any) -> None:

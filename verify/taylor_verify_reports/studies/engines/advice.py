@@ -26,6 +26,8 @@ ENOUGH: Final = 1e-3
 LOST: Final = 0.05
 # A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
+# No way of giving a load is warned of whose error is below this one times FAR_WORSE.
+NEGLIGIBLE: Final = 1e-10
 # A warning of too small steps is given if they increase the error by more than this factor.
 WORSE_BELOW: Final = 2.0
 
@@ -136,13 +138,13 @@ def _ways_to_avoid(
         scores = (score for s in engines if s.load == way for score in s.scores(scenes))
         if score := best_of(scores):
             best[way] = score
-    least = min((score.error for score in best.values()), default=0.0)
+    least = max(NEGLIGIBLE, min((score.error for score in best.values()), default=0.0))
     bad = {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
     if listed := [
-        f"{prose(way)} ({named(score.setting, names)} has {figure(score.error)}{_step(score)})"
+        f"{prose(way)} ({named(score.setting, names)}{_step(score)} has {figure(score.error)})"
         for way, score in bad.items()
     ]:
-        yield f"Never with a load {_either(listed)}, the least of that way, where more is needed."
+        yield f"Never with the load {_either(listed)}, the least error of that way here."
 
 
 def _missed_switches(

@@ -16,7 +16,7 @@ from taylor_verify_reports.studies.engines.page import entries_of, remake, unava
 from taylor_verify_reports.studies.engines.ranking import EngineSetting, settings
 
 _LEGEND: Final = (
-    "A number below a step is the largest error of all state quantities of the scene at that step: "
+    "A number below a step (or a tolerance) is the largest error of all state quantities of the scene: "
     "relative, and in radians for the attitude. A dash is a step that the engine did not take.",
     "*load* says how the loads of the scene reach the engine. That is a property of its interface, and "
     "decides the order more often than the integrator does.",
@@ -59,9 +59,16 @@ def _scenes(board: Board, entries: EntryList) -> Iterator[str]:
 
 
 def _table(board: Board, own: Sequence[EngineSetting], scene: str, titles: dict[str, str]) -> str:
-    steps = sorted({row.value for setting in own for row in setting.on(scene)}, key=_size)[::-1]
-    columns = ["engine", "setting", "load", *(f"{step}:" for step in steps), "order:", "time:"]
-    return table(columns, [_cells(board, setting, scene, steps, titles) for setting in own])
+    """Return a table for the settings whose knob is the step, and one for each other knob."""
+    tables = []
+    for knob in dict.fromkeys(setting.knob for setting in own):
+        group = [setting for setting in own if setting.knob == knob]
+        values = {row.value for setting in group for row in setting.on(scene)}
+        steps = sorted(values, key=_size)[::-1]
+        head = [f"{knob} {steps[0]}:", *(f"{step}:" for step in steps[1:])]
+        rows = [_cells(board, setting, scene, steps, titles) for setting in group]
+        tables.append(table(["engine", "setting", "load", *head, "order:", "time:"], rows))
+    return "\n\n".join(tables)
 
 
 def _size(step: str) -> float:

@@ -28,7 +28,7 @@ from taylor_verify_reports.studies.engines.document import (
     EnginesTimings,
     Standing,
 )
-from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList
+from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList, entry_list
 from taylor_verify_reports.studies.engines.replay import errors_of, judged
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
@@ -161,7 +161,7 @@ def board_of(
     answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]
 ) -> tuple[Board, bytes]:
     """Return the document of the board made from answers, and the file of their trajectories."""
-    rows, file = trajectories.packed(answers)
+    rows, file = trajectories.packed(answers, entry_list(name).advised)
     seconds = {
         answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
     }

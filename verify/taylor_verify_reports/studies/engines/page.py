@@ -32,8 +32,8 @@ from taylor_verify_reports.studies.engines.stored import places
 _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same "
     "numbers. Energy and angular momentum are compared too, although they do not show whether the "
-    "body is in the right place. The authors of this page sell no engine. The trajectories of the "
-    "newest versions are stored, and anybody can judge them again."
+    "body is in the right place. The authors of this page sell no engine. The trajectories "
+    "behind the advice are stored, and anybody can judge them again."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
@@ -274,7 +274,8 @@ def remake(board: Board) -> list[str]:
         f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
-        "page. Errors are the same on every machine. That file has the newest version of each engine.",
+        "page. Errors are the same on every machine. That file has the newest version of each engine on "
+        "the scenes of the advice; all others are made by a measurement.",
         f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
         f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "

@@ -8,7 +8,7 @@ of the file depend only on the numbers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -26,16 +26,20 @@ from taylor_verify_reports.studies.engines.replay import States
 from taylor_verify_reports.studies.engines.stored import places
 
 
-def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
+def packed(
+    answers: Iterable[Answer], scenes: Collection[str] | None = None
+) -> tuple[list[EngineRow], bytes]:
     """Return the rows of answers with the places of their trajectories, and the file of trajectories.
 
-    The file has the trajectories of the newest version of each engine, the first in its rows.
+    The file has the trajectories of the newest version of each engine, the first in its rows; on some
+    ``scenes``, or on all.
     """
     rows, arrays, newest = [], dict[str, list[States]](), dict[str, str]()
     for answer in answers:
         place = NOT_STORED
         is_newest = newest.setdefault(answer.row.engine, answer.row.version) == answer.row.version
-        if answer.states is not None and is_newest:
+        is_asked = scenes is None or answer.row.scene in scenes
+        if answer.states is not None and is_newest and is_asked:
             stored = arrays.setdefault(answer.row.array, [])
             place = len(stored)
             stored.append(answer.states)
