@@ -40,11 +40,12 @@ STEP: Final = "{step}"
 
 @dataclass(frozen=True)
 class About:
-    """What a board is about: the title of its page, what it measures, and further remarks."""
+    """What a board is about: the title of its page, what it measures, remarks, and scripts of findings."""
 
     title: str = "The engine board"
     what: str = ""
     remarks: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

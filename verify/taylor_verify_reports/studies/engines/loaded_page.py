@@ -12,6 +12,7 @@ from taylor_verify.words.page import whole
 from taylor_verify_reports.studies.engines.advice import advice
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.entry import EntryList
+from taylor_verify_reports.studies.engines.findings import findings
 from taylor_verify_reports.studies.engines.page import entries_of, remake, unavailable
 from taylor_verify_reports.studies.engines.ranking import EngineSetting, settings
 
@@ -33,8 +34,7 @@ def page(board: Board, folder: Path) -> str:
 
 
 def text(board: Board, entries: EntryList, folder: Path) -> str:
-    """Return the page of a board with the engines of a list; it shows no pictures of the ``folder``."""
-    del folder
+    """Return the page of a board with the engines of a list, and findings of the ``folder``."""
     return whole(
         entries.about.title,
         bullets(advice(board, entries)) or "No engine is measured yet.",
@@ -42,6 +42,7 @@ def text(board: Board, entries: EntryList, folder: Path) -> str:
         *_scenes(board, entries),
         bullets([*_LEGEND, *entries.about.remarks]),
         *unavailable(board.study.rows),
+        *(findings(folder, entries.about.findings) if entries.about.findings else ()),
         "## To remake this",
         bullets(remake(board)),
     )
