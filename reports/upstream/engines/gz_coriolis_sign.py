@@ -4,18 +4,21 @@
 # ///
 """The Hydrodynamics plugin applies the Coriolis force of added mass with the wrong sign.
 
-Versions: gz-sim of July 2026 (commit 93bbf3ed1), and since buildCoriolisMatrix takes negative coefficients.
+Versions: gz-sim 11.0.0 of July 2026 (commit 93bbf3ed1), and since buildCoriolisMatrix takes negative
+coefficients.
 
-Expected: a force -C_A(v) v on a body whose parameters are those that the plugin asks for (xDotU, ... < 0).
+Expected: a force -C_A(v) v on a body whose parameters are those that the plugin asks for (xDotU, ... <
+0).
 
 Came: +C_A(v) v. A body that nothing else acts on then changes its momentum in space, body and fluid
-together, by 54 % within ten seconds; with the other sign it keeps it to rounding. The power is zero with both:
-skew symmetry and energy, which the tests look at, cannot tell the signs apart.
+together, by 54 % within ten seconds; with the other sign it keeps it to rounding. The power is zero
+with both: skew symmetry and energy, which the tests look at, cannot tell the signs apart.
 
-Evidence: `buildCoriolisMatrix` (HydrodynamicsUtils.hh) is said to return -C_A, and for diag(-1, .. -6) its test
-expects the rows of +C_A: entry (1, 5) is 9, as -S(M_A v) of Fossen (2011), equation 6.43, has it. PreUpdate adds
--Cmat * state to a wrench whose negative is applied. `buildFullCoriolisMatrix` returns +C_A too, and is added
-with the other sign. https://github.com/gazebosim/gz-sim/tree/main/src/systems/hydrodynamics
+Evidence: `buildCoriolisMatrix` (HydrodynamicsUtils.hh) is said to return -C_A, and for diag(-1, .. -6)
+its test expects the rows of +C_A: entry (1, 5) is 9, as -S(M_A v) of Fossen (2011), equation 6.43, has
+it. PreUpdate adds -Cmat * state to a wrench whose negative is applied. `buildFullCoriolisMatrix`
+returns +C_A too, and is added with the other sign.
+https://github.com/gazebosim/gz-sim/tree/main/src/systems/hydrodynamics
 """
 
 import sys
@@ -28,11 +31,11 @@ Ma = -np.array([4.876161, 126.324739, 126.324739, 0, 33.46, 33.46])
 
 def plugin_force(v):
     """Cmat of buildCoriolisMatrix, then PreUpdate: wrench = -Cmat v, and its negative is applied."""
-    C, s = np.zeros((6, 6)), Ma * v
-    C[0, 4], C[0, 5], C[1, 3], C[1, 5], C[2, 3], C[2, 4] = -s[2], s[1], s[2], -s[0], -s[1], s[0]
-    C[3, 1], C[3, 2], C[4, 0], C[4, 2], C[5, 0], C[5, 1] = -s[2], s[1], s[2], -s[0], -s[1], s[0]
-    C[3, 4], C[3, 5], C[4, 3], C[4, 5], C[5, 3], C[5, 4] = -s[5], s[4], s[5], -s[3], -s[4], s[3]
-    return -(-C @ v)
+    c, s = np.zeros((6, 6)), Ma * v
+    c[0, 4], c[0, 5], c[1, 3], c[1, 5], c[2, 3], c[2, 4] = -s[2], s[1], s[2], -s[0], -s[1], s[0]
+    c[3, 1], c[3, 2], c[4, 0], c[4, 2], c[5, 0], c[5, 1] = -s[2], s[1], s[2], -s[0], -s[1], s[0]
+    c[3, 4], c[3, 5], c[4, 3], c[4, 5], c[5, 3], c[5, 4] = -s[5], s[4], s[5], -s[3], -s[4], s[3]
+    return -(-c @ v)
 
 
 def drift(sign):

@@ -2,18 +2,22 @@
 # requires-python = ">=3.10"
 # dependencies = ["numpy>=2"]
 # ///
-"""remus100 of MSS and of the Python Vehicle Simulator sets entries of the added-mass Coriolis matrix to zero.
+"""remus100 of MSS and Python Vehicle Simulator sets entries of the Coriolis matrix of added mass to zero.
 
-Versions: MSS of 2024 (remus100.m of 2024-02-13); Python Vehicle Simulator of 2025 (version 2.0), remus100.py.
+Versions: MSS of 2024 (remus100.m of 2024-02-13); Python Vehicle Simulator of 2025 (version 2.0),
+remus100.py.
 
-Expected: without damping and weight the vehicle keeps the momentum of body and fluid in space, and its energy.
+Expected: without damping and weight the vehicle keeps the momentum of body and fluid in space, and its
+energy.
 
-Came: remus100.m says that it leaves out the couple of Munk in yaw and terms in pitch; with them go the forces
-that belong to them, (2, 6) and (6, 2). Within ten seconds the momentum changes by 35 %, the energy by nothing.
-remus100.py zeroes four entries, of couples alone: the momentum stays, and the energy changes by 77 %.
+Came: remus100.m says that it leaves out the couple of Munk in yaw and terms in pitch; with them go the
+forces that belong to them, (2, 6) and (6, 2). Within ten seconds the momentum changes by 35 %, the
+energy by nothing. remus100.py zeroes four entries, of couples alone: the momentum stays, and the energy
+changes by 77 %.
 
-Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration. remus100.m,
-`CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py, `CA[4][0] = 0`.
+Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration.
+remus100.m, `CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py,
+`CA[4][0] = 0`.
 """
 
 import sys
@@ -27,16 +31,16 @@ MSS = [(5, 3), (3, 5), (5, 1), (1, 5), (6, 1), (1, 6), (6, 2), (2, 6)]
 PYTHON = [(5, 1), (5, 4), (6, 1), (6, 2)]
 
 
-def S(v):
+def cross(v):
     return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
 
 
 def coriolis(mass, v, zeroed=NONE):
     x, y = np.split(mass * v, 2)
-    C = np.block([[np.zeros((3, 3)), -S(x)], [-S(x), -S(y)]])
+    matrix = np.block([[np.zeros((3, 3)), -cross(x)], [-cross(x), -cross(y)]])
     for row, column in zeroed:
-        C[row - 1, column - 1] = 0
-    return C
+        matrix[row - 1, column - 1] = 0
+    return matrix
 
 
 def changes(zeroed):

@@ -6,14 +6,15 @@
 
 Versions: uuv_simulator 0.6.13, HMSpheroid; Python Vehicle Simulator of 2025 (version 2.0), remus100.py.
 
-Expected: beta = 1/e^2 - (1 - e^2) / (2 e^3) ln((1 + e) / (1 - e)), the added mass across m beta / (2 - beta).
+Expected: beta = 1/e^2 - (1 - e^2) / (2 e^3) ln((1 + e) / (1 - e)), the added mass across m beta / (2 -
+beta).
 
-Came: HMSpheroid has (1 - e^2 / (2 e^3)) ln(..), which for the REMUS 100 makes beta -1.79 and the added mass
-negative, -0.47 of the mass in place of 0.95. remus100.py divides by the logarithm, and has 1.03.
+Came: HMSpheroid has (1 - e^2 / (2 e^3)) ln(..), which for the REMUS 100 makes beta -1.79 and the added
+mass negative, -0.47 of the mass in place of 0.95. remus100.py divides by the logarithm, and has 1.03.
 
-Evidence: Lamb, Hydrodynamics, article 114, here by quadrature; a long spheroid must come near 1 from below, as
-a cylinder. https://github.com/uuvsimulator/uuv_simulator, HydrodynamicModel.cc, which calls the class unfinished;
-https://github.com/cybergalactic/PythonVehicleSimulator, remus100.py, beta_0.
+Evidence: Lamb, Hydrodynamics, article 114, here by quadrature; a long spheroid must come near 1 from
+below, as a cylinder. https://github.com/uuvsimulator/uuv_simulator, HydrodynamicModel.cc, which calls
+the class unfinished; https://github.com/cybergalactic/PythonVehicleSimulator, remus100.py, beta_0.
 """
 
 import sys

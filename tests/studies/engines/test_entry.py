@@ -10,7 +10,13 @@ import pytest
 from taylor_verify.scenes.library import ENGINES, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify_reports.studies.engines.entry import BOARDS, BoardScene, Entry, entry_list, read_list
+from taylor_verify_reports.studies.engines.entry import (
+    BOARDS,
+    BoardScene,
+    Entry,
+    entry_list,
+    read_list,
+)
 
 SCENES = (
     BoardScene("engines/oblique", sweep=True, shipped=True),
@@ -27,6 +33,7 @@ ROW = Entry(
 )
 
 
+def test_the_newest_version_is_run_on_every_scene() -> None:
     """Older versions are run on scenes with `sweep`, and no step is below the least one of its scene."""
     runs = [run for run in ROW.runs(SCENES) if not run.shipped]
     assert {(run.version, run.scene, run.value) for run in runs} == {
