@@ -23,7 +23,7 @@ SCENE = "engines/oblique"
 SPINNER = Entry("spinner", "Spinner", "geometric:lie-rk4", ("0.1", "0.05", "0.025"))
 WOBBLER = Entry("wobbler", "Wobbler", "geometric:splitting", ("0.1", "0.05", "0.025"))
 PLAIN = Entry("scipy", "SciPy", "scipy:DOP853", ("1e-3",), knob="rtol", plain=True)
-ENTRIES = EntryList((BoardScene(SCENE, advice=True),), (SPINNER, WOBBLER, PLAIN))
+ENTRIES = EntryList((BoardScene(SCENE, job="free rotation"),), (SPINNER, WOBBLER, PLAIN))
 
 
 @cache

@@ -31,7 +31,7 @@ from taylor_verify_reports.studies.engines.study import STUDY
 
 @pytest.fixture(autouse=True)
 def _small_list(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(page, "entry_list", lambda: ENTRIES)
+    monkeypatch.setattr(page, "entry_list", lambda board: ENTRIES)
 
 
 def advised(*rows: EngineRow, entries: EntryList = ENTRIES, **seconds: float) -> list[str]:

@@ -27,14 +27,15 @@ def board() -> Board:
 
 
 def rows() -> list[EngineRow]:
-    return [row for row in board().study.rows if row.is_judged]
+    """The rows whose trajectories are stored: those of the newest version of each engine."""
+    return [row for row in board().study.rows if row.is_stored]
 
 
 def is_still_so(row: EngineRow) -> bool:
     """True if the stored trajectory of a row has its errors, its cause and its start."""
     states = trajectories.states_of(trajectories.load(REPORTS), row)
     assert states is not None
-    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps), row.scene)
     assert errors.errors == pytest.approx(row.errors, rel=DIGITS)
     assert errors.floors == pytest.approx(row.floors, rel=0.1)
     assert errors.start == pytest.approx(row.start, rel=DIGITS)
@@ -58,6 +59,8 @@ def test_every_trajectory_has_its_row() -> None:
     """The file has a block for each row, with the samples and columns of its scene, in two megabytes."""
     arrays = trajectories.load(REPORTS)
     assert sum(map(len, arrays.values())) == len(rows())
+    newest = {row.engine: row.version for row in reversed(board().study.rows)}
+    assert {row.engine for row in rows() if row.version != newest[row.engine]} == set()
     assert len({(row.array, row.place) for row in rows()}) == len(rows())
     for row in rows():
         scene = load(row.scene)

@@ -13,6 +13,7 @@ from taylor_verify_reports.studies.causes.study import STUDY as CAUSES
 from taylor_verify_reports.studies.claims.study import STUDY as CLAIMS
 from taylor_verify_reports.studies.controls.study import STUDY as CONTROLS
 from taylor_verify_reports.studies.enclosure.study import STUDY as ENCLOSURE
+from taylor_verify_reports.studies.engines.study import SATELLITE, UNDERWATER
 from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
 from taylor_verify_reports.studies.gallery.study import STUDY as GALLERY
 from taylor_verify_reports.studies.growth.study import STUDY as GROWTH
@@ -28,6 +29,8 @@ STUDIES: Final[list[Study[Any]]] = [
     CONTROLS,
     TRADEOFF,
     ENGINES,
+    SATELLITE,
+    UNDERWATER,
     PRICES,
     HARD,
     GROWTH,

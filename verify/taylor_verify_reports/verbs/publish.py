@@ -17,7 +17,7 @@ from taylor_verify_reports.verbs.checkout import reports_folder
 
 if TYPE_CHECKING:
     from taylor_verify_reports.studies.bulk import Missing
-    from taylor_verify_reports.studies.study import Progress, Study
+    from taylor_verify_reports.studies.study import Option, Progress, Study
 
 _TIME: Final = "one to three minutes for all of them on two cores"
 _ARCHIVE: Final = "taylor-verify-data"
@@ -78,12 +78,20 @@ def add(verb: argparse.ArgumentParser) -> None:
         help="make one site of the docs and of DIR, in the folder SITE (needs sphinx, myst-nb, furo, "
         "sphinx-copybutton, latex2mathml)",
     )
-    for study in STUDIES:
-        if study.options:
-            own = verb.add_argument_group(f"options of {study.name}")
-            for option in study.options:
+    for owners, shared in _options_with_owners(STUDIES):
+        if shared:
+            own = verb.add_argument_group(f"options of {owners}")
+            for option in shared:
                 given = {"metavar": option.metavar} if option.read else {"action": "store_true"}
                 own.add_argument(f"--{option.name}", help=option.help, **given)  # type: ignore[arg-type]
+
+
+def _options_with_owners(studies: Sequence[Study[Any]]) -> list[tuple[str, tuple[Option, ...]]]:
+    """Return the options of the studies, each once, with the names of the studies that have them."""
+    owners: dict[tuple[Option, ...], list[str]] = {}
+    for study in studies:
+        owners.setdefault(study.options, []).append(study.name)
+    return [(", ".join(names), shared) for shared, names in owners.items()]
 
 
 def run(options: argparse.Namespace) -> Answer:
@@ -97,7 +105,7 @@ def run(options: argparse.Namespace) -> Answer:
     other = next((name for name in _OTHERS if getattr(options, name)), "")
     if studies and other:
         raise WrongCall(f"expected studies or --{other}, got both @ publish")
-    given = {study.name: _options_of(study, options, study in studies) for study in STUDIES}
+    given = {study.name: _options_of(study, options, studies) for study in STUDIES}
     if other == "list":
         return _listed(STUDIES)
     folder = Path(reports_folder(options.folder, any(study.name != "gallery" for study in studies)))
@@ -151,14 +159,16 @@ def _check_options(words: Sequence[str], studies: Sequence[Study[Any]]) -> None:
         raise WrongCall(*faults)
 
 
-def _options_of(study: Study[Any], options: argparse.Namespace, is_asked: bool) -> dict[str, Any]:
+def _options_of(
+    study: Study[Any], options: argparse.Namespace, asked: Sequence[Study[Any]]
+) -> dict[str, Any]:
     """Return the options of a study that were given. Raises WrongCall for one without its study."""
     given = {}
     for option in study.options:
         value = getattr(options, option.name)
         if value is None or value is False:
             continue
-        if not is_asked:
+        if not any(option in other.options for other in asked):
             expected = f"expected --{option.name} with `publish {study.name}`"
             named = " ".join(options.studies) or "no study"
             raise WrongCall(f"{expected}, got it with {named} @ publish")

@@ -63,7 +63,8 @@ class Piece:
         self.begin = -math.inf if piece["from"] is None else float(Fraction(piece["from"]))
         self.end = math.inf if piece["to"] is None else float(Fraction(piece["to"]))
         self._steps = [_prepared(step) for step in piece["steps"]]
-        self.moment: list[int] = piece["moment"]
+        self.moment: list[int] = piece.get("moment", [])
+        self.wrench: list[int] = [*piece.get("force", []), *piece.get("couple", [])]
         self.rates: list[int] = piece.get("rates", [])
         self.taken: list[int] = piece.get("values", [])
         self.rotor: list[int] = piece.get("rotor", [])
@@ -167,7 +168,7 @@ class Acting:
         # A clock that counts steps may be a rounding beside an instant.
         near = 1e-9 * abs(self.t - before)
         here, state = self._sign * self.t + near, self._state()
-        self._attitude = _continued(state[3:], self._attitude)
+        self._attitude = continued(state[3:], self._attitude)
         for piece in self._pieces:
             first, last = sorted((piece.begin * self._sign, piece.end * self._sign))
             if first <= here < last:
@@ -193,7 +194,7 @@ class Acting:
         }
 
     def _known(self, t: float, state: Vector, own: Mapping[str, float]) -> dict[str, float]:
-        attitude = _continued(state[3:], self._attitude)
+        attitude = continued(state[3:], self._attitude)
         return {"t": t, **inputs([*state[:3], *attitude]), **self._values, **own}
 
     def _turning(
@@ -223,7 +224,7 @@ def inputs(state: Vector) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _continued(attitude: Vector, before: Vector) -> list[float]:
+def continued(attitude: Vector, before: Vector) -> list[float]:
     """Return the quaternion or its negative, whichever is nearer to the one before."""
     is_near = sum(a * b for a, b in zip(attitude, before, strict=True)) >= 0
     return [entry if is_near else -entry for entry in attitude]

@@ -77,6 +77,11 @@ class Body:
         """A sentence on what an engine is given in place of what the question has."""
         return ""
 
+    @property
+    def is_pushed(self) -> bool:
+        """True if anything acts on the body."""
+        return False
+
     def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
         """Return the engine that ``start`` builds, with what goes on beside it."""
         del step
@@ -315,17 +320,17 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
     )
 
 
-def pushed_once(body: FreeBody) -> str:
+def pushed_once(body: Body) -> str:
     """Return the remark of an engine that is pushed once a step; the body's own where nothing acts."""
     return _pushed(body, "what acts is held over each step")
 
 
-def pushed_in_stages(body: FreeBody) -> str:
+def pushed_in_stages(body: Body) -> str:
     """Return the remark of an engine that is pushed in each stage; the body's own where nothing acts."""
     return _pushed(body, "what acts is asked for in each stage of a step")
 
 
-def _pushed(body: FreeBody, how: str) -> str:
+def _pushed(body: Body, how: str) -> str:
     return "; ".join(filter(None, (body.remark, how if body.is_pushed else "")))
 
 

@@ -4,7 +4,7 @@
 # [tool.taylor-verify]
 # title = "Basilisk"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # integrator = ["RK4", "Euler", "RK2", "RKF45", "RKF78"]
@@ -16,14 +16,24 @@
 RK4 is what Basilisk takes where nothing is set. RKF45 and RKF78 divide a step whose estimated error is
 above their tolerances, 1e-4 relative and 1e-8 absolute with ``defaults=shipped``; else these are lifted,
 and each step is as long as asked. Both go on with the lower order of their pair, 4 and 7. Time is
-counted in whole nanoseconds. There is no damping, no sleep and no cap to switch off.
+counted in whole nanoseconds. There is no damping, no sleep and no cap to switch off. What acts on the
+body is an external torque, set before a step and held over it.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    stepped,
+)
 
 SECOND = 10**9
 ADAPTIVE = ("RKF45", "RKF78")
@@ -35,12 +45,16 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     step = nanoseconds(settings.step)
 
     def start() -> Engine:
-        simulation, craft = spacecraft_of(body, settings, step)
+        simulation, craft, torque = spacecraft_of(body, settings, step)
         clock = 0
 
         def advance(steps: int) -> None:
             nonlocal clock
             clock += steps * step
+            if body.is_pushed:
+                state = craft.scStateOutMsg.read()
+                moment = body.moment(state.omega_BN_B, quaternion(state.sigma_BN))
+                torque.extTorquePntB_B = [[entry] for entry in moment]
             simulation.ConfigureStopTime(clock)
             simulation.ExecuteSimulation()
 
@@ -50,7 +64,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, row
 
-    return stepped(body, settings.step, start)
+    return stepped(body, settings.step, start, pushed_once(body))
 
 
 def nanoseconds(step: float) -> int:
@@ -62,8 +76,8 @@ def nanoseconds(step: float) -> int:
     return count
 
 
-def spacecraft_of(body: FreeBody, settings: Settings, step: int) -> tuple[Any, Any]:
-    from Basilisk.simulation import spacecraft, svIntegrators
+def spacecraft_of(body: FreeBody, settings: Settings, step: int) -> tuple[Any, Any, Any]:
+    from Basilisk.simulation import extForceTorque, spacecraft, svIntegrators
     from Basilisk.utilities import SimulationBaseClass
 
     simulation = SimulationBaseClass.SimBaseClass()
@@ -80,9 +94,12 @@ def spacecraft_of(body: FreeBody, settings: Settings, step: int) -> tuple[Any, A
     craft.setIntegrator(integrator)
     # Older versions lose an integrator that nobody else holds.
     simulation.integrator = integrator
+    torque = extForceTorque.ExtForceTorque()
+    craft.addDynamicEffector(torque)
     simulation.AddModelToTask("task", craft)
+    simulation.AddModelToTask("task", torque)
     simulation.InitializeSimulation()
-    return simulation, craft
+    return simulation, craft, torque
 
 
 def rodrigues(q: Any) -> list[float]:
@@ -97,4 +114,4 @@ def quaternion(sigma: Any) -> list[float]:
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

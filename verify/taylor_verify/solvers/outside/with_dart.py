@@ -76,7 +76,13 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
             return body.row(moving[:3], attitude)
 
         def step() -> None:
-            if pushed is not None:
+            if is_immersed and body.is_pushed:
+                moving, place = node.getSpatialVelocity(), node.getWorldTransform()
+                attitude = place.quaternion().wxyz()
+                wrench = body.wrench(moving[3:], moving[:3], attitude, place.translation())
+                node.addExtForce(numpy.array(wrench[:3]), numpy.zeros(3), isForceLocal=True)
+                node.addExtTorque(numpy.array(wrench[3:]), isLocal=True)
+            elif pushed is not None:
                 moving, attitude = node.getSpatialVelocity(), node.getWorldTransform().quaternion()
                 moment = pushed.moment(moving[:3], attitude.wxyz())
                 node.addExtTorque(numpy.array(moment), isLocal=True)
@@ -85,7 +91,7 @@ def solve(body: FreeBody | ImmersedBody, settings: Settings) -> Solved:
         return repeated(step), row
 
     pushed = body if isinstance(body, FreeBody) and body.is_pushed else None
-    return stepped(body, settings.step, start, pushed_once(body) if pushed else "")
+    return stepped(body, settings.step, start, pushed_once(body))
 
 
 if __name__ == "__main__":

@@ -13,13 +13,15 @@
 # step = 0.002
 # integrator = ["Euler", "implicit", "implicitfast", "RK4", "discrete"]
 # inertia = ["full", "principal"]
+# given = ["per-stage", "per-step"]
 # ///
 """MuJoCo: a body with a free joint, without gravity, geometry and damping.
 
 `inertia=full` hands over the tensor as `fullinertia`, and MuJoCo's compiler finds the principal axes.
 `inertia=principal` hands over ours, as `diaginertia` and `quat`, and tells the compiler's error from
 that of the integrator. The remark says how far the compiled tensor is from the one that was given.
-What acts on the body is a passive force, which MuJoCo asks for in each stage of a step.
+What acts on the body is a passive force with `given=per-stage`, which MuJoCo asks for in each stage of a
+step; with `given=per-step` it is an applied one, set before a step and held over it.
 
 qvel[3:6] is omega in body axes, qpos[3:7] the attitude, scalar first.
 """
@@ -37,6 +39,8 @@ from free_body import (
     answer,
     pushed_body,
     pushed_in_stages,
+    pushed_once,
+    repeated,
     stepped,
 )
 
@@ -47,6 +51,9 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     require_integrator(settings)
     model = mujoco.MjModel.from_xml_string(mjcf(body, settings))
 
+    pushed_in_steps = body.is_pushed and settings.given == "per-step"
+    pushed_in_calls = body.is_pushed and not pushed_in_steps
+
     def push(model: Any, data: Any) -> None:
         data.qfrc_passive[3:6] = body.moment(data.qvel[3:6], data.qpos[3:7], data.time)
 
@@ -54,15 +61,23 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
         data = mujoco.MjData(model)
         data.qpos[3:7] = body.attitude
         data.qvel[3:6] = body.omega
-        mujoco.set_mjcb_passive(push if body.is_pushed else None)
+        mujoco.set_mjcb_passive(push if pushed_in_calls else None)
         mujoco.mj_forward(model, data)
+
+        def pushed_step() -> None:
+            data.qfrc_applied[3:6] = body.moment(data.qvel[3:6], data.qpos[3:7])
+            mujoco.mj_step(model, data)
+
         return (
-            lambda steps: mujoco.mj_step(model, data, steps),
+            repeated(pushed_step)
+            if pushed_in_steps
+            else lambda steps: mujoco.mj_step(model, data, steps),
             lambda: body.row(data.qvel[3:6], data.qpos[3:7]),
         )
 
+    pushed = pushed_once(body) if pushed_in_steps else pushed_in_stages(body)
     try:
-        return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+        return stepped(body, settings.step, start, remark(body, compiled_inertia(model), pushed))
     finally:
         mujoco.set_mjcb_passive(None)
 
@@ -112,13 +127,13 @@ def compiled_inertia(model: Any) -> list[list[float]]:
     return tensor
 
 
-def remark(body: FreeBody, compiled: list[list[float]]) -> str:
+def remark(body: FreeBody, compiled: list[list[float]], pushed: str) -> str:
     """Return a sentence on how far the compiled tensor is from the one that was given."""
     given = [entry for row in body.inertia for entry in row]
     has = [entry for row in compiled for entry in row]
     error = max(abs(a - b) for a, b in zip(given, has, strict=True)) / max(map(abs, given))
     compiling = f"the compiled inertia is off by {error:.1e} of its largest entry"
-    return "; ".join(filter(None, (compiling, pushed_in_stages(body))))
+    return "; ".join(filter(None, (compiling, pushed)))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@
 # [tool.taylor-verify]
 # title = "MuJoCo, a solid in a fluid"
 # models = ["kirchhoff"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.methods]
 # ellipsoid = "its own fluid model, by fluidshape"
@@ -23,7 +23,7 @@ five coefficients of drag and lift zero. It has the forces of the added mass tha
 of velocities, and leaves out those that go with accelerations.
 
 `callback` gives the whole load to MuJoCo's integrator: the body is a rigid sphere, and the passive
-force is what makes its acceleration that of Kirchhoff's equations.
+force is what makes its acceleration that of Kirchhoff's equations, under all that acts.
 
 qvel[0:3] is the velocity in space axes, qvel[3:6] omega in body axes.
 """
@@ -35,8 +35,8 @@ from typing import Any
 
 from axes import conjugate, to_body
 from equations import to_space
-from free_body import Engine, Settings, Solved, answer, stepped
-from immersed_body import ImmersedBody, immersed_body
+from free_body import Engine, Settings, Solved, answer, pushed_in_stages, stepped
+from immersed_body import ImmersedBody, pushed_solid
 from question import Unsuited, unit
 from with_mujoco import require_integrator
 
@@ -61,6 +61,8 @@ def solve(body: ImmersedBody, settings: Settings) -> Solved:
           <worldbody><body><freejoint/>{solid}</body></worldbody>
         </mujoco>""")
     force = kirchhoff(body, *sphere) if settings.method == "callback" else None
+    if force is None and body.is_pushed:
+        raise Unsuited("expected a free ellipsoid, got loads that its fluid model lacks @ body")
 
     def start() -> Engine:
         mujoco.set_mjcb_passive(force)
@@ -76,7 +78,7 @@ def solve(body: ImmersedBody, settings: Settings) -> Solved:
 
         return lambda steps: mujoco.mj_step(model, data, steps), row
 
-    solved = stepped(body, settings.step, start)
+    solved = stepped(body, settings.step, start, pushed_in_stages(body))
     mujoco.set_mjcb_passive(None)
     return solved
 
@@ -102,14 +104,15 @@ def kirchhoff(body: ImmersedBody, mass: float, inertia: float) -> Force:
     import numpy
 
     energy = numpy.array(body.energy)
-    matrix = numpy.array(body.mass)
 
     def force(_: Any, data: Any) -> None:
         q, omega = unit(data.qpos[3:7]), data.qvel[3:6]
         # In floating point, because it is a part of each step.
         velocity = to_space(*conjugate(q), *data.qvel[:3])
-        x, y = (matrix @ [*velocity, *omega]).reshape(2, 3)
-        rates = [*numpy.cross(x, omega), *(numpy.cross(y, omega) + numpy.cross(x, velocity))]
+        wrench = [0.0] * 6
+        if body.is_pushed:
+            wrench = body.wrench(velocity, omega, q, data.qpos[:3], data.time)
+        rates = body.rates(velocity, omega, wrench)
         acceleration, angular = (energy @ rates).reshape(2, 3)
         # The velocity of the engine stands in space axes, which turn against the body.
         linear = mass * (acceleration + numpy.cross(omega, velocity))
@@ -120,4 +123,4 @@ def kirchhoff(body: ImmersedBody, mass: float, inertia: float) -> Force:
 
 
 if __name__ == "__main__":
-    answer(solve, immersed_body)
+    answer(solve, pushed_solid)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
-from math import isfinite
+from itertools import chain, groupby, pairwise
+from math import inf, isfinite
 from typing import Final
 
 from taylor_verify.words.cells import figure
@@ -26,6 +26,8 @@ ENOUGH: Final = 1e-3
 LOST: Final = 0.05
 # A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
+# No way of giving a load is warned of whose error is below this one times FAR_WORSE.
+NEGLIGIBLE: Final = 1e-10
 # A warning of too small steps is given if they increase the error by more than this factor.
 WORSE_BELOW: Final = 2.0
 
@@ -36,23 +38,56 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
     of the advice.
     """
-    names = {row.name: row.title for row in entries.entry}
+    names = entries.titles
     plain = {row.name for row in entries.entry if row.plain}
-    every, scenes = settings(board.study), advised(board, entries)
+    every = settings(board.study)
     engines = [setting for setting in newest(every) if setting.engine not in plain]
     shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
     return [
-        *_take(board, engines, scenes, names),
-        *_never(engines, scenes, names),
+        *chain.from_iterable(
+            under_loads(board, engines, job, scenes, entries)
+            if any(setting.load for setting in engines)
+            else _of_free_bodies(board, engines, job, scenes, names)
+            for job, scenes in advised(board, entries).items()
+        ),
         *_as_shipped(engines, shipped, names, entries),
-        *_too_fine(engines, scenes, names),
+        *_too_fine(engines, [*chain.from_iterable(advised(board, entries).values())], names),
     ]
 
 
-def advised(board: Board, entries: EntryList) -> list[str]:
-    """Return the scenes of the advice that were measured."""
+def _of_free_bodies(
+    board: Board,
+    engines: Sequence[EngineSetting],
+    job: str,
+    scenes: Sequence[str],
+    names: dict[str, str],
+) -> Iterator[str]:
+    yield from take(board, engines, job, scenes, names)
+    yield from _never(engines, job, scenes, names)
+
+
+def under_loads(
+    board: Board,
+    engines: Sequence[EngineSetting],
+    job: str,
+    scenes: Sequence[str],
+    entries: EntryList,
+) -> Iterator[str]:
+    """Yield a paragraph for a job under loads: what to take, and which way of giving a load to avoid."""
+    sentences = [
+        *take(board, engines, job, scenes, entries.titles),
+        *_ways_to_avoid(engines, scenes, entries.titles),
+        *_missed_switches(engines, scenes, entries),
+    ]
+    if sentences:
+        yield " ".join(sentences)
+
+
+def advised(board: Board, entries: EntryList) -> dict[str, list[str]]:
+    """Return the scenes of each job that were measured."""
     measured = {row.scene for row in board.study.rows if row.is_judged}
-    return [scene for scene in entries.advised if scene in measured]
+    jobs = {job: [s for s in scenes if s in measured] for job, scenes in entries.jobs.items()}
+    return {job: scenes for job, scenes in jobs.items() if scenes}
 
 
 def error(size: float) -> str:
@@ -66,15 +101,19 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
 
-def _take(
-    board: Board, engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
+def take(
+    board: Board,
+    engines: Sequence[EngineSetting],
+    job: str,
+    scenes: Sequence[str],
+    names: dict[str, str],
 ) -> Iterator[str]:
     """Yield the most accurate setting, and the cheapest of those that suffice for most uses."""
     scores = [score for setting in engines for score in setting.scores(scenes)]
     if (best := best_of(scores)) is None:
         return
     yield (
-        f"For free rotation take {named(best.setting, names)}{_step(best)}: omega and attitude are "
+        f"For {job} take {named(best.setting, names)}{_step(best)}{_load(best)}: {_states(best)} are "
         f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
     )
     paced = [
@@ -90,8 +129,46 @@ def _take(
         )
 
 
-def _never(
+def _ways_to_avoid(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
+) -> Iterator[str]:
+    """Yield a warning of the ways of giving a load whose best engine is far worse than another way's."""
+    best: dict[str, Score] = {}
+    for way in dict.fromkeys(setting.load for setting in engines):
+        scores = (score for s in engines if s.load == way for score in s.scores(scenes))
+        if score := best_of(scores):
+            best[way] = score
+    least = max(NEGLIGIBLE, min((score.error for score in best.values()), default=0.0))
+    bad = {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
+    if listed := [
+        f"{prose(way)} ({named(score.setting, names)}{_step(score)} has {figure(score.error)})"
+        for way, score in bad.items()
+    ]:
+        yield f"Never with the load {_either(listed)}, the least error of that way here."
+
+
+def _missed_switches(
+    engines: Sequence[EngineSetting], scenes: Sequence[str], entries: EntryList
+) -> Iterator[str]:
+    """Yield a warning of a step that goes over a switch: its error is larger than that of a longer step."""
+    switched = [scene.name for scene in entries.scene if scene.switches and scene.name in scenes]
+    losses = []
+    for scene in switched:
+        for setting in engines:
+            for longer, shorter in pairwise(setting.on(scene)):
+                if FAR_WORSE * longer.worst < shorter.worst < inf:
+                    losses.append((shorter.worst / longer.worst, setting, longer, shorter))
+    if losses:
+        _, setting, longer, shorter = max(losses, key=lambda loss: loss[0])
+        yield (
+            f"Never a step that goes over a switch: {named(setting, entries.titles)} has "
+            f"{figure(longer.worst)} with a step of {longer.value}, which ends on every switch, and "
+            f"{figure(shorter.worst)} with {shorter.value}, which does not."
+        )
+
+
+def _never(
+    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield warnings of methods that lose the motion, and of engines whose methods all lose it."""
     methods, whole_engines = [], []
@@ -115,7 +192,7 @@ def _never(
         yield f"Never {'; '.join(methods)}."
     if whole_engines:
         listed = "; ".join(whole_engines)
-        yield f"Not for free rotation, with the least error at any step measured here: {listed}."
+        yield f"Not for {job}, with the least error at any step measured here: {listed}."
 
 
 def _energy(score: Score) -> str:
@@ -192,6 +269,16 @@ def _too_fine(
             steps.append(f"{best.value} in {bold(prose(names[engine]))} ({growth})")
     if steps:
         yield f"No smaller step than {', '.join(steps)}."
+
+
+def _states(score: Score) -> str:
+    """Return the names of the state quantities of a score's scene, as a list in a sentence."""
+    *others, last = score.row.floors
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _load(score: Score) -> str:
+    return f" (the load {prose(score.setting.load)})" if score.setting.load else ""
 
 
 def _step(score: Score) -> str:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import re
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -19,7 +22,7 @@ from taylor_verify.records.store import laid_out
 from taylor_verify.run import posed, solve
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import PREFIX, Outside, engines, solve_together
-from taylor_verify.solvers.registry import solver_named
+from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.entry import Asked
@@ -45,27 +48,42 @@ class Answer:
     states: States | None = None
 
     def to_bytes(self) -> bytes:
-        """Return the answer as JSON, in which every float has all its bits."""
-        states = None if self.states is None else self.states.tolist()
+        """Return the answer as JSON that `check` reads too; every float has all its bits."""
+        columns = self.columns()
         kind = "" if self.states is None else self.states.dtype.str
-        return laid_out(complete(_Stored(self.row, self.seconds, kind, states))).encode()
+        stored = _Stored(self.row, self.seconds, kind, tuple(columns)[1:])
+        return laid_out({**complete(stored), **columns}).encode()
+
+    def columns(self) -> dict[str, list[float]]:
+        """Return the trajectory as the columns of a file, t first; empty without states."""
+        if self.states is None:
+            return {}
+        scene = load(self.row.scene)
+        names = [name for group in scene.groups for name in group.columns]
+        times = [float(t) for t in scene.clock.instants]
+        return {"t": times, **dict(zip(names, self.states.T.tolist(), strict=True))}
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Answer:
         """Return the answer from its JSON. Raises ValueError for any other content."""
-        stored = parsed(content, _Stored)
-        states = None if stored.states is None else np.array(stored.states, dtype=stored.kind)
+        stored, states = parsed(content, _Stored), None
+        if stored.kind:
+            numbers = json.loads(content)
+            states = np.array([numbers[name] for name in stored.order], dtype=stored.kind).T
         return cls(stored.row, stored.seconds, states)
 
 
 @dataclass(frozen=True)
 class _Stored:
-    """The stored form of an answer; ``kind`` is NumPy's name of the float type, empty without states."""
+    """What an answer has besides its columns, whose names are ``order``.
+
+    ``kind`` is NumPy's name of the float type, empty without states.
+    """
 
     row: EngineRow
     seconds: float
     kind: str = ""
-    states: list[list[float]] | None = None
+    order: tuple[str, ...] = ()
 
 
 def answered(asked: Sequence[Asked]) -> list[Answer]:
@@ -103,7 +121,7 @@ def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
     states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
-    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps))
+    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps), asked.scene)
     bits = 8 * states.dtype.itemsize
     row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(errors))
     return Answer(row, trajectory.seconds, states)
@@ -123,6 +141,7 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
         standing=standing,
         made_of=made_of(asked.scene, asked.entry.solver),
         shipped=asked.shipped,
+        load=asked.entry.load,
         **numbers,
     )
 
@@ -141,10 +160,20 @@ def version_of(asked: Asked) -> str:
 def made_of(scene: str, solver: str) -> str:
     """Return the digest of a scene and of the engine's script; another digest marks an outdated run."""
     digest = hashlib.sha256(load(scene).digest.encode())
-    if solver.startswith(PREFIX):
-        engine = engines()[solver.removeprefix(PREFIX)]
-        digest.update(engine.script.path.read_bytes())
+    for file in _programs(solver):
+        digest.update(file.read_bytes())
     return digest.hexdigest()[:12]
+
+
+def _programs(solver: str) -> list[Path]:
+    """Return the files that make a solver: an engine's script, or the files that a command names."""
+    if solver.startswith(PREFIX):
+        name = solver.removeprefix(PREFIX).partition("?")[0]
+        return [engines()[name].script.path]
+    words = shlex.split(solver.partition(":")[2]) if solver.startswith(PROCESS) else []
+    if solver.startswith(PYTHON):
+        words = [f"{solver.removeprefix(PYTHON).partition(':')[0].replace('.', '/')}.py"]
+    return [Path(word) for word in words if Path(word).is_file()]
 
 
 def _pinned(solver: str) -> str:

@@ -10,6 +10,8 @@ from taylor_verify.records.provenance import Machine
 
 # State quantities that an engine answers, if the scene tracks them.
 STATES: Final = ("omega", "impulse", "attitude", "centre")
+# The place of a trajectory that is not in the file: it is made anew by the measurement.
+NOT_STORED: Final = -1
 
 
 class Standing(StrEnum):
@@ -31,7 +33,7 @@ class EngineRow:
     the states that perfect rounding would leave. ``start`` is the error of the first row. ``cause`` is the
     fault of the dynamics that, as the judge supposes, explains nearly all of the error. ``bits`` is the
     size of the floats that store the trajectory, ``place`` its index in the array of its scene. ``made_of``
-    is the digest of the scene and the adapter.
+    is the digest of the scene and the adapter. ``load`` says how the loads of a scene reach the engine.
     """
 
     engine: str
@@ -52,7 +54,8 @@ class EngineRow:
     floors: dict[str, float] = field(default_factory=dict)
     cause: str = ""
     bits: int = 64
-    place: int = 0
+    place: int = NOT_STORED
+    load: str = ""
 
     @property
     def key(self) -> str:
@@ -70,9 +73,14 @@ class EngineRow:
         return self.standing is Standing.JUDGED
 
     @property
+    def is_stored(self) -> bool:
+        """True if the trajectory is in the file of all trajectories."""
+        return self.is_judged and self.place != NOT_STORED
+
+    @property
     def worst(self) -> float:
         """The largest error of the states; infinite if one is missing or no finite number."""
-        errors = [self.errors[name] for name in STATES if name in self.errors]
+        errors = [self.errors[name] for name in self.floors if name in self.errors]
         lost = [name for name in self.floors if name not in self.errors]
         return float("inf") if lost or not errors else max(errors)
 
@@ -101,6 +109,7 @@ class Board:
 
     study: EnginesStudy
     timings: EnginesTimings
+    name: str = "engines"
 
     def pace(self, row: EngineRow) -> float | None:
         """Return the seconds of a run per unit of the scene's time; None if they are unknown."""

@@ -24,7 +24,7 @@ def place(engine: str) -> str:
 def pages(board: Board, entries: EntryList) -> dict[str, str]:
     """Return the page of every engine that has rows, by its path."""
     names = dict.fromkeys(row.engine for row in board.study.rows)
-    titles = {row.name: row.title for row in entries.entry}
+    titles = entries.titles
     return {place(name): page(board, name, titles.get(name, name)) for name in names}
 
 

@@ -1,8 +1,8 @@
-"""The entry list of the board, entries.toml, and the runs that it asks for.
+"""The entry list of a board, such as engines.toml, and the runs that it asks for.
 
 name       the engine, in the name of its page and for `--only`; several rows may have the same
 title      the name of the engine as its authors write it
-solver     the name of a solver, without settings
+solver     the name of a solver, without settings; or a whole one, with {step} in the place of the value
 versions   optional: the oldest first. The last one is run on every scene, the others on scenes with `sweep`
 settings   optional: each option with its values, which are run in all combinations
 knob       the option that sets the accuracy, `step` unless given
@@ -13,6 +13,7 @@ without    optional: scenes that are not run
 shipped    optional: the options that restore the engine's defaults; they are run with the second of the
            values only
 warning    optional: the fault of an engine as shipped, in words
+load       optional: how the loads of a scene reach the engine, in words
 package    optional: the installed package whose version is shown, for a solver that runs here
 plain      true for a solver of differential equations that is no engine
 """
@@ -29,22 +30,39 @@ from typing import Final
 
 from taylor_verify.records.json_text import converted
 
-FILE: Final = Path(__file__).with_name("entries.toml")
+BOARDS: Final = ("engines", "satellite", "underwater")
+"""The boards in their order; the first one is that of free bodies."""
+
+
+STEP: Final = "{step}"
+"""The place of the step in the name of a solver that has it among its own words."""
+
+
+@dataclass(frozen=True)
+class About:
+    """What a board is about: the title of its page, what it measures, remarks, and scripts of findings."""
+
+    title: str = "The engine board"
+    what: str = ""
+    remarks: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class BoardScene:
     """A scene of the board; ``least`` is the smallest step that is run on it.
 
-    ``advice`` marks a scene of the advice, ``sweep`` one on which older versions are run, and ``shipped``
-    one of the table "as shipped".
+    ``job`` is what the scene stands for, in the advice "For JOB take ..."; a scene without it is not
+    advised on. ``sweep`` marks a scene on which older versions are run, ``shipped`` one of the table
+    "as shipped", and ``switches`` one whose loads switch at times that a step can miss.
     """
 
     name: str
     least: float = 0.0
-    advice: bool = False
+    job: str = ""
     sweep: bool = False
     shipped: bool = False
+    switches: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +81,7 @@ class Entry:
     without: tuple[str, ...] = ()
     shipped: Mapping[str, str] | None = None
     warning: str = ""
+    load: str = ""
     package: str = ""
     plain: bool = False
 
@@ -118,6 +137,8 @@ class Asked:
     @property
     def solver(self) -> str:
         """The whole name of the solver, as `--solver` takes it."""
+        if STEP in self.entry.solver:
+            return self.entry.solver.replace(STEP, self.value)
         version = [("version", self.version)] if self.version else []
         accuracy = [(self.entry.knob, self.value)] if self.value else []
         settings = "&".join(f"{key}={word}" for key, word in (*version, *self.words, *accuracy))
@@ -126,6 +147,8 @@ class Asked:
     @property
     def variant(self) -> str:
         """The method and its settings, as tables name them."""
+        if STEP in self.entry.solver:
+            return self.entry.solver.replace(STEP, "h")
         family, _, method = self.entry.solver.partition(":")
         method = method.partition("-")[2] if family == "outside" else method
         # A number says nothing without the name of its option.
@@ -147,6 +170,7 @@ class EntryList:
 
     scene: tuple[BoardScene, ...]
     entry: tuple[Entry, ...]
+    about: About = About()
 
     @property
     def engines(self) -> tuple[str, ...]:
@@ -156,7 +180,21 @@ class EntryList:
     @property
     def advised(self) -> list[str]:
         """The scenes that the advice rests on."""
-        return [scene.name for scene in self.scene if scene.advice]
+        return [scene.name for scene in self.scene if scene.job]
+
+    @property
+    def jobs(self) -> dict[str, list[str]]:
+        """The scenes of each job, in the order of the list."""
+        jobs: dict[str, list[str]] = {}
+        for scene in self.scene:
+            if scene.job:
+                jobs.setdefault(scene.job, []).append(scene.name)
+        return jobs
+
+    @property
+    def titles(self) -> dict[str, str]:
+        """The titles of the engines by their names."""
+        return {row.name: row.title for row in self.entry}
 
     def runs(self) -> list[Asked]:
         """Return every run, each once."""
@@ -165,7 +203,17 @@ class EntryList:
 
 
 @cache
-def entry_list(file: Path = FILE) -> EntryList:
+def entry_list(board: str = BOARDS[0]) -> EntryList:
+    """Return the list of a board. Raises a ValueError that names the place of a fault."""
+    return read_list(list_of(board))
+
+
+def list_of(board: str) -> Path:
+    """Return the file with the entry list of a board."""
+    return Path(__file__).with_name(f"{board}.toml")
+
+
+def read_list(file: Path) -> EntryList:
     """Return the list in a file. Raises a ValueError that names the place of a fault."""
     try:
         return converted(tomllib.loads(file.read_text(encoding="utf-8")), EntryList)

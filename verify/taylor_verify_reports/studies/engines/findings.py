@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -54,9 +54,12 @@ def _report(text: str, suffix: str) -> str:
     return "\n".join(line.removeprefix("//").strip() for line in lines)
 
 
-def findings(folder: Path) -> Iterator[str]:
-    """Yield the section with the findings of a report folder; nothing if there are none."""
-    results = [read(file) for file in scripts(folder)]
+def findings(folder: Path, only: Collection[str] = ()) -> Iterator[str]:
+    """Yield the section with the findings of a report folder, or of scripts of some names.
+
+    Nothing is yielded if there are none.
+    """
+    results = [read(file) for file in scripts(folder) if not only or file.name in only]
     if results:
         yield "## Findings"
         yield (

@@ -28,12 +28,12 @@ from taylor_verify_reports.studies.engines.document import (
     EnginesTimings,
     Standing,
 )
-from taylor_verify_reports.studies.engines.entry import Asked, EntryList
+from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList, entry_list
 from taylor_verify_reports.studies.engines.replay import errors_of, judged
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 # A part of the report folder that is neither published nor committed.
-UNFINISHED: Final = "local/engines"
+UNFINISHED: Final = "local/boards"
 
 # With more runs in a process, a library is loaded less often, but more of them are lost if it is killed.
 _RUNS_OF_A_PROCESS: Final = 12
@@ -114,6 +114,8 @@ def _environment(run: Asked) -> str:
     """Return the name of the environment that a run needs; empty for a solver of this process."""
     if not run.entry.solver.startswith(PREFIX):
         return ""
+    if STEP in run.entry.solver:
+        return run.solver
     return run.entry.solver + (f"?version={run.version}" if run.version else "")
 
 
@@ -151,19 +153,21 @@ def _judged_again(answer: Answer) -> Answer:
     row, states = answer.row, answer.states
     if states is None:
         return answer
-    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps))
+    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps), row.scene)
     return replace(answer, row=replace(row, **vars(errors)))
 
 
-def board_of(answers: Sequence[Answer], workers: int | None) -> tuple[Board, bytes]:
+def board_of(
+    answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]
+) -> tuple[Board, bytes]:
     """Return the document of the board made from answers, and the file of their trajectories."""
-    rows, file = trajectories.packed(answers)
+    rows, file = trajectories.packed(answers, entry_list(name).advised)
     seconds = {
         answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
     }
     spans = {scene: _span(scene) for scene in dict.fromkeys(row.scene for row in rows)}
     timings = EnginesTimings(workers or available_cores(), machine(), seconds)
-    return Board(EnginesStudy(packages(), spans, tuple(rows)), timings), file
+    return Board(EnginesStudy(packages(), spans, tuple(rows)), timings, name), file
 
 
 def answers_of(board: Board, folder: Path) -> list[Answer]:
@@ -171,7 +175,7 @@ def answers_of(board: Board, folder: Path) -> list[Answer]:
 
     Raises OSError for trajectories that cannot be read, and ValueError for a file that lacks some of them.
     """
-    arrays, seconds = trajectories.load(folder), board.timings.seconds
+    arrays, seconds = trajectories.load(folder, board.name), board.timings.seconds
     return [
         Answer(row, seconds.get(row.key, 0.0), trajectories.states_of(arrays, row))
         for row in board.study.rows

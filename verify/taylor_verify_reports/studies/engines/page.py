@@ -17,7 +17,7 @@ from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.engines.advice import advice, like
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.engine_page import place
-from taylor_verify_reports.studies.engines.entry import FILE, EntryList, entry_list
+from taylor_verify_reports.studies.engines.entry import EntryList, entry_list, list_of
 from taylor_verify_reports.studies.engines.findings import findings
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
 from taylor_verify_reports.studies.engines.ranking import (
@@ -27,13 +27,13 @@ from taylor_verify_reports.studies.engines.ranking import (
     newest,
     settings,
 )
-from taylor_verify_reports.studies.engines.stored import ENGINES, TIMINGS, TRAJECTORIES
+from taylor_verify_reports.studies.engines.stored import places
 
 _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same "
     "numbers. Energy and angular momentum are compared too, although they do not show whether the "
-    "body is in the right place. The authors of this page sell no engine. Every trajectory behind "
-    "these tables is stored, and anybody can judge it again."
+    "body is in the right place. The authors of this page sell no engine. The trajectories "
+    "behind the advice are stored, and anybody can judge them again."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
@@ -66,14 +66,19 @@ _OBJECT: Final = (
     "the engine that would do better: "
     '`taylor-verify run SCENE --solver "outside:NAME?..."` of the engine\'s page shows it as we see it.',
     "A better adapter is one file, `cases/README.md` says how (To add an engine); a new setting or "
-    "version is a word in the engine's row of `verify/taylor_verify_reports/studies/engines/entries.toml`.",
-    "An engine of your own needs no adapter here to be judged: `docs/bring-your-engine.md`.",
+    "version is a word in the engine's row of `verify/taylor_verify_reports/studies/engines/engines.toml`.",
+    "An engine of your own needs no adapter here: `taylor-verify board add NAME --solver ...` puts it on a "
+    "copy of this page (`docs/bring-your-engine.md`).",
 )
 
 
 def page(board: Board, folder: Path) -> str:
     """Return the whole page, with the pictures that are in ``folder``/figures."""
-    entries = _entries(board)
+    return text(board, entries_of(board), folder)
+
+
+def text(board: Board, entries: EntryList, folder: Path) -> str:
+    """Return the page of a board with the engines of a list."""
     every = settings(board.study)
     return whole(
         "The engine board",
@@ -82,34 +87,37 @@ def page(board: Board, folder: Path) -> str:
         "## What each engine achieves",
         _best(board, entries, every),
         bullets(_LEGEND),
-        figures.shown(folder, pictures(board)),
+        figures.shown(folder, _pictures(board, entries)),
         *_scenes(board, entries, every),
         *_as_shipped(board, entries, every),
-        *_unavailable(board.study.rows),
+        *unavailable(board.study.rows),
         "## Fairness",
         bullets(_FAIRNESS),
         *findings(folder),
         "## To object, and to send a better adapter",
         bullets(_OBJECT),
         "## To remake this",
-        bullets(_remake(board)),
+        bullets(remake(board)),
     )
 
 
 def pictures(board: Board) -> list[Picture]:
     """Return the pictures of the board: energy and motion, error against time, step and version."""
-    entries = _entries(board)
+    return _pictures(board, entries_of(board))
+
+
+def _pictures(board: Board, entries: EntryList) -> list[Picture]:
     return [picture for kind in (energy, work, sweeps) for picture in kind.pictures(board, entries)]
 
 
-def _entries(board: Board) -> EntryList:
+def entries_of(board: Board) -> EntryList:
     """Return the entry list. Raises ValueError for rows of an engine that is not in the list."""
-    entries = entry_list()
+    entries = entry_list(board.name)
     stored = dict.fromkeys(row.engine for row in board.study.rows)
     if unknown := [name for name in stored if name not in entries.engines]:
         raise ValueError(
-            f"expected engines of {FILE.name}, got {', '.join(unknown)}: `publish engines` leaves their "
-            f"rows out @ {ENGINES.name}"
+            f"expected engines of {list_of(board.name).name}, got {', '.join(unknown)}: "
+            f"`publish {board.name}` leaves their rows out @ {places(board.name).rows.name}"
         )
     return entries
 
@@ -117,7 +125,7 @@ def _entries(board: Board) -> EntryList:
 def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> str:
     """Return a table of the engines, each with its best setting on the first scene of the advice."""
     scene = entries.advised[0]
-    titles, rows = {row.name: row.title for row in entries.entry}, []
+    titles, rows = entries.titles, []
     for best in best_of_each(every, scene):
         engine = best.setting.engine
         name = f"[{prose(titles.get(engine, engine))}]({place(engine).removeprefix('tables/')})"
@@ -165,7 +173,7 @@ def _knob(row: EngineRow) -> str:
 
 def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield a section for each scene: every engine with its best setting there."""
-    titles = {row.name: row.title for row in entries.entry}
+    titles = entries.titles
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
         for engine, group in groupby(newest(every), key=lambda setting: setting.engine):
@@ -208,7 +216,7 @@ def _states(board: Board, scene: str) -> set[str]:
 
 def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> Iterator[str]:
     """Yield the table of the engines as shipped beside the settings of the board."""
-    titles, rows, usual = {row.name: row.title for row in entries.entry}, [], newest(every)
+    titles, rows, usual = entries.titles, [], newest(every)
     for setting in newest(every, shipped=True):
         for row in setting.rows:
             other = like(row, usual, entries)
@@ -244,7 +252,7 @@ def _as_shipped(board: Board, entries: EntryList, every: Sequence[EngineSetting]
         yield table(columns, rows)
 
 
-def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
+def unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
     """Yield a section of the runs without numbers, with a line for each engine, version and reason."""
     lost = {
         (row.engine, row.version, row.standing, row.detail): row
@@ -259,17 +267,20 @@ def _unavailable(rows: Iterable[EngineRow]) -> Iterator[str]:
         )
 
 
-def _remake(board: Board) -> list[str]:
-    machine, count = board.timings.machine, sum(row.is_judged for row in board.study.rows)
+def remake(board: Board) -> list[str]:
+    machine, name, place = board.timings.machine, board.name, places(board.name)
     return [
-        "`make engines` runs what is not stored yet, and `make engines ENGINE=mujoco` one engine again; "
-        "with `taylor-verify publish engines --anew` everything is run. It may be killed, and goes on.",
-        f"`taylor-verify publish engines --rejudge` runs nothing: it judges the {count} stored "
-        f"trajectories again, in [trajectories.npz](../{TRAJECTORIES}), and writes "
-        f"[engines.json](../{ENGINES.name}) and this page. Errors are the same on every machine.",
-        f"Times are in [engines-timings.json](../{TIMINGS.name}), {board.timings.workers} runs at a time "
-        f"on {prose(machine.processor)}; no number but a time depends on the machine.",
-        f"The sheet, `engines.csv`, has every run. {made_with(board.study.versions)}",
+        f"`make {name}` runs what is not stored yet, and `make {name} ENGINE=mujoco` one engine again; "
+        f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
+        f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
+        f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
+        "page. Errors are the same on every machine. That file has the newest version of each engine on "
+        "the scenes of the advice; all others are made by a measurement.",
+        f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
+        f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
+        f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "
+        f"time on {prose(machine.processor)}; no number but a time depends on the machine.",
+        made_with(board.study.versions),
     ]
 
 
@@ -293,6 +304,7 @@ def sheet(board: Board) -> str:
         "cause",
         "array",
         "place",
+        "file",
         "solver",
     ]
     return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
@@ -303,7 +315,9 @@ def _sheet_row(board: Board, row: EngineRow) -> dict[str, Any]:
     return {
         **vars(row),
         **row.errors,
-        "array": row.array if row.is_judged else "",
+        "array": row.array if row.is_stored else "",
+        "place": row.place if row.is_stored else "",
+        "file": places(board.name).trajectories if row.is_stored else "",
         "microseconds": None if pace is None else f"{1e6 * pace:.3g}",
         "standing": row.standing.value,
         "shipped": "yes" if row.shipped else "no",

@@ -32,6 +32,11 @@ class EngineSetting:
         return self.rows[0].knob
 
     @property
+    def load(self) -> str:
+        """The way in which the loads of a scene reach the engine, in words; empty where none acts."""
+        return self.rows[0].load
+
+    @property
     def words(self) -> str:
         """The words that distinguish the setting from others of its engine and version."""
         return ", ".join(filter(None, [self.variant, self.rung if self.rung != "f64" else ""]))

@@ -15,14 +15,13 @@ from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.answers import LikelyCause
-from taylor_verify.records.quantities import INITIAL, state_groups
+from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import Solver, columns
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
-from taylor_verify_reports.studies.engines.document import STATES
 
 States = np.ndarray[Any, Any]
 
@@ -66,7 +65,7 @@ def states_of(scene: Scene, trajectory: Trajectory) -> States:
 
     A number that is no double is rounded; no engine here has any.
     """
-    parts = [trajectory.quantities[name] for name in state_groups(scene.model, scene.track)]
+    parts = [trajectory.quantities[group.name] for group in scene.groups]
     doubles = np.array(
         [[float(v) for part in parts for v in part[k]] for k in range(len(parts[0]))]
     )
@@ -81,14 +80,18 @@ def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Ju
     The problem has the data as the solver rounds them. The count of steps has no time limit, so that the
     judgement is the same on every machine.
     """
-    problem = solver_named(solver).problem(load(scene), rung_named(rung))
+    asked = load(scene)
+    problem = solver_named(solver).problem(asked, rung_named(rung))
     stored = Stored(solver, states, steps)
     trajectory = stored.solve(problem)
-    return with_causes(judgement(problem, stored, trajectory), problem, trajectory)
+    result = judgement(problem, stored, trajectory)
+    # Under loads the candidates are many, and the row says how the loads were given.
+    return result if asked.body.loads else with_causes(result, problem, trajectory)
 
 
-def errors_of(result: Judgement) -> Errors:
-    """Return the numbers of a judgement that the board stores."""
+def errors_of(result: Judgement, scene: str) -> Errors:
+    """Return the numbers of a judgement on a scene that the board stores."""
+    states = {quantity.name for quantity in load(scene).tracked}
     verdicts = {verdict.quantity: verdict for verdict in result.verdicts}
     first = verdicts.pop(INITIAL, None)
     return Errors(
@@ -97,7 +100,7 @@ def errors_of(result: Judgement) -> Errors:
         floors={
             name: a
             for name, v in verdicts.items()
-            if name in STATES and (a := _short(v.attainable)) is not None
+            if name in states and (a := _short(v.attainable)) is not None
         },
         cause=_cause(result.causes, verdicts.values()),
     )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, NamedTuple
 
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.engines.document import Board, EnginesStudy, EnginesTimings
+from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.stored import Stored
 
 
@@ -18,25 +19,42 @@ def _fields(study: EnginesStudy) -> Mapping[str, Any]:
     return {"versions": study.versions, "spans": study.spans, "rows": rows}
 
 
-TRAJECTORIES: Final = "data/engines/trajectories.npz"
-ENGINES: Final = Stored(EnginesStudy, "engines", _fields)
-TIMINGS: Final = Stored(EnginesTimings, "engines", complete, stem="engines-timings")
+class Places(NamedTuple):
+    """The files of a board: rows, times, and the path of its trajectories below the report folder."""
+
+    rows: Stored[EnginesStudy]
+    timings: Stored[EnginesTimings]
+    trajectories: str
+
+
+def places(board: str) -> Places:
+    """Return the files of a board."""
+    return Places(
+        Stored(EnginesStudy, board, _fields),
+        Stored(EnginesTimings, board, complete, stem=f"{board}-timings"),
+        f"data/{board}/trajectories.npz",
+    )
+
+
+ENGINES, TIMINGS, TRAJECTORIES = places(BOARDS[0])
 
 
 def write(folder: Path, board: Board, file: bytes) -> list[Path]:
     """Store a board and ``file``, the bytes of its trajectories, below a report folder. Raises OSError."""
+    place = places(board.name)
     # The rows come last, because they refer to the other files.
     return [
-        *replace_files(folder, {TRAJECTORIES: file}),
-        *TIMINGS.write(folder, board.timings),
-        *ENGINES.write(folder, board.study),
+        *replace_files(folder, {place.trajectories: file}),
+        *place.timings.write(folder, board.timings),
+        *place.rows.write(folder, board.study),
     ]
 
 
-def find(folder: Path) -> Board | None:
-    """Return the board that is stored below a report folder; None if there is none.
+def find(folder: Path, name: str = BOARDS[0]) -> Board | None:
+    """Return the board of that name below a report folder; None if it is not stored there.
 
     Raises OSError for files that cannot be read and ValueError for files that hold something else.
     """
-    study = ENGINES.find(folder)
-    return None if study is None else Board(study, TIMINGS.load(folder))
+    place = places(name)
+    study = place.rows.find(folder)
+    return None if study is None else Board(study, place.timings.load(folder), name)

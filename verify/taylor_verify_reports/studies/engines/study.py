@@ -1,11 +1,12 @@
-"""The study of the engines: every run of the entry list compared with the exact motion."""
+"""The studies of the boards: every run of an entry list compared with the exact motion."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Final
 
-from taylor_verify_reports.studies.engines import page, stored
+from taylor_verify_reports.studies.engines import loaded_page, page, stored
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import entry_list
@@ -13,6 +14,7 @@ from taylor_verify_reports.studies.study import Measured, NotMeasured, Option, P
 
 
 def _measure(
+    name: str,
     folder: Path,
     progress: Progress,
     only: tuple[str, ...] = (),
@@ -34,8 +36,8 @@ def _measure(
     from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
     try:
-        entries = entry_list()
-        board = stored.find(folder)
+        entries = entry_list(name)
+        board = stored.find(folder, name)
         known = [] if board is None else answers_of(board, folder)
     except ValueError as error:
         raise NotMeasured(str(error)) from error
@@ -43,7 +45,7 @@ def _measure(
         raise NotMeasured(
             f"expected engines among {', '.join(entries.engines)}, got {', '.join(unknown)}"
         )
-    store = Unfinished(folder / UNFINISHED)
+    store = Unfinished(folder / UNFINISHED / name)
     if rejudge:
         answers = judged_again(known, progress.say, workers)
     else:
@@ -53,7 +55,7 @@ def _measure(
             if not (anew and (not only or answer.row.engine in only))
         }
         answers = measure(entries, reused, store, progress.say, only, workers)
-    written = stored.write(folder, *board_of(answers, workers))
+    written = stored.write(folder, *board_of(answers, workers, name))
     # Until the results are stored, the measurement can be continued.
     store.forget()
     return Measured(written)
@@ -69,20 +71,47 @@ def _count(text: str) -> int:
     return int(text)
 
 
+OPTIONS: Final = (
+    Option("only", "run only these engines, separated by commas", _names, "NAMES"),
+    Option("anew", "also run again the engines that are stored"),
+    Option("rejudge", "judge the stored trajectories again, and run nothing"),
+    Option("workers", "run N engines at a time; default: one for each core", _count),
+)
+
+
 STUDY: Final[Study[Board]] = Study(
     name="engines",
     title="physics engines on free motions: which setting is right to how many digits",
     duration="about 40 minutes on two cores once the engines are installed",
-    measure=_measure,
+    measure=partial(_measure, "engines"),
     find=stored.find,
     page=page.page,
     sheet=page.sheet,
     parts=lambda board: pages(board, entry_list()),
     draw=page.pictures,
-    options=(
-        Option("only", "run only these engines, separated by commas", _names, "NAMES"),
-        Option("anew", "also run again the engines that are stored"),
-        Option("rejudge", "judge the stored trajectories again, and run nothing"),
-        Option("workers", "run N engines at a time; default: one for each core", _count),
-    ),
+    options=OPTIONS,
+)
+
+
+def _under_loads(name: str, title: str) -> Study[Board]:
+    """Return the study of a board whose scenes have loads."""
+    return Study(
+        name=name,
+        title=title,
+        duration="about 20 minutes on two cores once the engines are installed",
+        measure=partial(_measure, name),
+        find=lambda folder: stored.find(folder, name),
+        page=loaded_page.page,
+        sheet=page.sheet,
+        needs_heyoka=False,
+        options=OPTIONS,
+    )
+
+
+SATELLITE: Final = _under_loads(
+    "satellite", "satellites under control: which engine and step, and how its load is given"
+)
+UNDERWATER: Final = _under_loads(
+    "underwater",
+    "underwater vehicles: added mass, weight, drag and current in engines and programs",
 )

@@ -8,7 +8,7 @@ of the file depend only on the numbers.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -20,17 +20,26 @@ import numpy as np
 from taylor_verify.records.json_text import DOCUMENT
 from taylor_verify.records.regular_file import bounded_bytes
 from taylor_verify_reports.studies.engines.answer import Answer
-from taylor_verify_reports.studies.engines.document import EngineRow
+from taylor_verify_reports.studies.engines.document import NOT_STORED, EngineRow
+from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.engines.replay import States
-from taylor_verify_reports.studies.engines.stored import TRAJECTORIES
+from taylor_verify_reports.studies.engines.stored import places
 
 
-def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
-    """Return the rows of answers with the places of their trajectories, and the file of trajectories."""
-    rows, arrays = [], dict[str, list[States]]()
+def packed(
+    answers: Iterable[Answer], scenes: Collection[str] | None = None
+) -> tuple[list[EngineRow], bytes]:
+    """Return the rows of answers with the places of their trajectories, and the file of trajectories.
+
+    The file has the trajectories of the newest version of each engine, the first in its rows; on some
+    ``scenes``, or on all.
+    """
+    rows, arrays, newest = [], dict[str, list[States]](), dict[str, str]()
     for answer in answers:
-        place = 0
-        if answer.states is not None:
+        place = NOT_STORED
+        is_newest = newest.setdefault(answer.row.engine, answer.row.version) == answer.row.version
+        is_asked = scenes is None or answer.row.scene in scenes
+        if answer.states is not None and is_newest and is_asked:
             stored = arrays.setdefault(answer.row.array, [])
             place = len(stored)
             stored.append(answer.states)
@@ -42,12 +51,15 @@ def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
     return rows, file.getvalue()
 
 
-def load(folder: Path) -> Mapping[str, States]:
-    """Return the arrays that are stored below a report folder, by their names.
+def load(folder: Path, board: str = BOARDS[0]) -> Mapping[str, States]:
+    """Return the arrays of a board that are stored below a report folder, by their names.
 
+    There are none before the board was measured in this checkout: most boards' files are not committed.
     Raises OSError for a file that cannot be read, and ValueError for one that is something else.
     """
-    place = folder / TRAJECTORIES
+    place = folder / places(board).trajectories
+    if not place.exists():
+        return {}
     try:
         content = BytesIO(bounded_bytes(place, "an NPZ of trajectories", DOCUMENT))
         with np.load(content, allow_pickle=False) as file:
@@ -59,15 +71,15 @@ def load(folder: Path) -> Mapping[str, States]:
 
 
 def states_of(arrays: Mapping[str, States], row: EngineRow) -> States | None:
-    """Return the trajectory (samples, columns) of a row; None for a run without a trajectory.
+    """Return the trajectory (samples, columns) of a row; None for a row without one, or without a file.
 
     Raises ValueError if the arrays lack it.
     """
-    if not row.is_judged:
+    if not row.is_stored or not arrays:
         return None
     array: Sequence[States] = arrays.get(row.array, np.empty(0))  # type: ignore[assignment]
     if not 0 <= row.place < len(array):
         raise ValueError(
-            f"expected a trajectory {row.array}[{row.place}], got none @ {TRAJECTORIES}"
+            f"expected a trajectory {row.array}[{row.place}], got none @ row {row.key}"
         )
     return array[row.place]

@@ -42,7 +42,7 @@ class Sweep:
 
 def sweeps(board: Board, entries: EntryList) -> list[Sweep]:
     """Return the sweep of every engine with several versions."""
-    titles = {row.name: row.title for row in entries.entry}
+    titles = entries.titles
     results = []
     for engine, title in titles.items():
         rows = [r for r in board.study.rows if r.engine == engine and not r.shipped and r.is_judged]

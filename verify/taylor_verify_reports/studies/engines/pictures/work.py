@@ -72,7 +72,7 @@ def panels(
     ``work`` returns the work of a row, which is multiplied by ``unit``. A panel of plain solvers alone is
     left out.
     """
-    titles = {row.name: row.title for row in entries.entry}
+    titles = entries.titles
     plain_solvers = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
     for number, (engine, group) in enumerate(

@@ -1,0 +1,70 @@
+# /// script
+# requires-python = ">=3.10"
+# dependencies = ["numpy>=2"]
+# ///
+"""remus100 of MSS and Python Vehicle Simulator sets entries of the Coriolis matrix of added mass to zero.
+
+Versions: MSS of 2024 (remus100.m of 2024-02-13); Python Vehicle Simulator of 2025 (version 2.0),
+remus100.py.
+
+Expected: without damping and weight the vehicle keeps the momentum of body and fluid in space, and its
+energy.
+
+Came: remus100.m says that it leaves out the couple of Munk in yaw and terms in pitch; with them go the
+forces that belong to them, (2, 6) and (6, 2). Within ten seconds the momentum changes by 35 %, the
+energy by nothing. remus100.py zeroes four entries, of couples alone: the momentum stays, and the energy
+changes by 77 %.
+
+Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration.
+remus100.m, `CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py,
+`CA[4][0] = 0`.
+"""
+
+import sys
+
+import numpy as np
+
+rigid = np.array([31.9005, 31.9005, 31.9005, 0.117383, 4.22073, 4.22073])
+added = np.array([0.863302, 30.2936, 30.2936, 0.0352491, 3.59386, 3.59386])
+NONE = []
+MSS = [(5, 3), (3, 5), (5, 1), (1, 5), (6, 1), (1, 6), (6, 2), (2, 6)]
+PYTHON = [(5, 1), (5, 4), (6, 1), (6, 2)]
+
+
+def cross(v):
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def coriolis(mass, v, zeroed=NONE):
+    x, y = np.split(mass * v, 2)
+    matrix = np.block([[np.zeros((3, 3)), -cross(x)], [-cross(x), -cross(y)]])
+    for row, column in zeroed:
+        matrix[row - 1, column - 1] = 0
+    return matrix
+
+
+def changes(zeroed):
+    """The largest changes of momentum and energy in ten seconds, by RK4 with steps of a millisecond."""
+
+    def rates(v):
+        return -(coriolis(rigid, v) + coriolis(added, v, zeroed)) @ v / (rigid + added)
+
+    v, h = np.array([1.5, 0.2, -0.1, 0.1, 0.05, 0.2]), 0.001
+    momentum, energy = [], []
+    for _ in range(10_000):
+        a = rates(v)
+        b = rates(v + h / 2 * a)
+        c = rates(v + h / 2 * b)
+        v = v + h / 6 * (a + 2 * b + 2 * c + rates(v + h * c))
+        momentum.append(np.linalg.norm(((rigid + added) * v)[:3]))
+        energy.append((rigid + added) @ v**2)
+    return max(momentum) / min(momentum) - 1, max(energy) / min(energy) - 1
+
+
+for name, zeroed in (
+    ("expected  all of C_A", NONE),
+    ("got       MSS", MSS),
+    ("got       Python", PYTHON),
+):
+    print(f"{name:22} momentum {changes(zeroed)[0]:+.1e}, energy {changes(zeroed)[1]:+.1e}")
+sys.exit(1 if abs(changes(MSS)[0]) > 1e-3 else 0)
