@@ -62,7 +62,7 @@ class LoadedBody:
             pieces=self.piece,
             blocks=self._layout.blocks,
             start=self.start,
-            framed=self._framed if self._scene.track and not loads.rotor else None,
+            framed=self._framed if self._scene.track else None,
             begin=self._begin if loads.rotor else None,
             exactly=self._exactly() if loads.held_values else None,
             own=self._layout.own,

@@ -25,7 +25,7 @@ from taylor_verify.scenes.loads.states import Instant
 class Piece(NamedTuple):
     """A tape, and the first time at which it is another one, in the direction of the motion; or None.
 
-    Where ``image`` is a tape, its outputs are omega and the entries of R, and stand for them in rows.
+    Where ``image`` is a tape, its outputs are omega, and stand in rows for the momentum.
     Those of ``functions`` are wanted all along the motion.
     """
 
@@ -47,8 +47,8 @@ class System:
     """The equations as a tape for each piece of time, and the state at time zero, ``start``, exactly.
 
     ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends
-    of the vectors that z is made of. ``framed`` makes the nine entries of R of a state; it is None where
-    the attitude is not tracked, or stands in an image.
+    of the vectors that z is made of. ``framed`` makes the nine entries of R of a state; None where the
+    attitude is not tracked.
 
     ``begin`` makes balls of the start at a time, where that is no exact one. If values are taken there,
     ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's

@@ -199,15 +199,14 @@ class Walk:
         return replace(row, since=since)
 
     def _imaged(self, box: Box, image: Tape, time: Fraction) -> Row:
-        """The row over a box, with omega and R by an image of it."""
+        """The row over a box, with omega by an image of it."""
         outputs = over_box(box, *self._outputs(Image(image, box, self._course.origin + time)))
-        return self._complete([*outputs[:3], *box.balls()[3:]], outputs[3:])
+        return self._complete([*outputs, *box.balls()[3:]])
 
-    def _complete(self, state: list[arb], turn: Sequence[arb] = ()) -> Row:
+    def _complete(self, state: list[arb]) -> Row:
         self._raise_peaks(state)
-        if self._system.framed is not None:
-            turn = self._system.framed(state)
-        return Row(state, list(turn), self._largest, dict(self._peaks))
+        turn = [] if self._system.framed is None else self._system.framed(state)
+        return Row(state, turn, self._largest, dict(self._peaks))
 
     # Steps.
 
