@@ -15,9 +15,9 @@ from flint import arb, ctx
 from mpmath import mp
 
 from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.operations import Bilinear
-from taylor_verify.exact.enclosure.posing import posed
-from taylor_verify.exact.enclosure.system import Forms
+from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
 from taylor_verify.exact.written import as_written
@@ -69,30 +69,27 @@ def test_the_balls_contain_lambs_coefficients(name: str) -> None:
     """By a certified quadrature of Lamb's own integrands: along each axis the added mass."""
     axes = SHAPES[name]
     with ctx.workprec(100):
-        balls = Forms.of(posed(as_written(shaped(name))))
+        body = as_written(shaped(name)).body
+        velocity = kind_of(body).equations(body).velocity
         volume = 4 * arb.pi() * ball(axes[0] * axes[1] * axes[2]) / 3
         for i in range(3):
             alpha = quadrature(axes, (i,))
             true = 1 / (volume + volume * alpha / (2 - alpha))
             assert true.rel_accuracy_bits() > 30
-            assert balls.velocity[i, i].overlaps(true)
-            assert balls.velocity[i, i].rel_accuracy_bits() > 90
+            assert ball(velocity[i, i]).overlaps(true)
+            assert ball(velocity[i, i]).rel_accuracy_bits() > 90
 
 
 def equations(scene: Scene, bits: int) -> list[arb]:
     system = posed(as_written(scene))
     with ctx.workprec(bits):
-        forms, factors = (
-            Forms.of(system),
-            filter(None, system.pieces(Fraction(0), True).tape.factors()),
-        )
-    numbers = [
+        factors = filter(None, system.pieces(Fraction(0), True).tape.factors())
+    return [
         number
         for each in factors
         for number in (each.constant, *(entry[0] for entry in each.products + each.sums))
         if number is not None
     ]
-    return [*numbers, *forms.spin.entries(), *forms.velocity.entries()]
 
 
 @pytest.mark.parametrize("bits", by_turns([100, 60, 700]))

@@ -13,12 +13,9 @@ from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball, balls
-from taylor_verify.exact.enclosure import box, placing, step, tube, walk
+from taylor_verify.exact.enclosure import box, step, tube, walk
 from taylor_verify.exact.enclosure.bounds import Bounds
-from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import column
 from taylor_verify.exact.rotation import rotation_matrix
@@ -71,28 +68,6 @@ def test_the_frame_of_a_box_follows_its_longest_edge_first() -> None:
                 assert abs(box._dot(one, other) - (i == j)) < 1e-12
 
 
-def norm_of_the_sum(form: arb_mat, deviations: tuple[list[arb_mat], arb_mat]) -> arb:
-    """The false bound of the integral of |W (z - p)|: smaller than the true one."""
-    spread, constant = deviations
-    total = constant
-    for k, part in enumerate(spread):
-        total = total + part * (arb(1) / (k + 1))
-    return placing.norm((form * total).entries())
-
-
-def test_the_norm_of_a_sum_is_no_bound_of_the_integral() -> None:
-    """Of a deviation whose direction turns, the norm of the integral is smaller, and a false bound."""
-    sharp = placing._accumulated
-    spread = [column([arb(e) for e in row]) for row in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-    constant = column([arb(0)] * 3)
-    one = arb_mat(3, 3, [int(i == j) for i in range(3) for j in range(3)])
-    with ctx.workprec(64):
-        # z - p = (1, s, s^2): the integral of its norm is 1.2936... , between the two.
-        true = mp.quad(lambda s: mp.sqrt(1 + s**2 + s**4), [0, 1])
-        assert float(norm_of_the_sum(one, (spread, constant))) < true
-        assert float(sharp(one, (spread, constant))) >= true
-
-
 @pytest.mark.parametrize(
     ("broken", "name"),
     by_turns(
@@ -101,8 +76,6 @@ def test_the_norm_of_a_sum_is_no_bound_of_the_integral() -> None:
             ("truncation", "kirchhoff"),
             ("radius", "euler"),
             ("radius", "loaded"),
-            ("turn", "euler"),
-            ("turn", "kirchhoff"),
         ],
         2,
     ),
@@ -116,7 +89,7 @@ def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.Mo
         with_few_orders(monkeypatch)
     assert is_contained(name, size=size)
     zero = column([arb(0)] * posed(CASES[name][0]).size)
-    carried, leg = box.carried, placing.leg
+    carried = box.carried
     match broken:
         case "truncation":
             monkeypatch.setattr(Bounds, "defect", lambda _: zero)
@@ -124,8 +97,6 @@ def test_a_bound_left_out_is_seen(broken: str, name: str, monkeypatch: pytest.Mo
             monkeypatch.setattr(
                 walk, "carried", lambda *a: replace(carried(*a), radius=carried(*a).radius / 64)
             )
-        case "turn":
-            monkeypatch.setattr(step, "leg", lambda *a: replace(leg(*a), turn_error=arb(0)))
     assert not is_contained(name, size=size)
 
 
@@ -145,36 +116,10 @@ def test_a_step_whose_bounds_do_not_close_is_halved(monkeypatch: pytest.MonkeyPa
     halved = enclosed(asked, Fraction(end), Fraction(0), 120)
     first, half, third, half_of_third, *_ = lengths
     assert (half, half_of_third) == (first / 2, third / 2)
-    assert usual.centre is not None
-    assert halved.centre is not None
-    rows = ([*row.state, *row.turn, *row.centre] for row in (usual, halved))
+    rows = ([*row.state, *row.turn] for row in (usual, halved))
     for one, other in zip(*rows, strict=True):
         assert one.overlaps(other)
         assert float(other.rad()) <= 4 * float(one.rad()) <= 1e-30
-
-
-def test_a_centre_whose_bound_is_left_out_leaves_its_balls(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A sphere that drifts without spin: the width of its speed, and nothing else, moves the centre."""
-    sphere = ImmersedBody(diagonal(vector(1, 1, 1)), ZERO_MATRIX, diagonal(vector(1, 1, 1)))
-    drifting = one_instant(sphere, Impulse(vector(1, 0, 0), vector(0, 0, 0)), "attitude", "centre")
-    system = posed(drifting)
-
-    def centre() -> arb:
-        with ctx.workprec(80):
-            start = balls(system.start)
-            start[0] += arb(0, 1e-6)
-            place = Place.of(TURN, vector(0, 0, 0))
-            run = Course.of(system, start, place, 80, 10_000)
-            ((_, row),) = run.rows([Fraction(3)])
-            assert row.centre is not None
-            turned: arb = sum((ball(TURN[i][0]) * c for i, c in enumerate(row.centre)), arb(0))
-            return turned
-
-    # Along the first body axis the centre moves by 3 (1 +- 1e-6).
-    assert centre().contains(arb("3.000002"))
-    original = step.leg
-    monkeypatch.setattr(step, "leg", lambda *a: replace(original(*a), path_error=arb(0)))
-    assert not centre().contains(arb("3.000002"))
 
 
 # The precision, and its end.

@@ -17,7 +17,7 @@ from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
@@ -61,13 +61,15 @@ def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
     system, derivatives, pending = posed(scene), [], list(times[::-1])
     with ctx.workprec(BITS):
         start = [ball(value) + arb(0, ball(SMALL).upper()) for value in system.start]
-        run = Course.of(system, start, None, BITS, 10_000)
+        run = Course.of(system, start, BITS, 10_000)
         box, now, length, total = Box.about(start), Fraction(0), times[-1], identity(system.size)
         while pending:
             step = run.stepper.step(box, now, length, times[-1] - now)
             assert step.flow is not None
             while pending and abs(pending[-1] - now) <= abs(step.length):
-                derivatives.append(step.flow.whole(ball((pending.pop() - now) / step.length)) * total)
+                derivatives.append(
+                    step.flow.whole(ball((pending.pop() - now) / step.length)) * total
+                )
             total = step.flow.whole(arb(1)) * total
             box = carried(box, step.state, step.tube, step.flow, system.spans)
             now, length = now + step.length, 2 * step.length

@@ -18,11 +18,10 @@ from taylor_verify.exact.enclosure import box, flow, tape
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.step import Step, Stepper
-from taylor_verify.exact.enclosure.system import System, always, column
+from taylor_verify.exact.enclosure.system import Piece, System, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape
-from taylor_verify.exact.equations import exact
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
@@ -37,7 +36,7 @@ def squared() -> System:
     graph = Graph()
     (z,) = graph.states(1)
     tape = Tape.of(graph, 1, [graph.product(z, z)])
-    return always(tape, (1,), (Fraction(1),), exact([[ZERO]] * 3), exact([[ZERO]])[:0])
+    return System(lambda time, is_later: Piece(tape, None), (1,), (Fraction(1),))
 
 
 SQUARE = squared()
@@ -54,7 +53,7 @@ def step_of(order: int = ORDER, apart: Fraction = WIDE) -> Step:
     """One step of z' = z^2, to order ``order``, from all within ``apart`` of 1."""
     with ctx.workprec(BITS), mock.patch.object(Stepper, "order", order):
         start = [arb(1, ball(apart))]
-        return Stepper.of(SQUARE, False, False).step(Box.about(start), ZERO, STEP, STEP)
+        return Stepper(SQUARE).step(Box.about(start), ZERO, STEP, STEP)
 
 
 def polynomial(step: Fraction, s: Fraction, order: int) -> Fraction:
@@ -94,7 +93,7 @@ def is_in_the_box(start: Fraction) -> bool:
     """Return True if the balls of a wide box of starts hold the motion from one of its ends."""
     with ctx.workprec(BITS):
         wide = [arb(1, ball(WIDE))]
-        run = Course.of(SQUARE, wide, None, BITS, 10_000)
+        run = Course.of(SQUARE, wide, BITS, 10_000)
         ((_, row),) = run.rows([STEP])
         return bool(row.state[0].contains(ball(square(start, STEP))))
 
@@ -189,7 +188,7 @@ def is_left(replaced: Any, patch: pytest.MonkeyPatch) -> bool:
         corner = [z + half for z in starts]
         wide = [z + arb(0, half.upper()) for z in starts]
         row, end = (
-            next(Course.of(system, start, None, BITS, 10_000).rows([Fraction(3)]))[1].state
+            next(Course.of(system, start, BITS, 10_000).rows([Fraction(3)]))[1].state
             for start in (wide, corner)
         )
         return not all(a.overlaps(b) for a, b in zip(row, end, strict=True))

@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Functions, Image
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
@@ -337,7 +337,7 @@ def reached(name: str, signs: tuple[int, ...] | None, bits: int) -> Row:
         start = system.start_balls()
         if signs is None:
             start[:3] = [z + arb(0, ball(2 * SPREAD)) for z in start[:3]]
-        course = Course.of(system, start, None, bits, 10_000)
+        course = Course.of(system, start, bits, 10_000)
         ((_, row),) = course.rows([Fraction(3, 2)])
     return row
 
@@ -378,7 +378,7 @@ def test_the_derivative_goes_through_instants() -> None:
     system = posed(scene)
     with ctx.workprec(80):
         start = [z + arb(0, arb(2) ** -60) for z in system.start_balls()]
-        course = replace(Course.of(system, start, None, 80, 1000), differentiates=True)
+        course = replace(Course.of(system, start, 80, 1000), differentiates=True)
         rows = [row for _, row in course.rows([Fraction(1), Fraction(5, 4), Fraction(3)])]
         slopes = [row.since.tolist() for row in rows if row.since is not None]
         # Of w at 1, 5/4 and 3 by w and m at the row before, which is read after its instant.

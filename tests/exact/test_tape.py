@@ -20,8 +20,8 @@ from mpmath import mp, mpf
 from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure import functions, kinks, operations, powers
 from taylor_verify.exact.enclosure.box import Box, within
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.operations import Operation, State
-from taylor_verify.exact.enclosure.posing import posed
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import System
@@ -81,7 +81,7 @@ def step_of(system: System, apart: Fraction, length: Fraction) -> tuple[Box, Ste
             arb(ball(w), ball(d).upper()) for w, d in zip(START, (apart, apart, 0), strict=True)
         ]
         box = Box.about(start)
-        return box, Stepper.of(system, False, False).step(box, Fraction(0), length, length)
+        return box, Stepper(system).step(box, Fraction(0), length, length)
 
 
 def stays(text: str, apart: Fraction, length: Fraction = Fraction(1, 4)) -> bool:

@@ -113,12 +113,12 @@ def system(scene: Scene, loads: Loads, elapsed: Fraction, orders: int) -> System
         _ = further.switches
     except ValueError as fault:
         raise Unreached(str(fault), elapsed) from None
-    return LoadedBody(scene, further, orders=orders).system()
+    return LoadedBody(replace(scene, track=frozenset()), further, orders).system()
 
 
 def parts_of(system: System, until: Fraction, begin: Fraction, bits: int) -> Iterator[Part]:
     """Yield the functions of a motion along it, part by part, at a precision that is the ambient one."""
-    course = Course.of(system, system.start_balls(), None, bits, _MOST_BITS)
+    course = Course.of(system, system.start_balls(), bits, _MOST_BITS)
     for time, step in replace(course, begin=begin).steps(until):
         yield from parts(time, step)
 

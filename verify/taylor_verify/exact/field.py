@@ -8,8 +8,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final, final
 
-import numpy as np
-
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
@@ -23,7 +21,6 @@ from taylor_verify.scenes.loads.loads import Piece as Texts
 
 # Minutes of work. Beside the end of a motion steps become short before anything else shows it.
 _MOST_STEPS: Final = 20_000
-_NO_FORM: Final = np.full((0, 0), Fraction(0), dtype=object)
 
 
 @final
@@ -51,7 +48,7 @@ class Field(Proving):
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         system = self._system_until(max(times.values(), key=abs))
-        course = Course.of(system, system.start_balls(), None, bits, most_bits)
+        course = Course.of(system, system.start_balls(), bits, most_bits)
         course = replace(course, begin=self.loads.origin, most_steps=_MOST_STEPS)
         yield from rows_of(course, times)
 
@@ -85,7 +82,7 @@ def _system(loads: Loads, tapes: dict[Any, Tape]) -> System:
     ends = tuple(range(1, len(names) + 1))
     start = tuple(entry for state in loads.states for entry in state.start or ())
     own: Mapping[str, range] = {name: range(k, k + 1) for k, name in enumerate(names)}
-    return System(piece, ends, start, _NO_FORM, _NO_FORM, own=own)
+    return System(piece, ends, start, own=own)
 
 
 def _tape(names: Sequence[str], texts: Texts) -> Tape:

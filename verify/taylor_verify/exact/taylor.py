@@ -15,14 +15,12 @@ from typing import Any, Final, final
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.placing import Place
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.stopping import MOST_STEPS, Unreached
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.proving import Proving, Size, SoFar, Times, rows_of
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.states import Held
 from taylor_verify.scenes.motion import Motion, State
@@ -70,8 +68,10 @@ class Enclosing(Proving):
         }
         if row.turn:
             vectors["attitude"] = [row.turn[i : i + 3] for i in (0, 3, 6)], Size(0.0)
-        if row.centre is not None:
-            vectors["centre"] = row.centre, Size(row.largest[-1])
+        if "centre" in self.scene.track:
+            block = len(vectors)
+            span = self._system.spans[block]
+            vectors["centre"] = row.state[span.start : span.stop], Size(row.largest[block])
         for name, peak in self.peaks(row).items():
             places = self._system.own[name]
             vectors[name] = row.state[places.start : places.stop], SoFar(peak)
@@ -97,8 +97,7 @@ class TaylorSolution(Enclosing):
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         system = self._system_until(max(times.values(), key=abs))
-        start, place = system.start_balls(), _place(self.scene, self.scene.initial, system)
-        course = Course.of(system, start, place, bits, most_bits)
+        course = Course.of(system, system.start_balls(), bits, most_bits)
         course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
         yield from rows_of(course, times)
 
@@ -145,20 +144,17 @@ class _Arcs(Enclosing):
     own: tuple[Mapping[str, Vector], ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        whole = Course.of(
-            self._system, (), _place(self.scene, self.starts[0], self._system), bits, most_bits
-        )
+        system = self._system
         for number, span in times.items():
             start, begin = self.starts[number], self.begins[number] if self.begins else Fraction(0)
-            if len(whole.system.start) > len(start.moving):
-                # The frame is in the state, and counts from the start of its own arc.
+            if system.size > len(start.moving):
+                # The frame counts from the start of its own arc.
                 system = posed(self._arc_scene(number, begin + span))
-                whole = Course.of(system, (), _place(self.scene, start, system), bits, most_bits)
                 state = system.start_balls(begin)
             else:
                 state = balls(kind_of(self.scene.body).state(start))
-            place = _place(self.scene, start, whole.system)
-            arc = replace(whole, start=state, place=place, origin=begin, has_values=True)
+            course = Course.of(system, state, bits, most_bits)
+            arc = replace(course, origin=begin, has_values=True)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
 
     def _arc_scene(self, number: int, end: Fraction) -> Scene:
@@ -169,11 +165,3 @@ class _Arcs(Enclosing):
         loads = scene.body.loads.reaching(end)
         loads = loads.starting(self.own[number]) if self.own else loads
         return replace(scene, body=scene.body.with_loads(loads))
-
-
-def _place(scene: Scene, initial: State, system: System) -> Place | None:
-    """The frame at the start in balls, at the ambient precision; None where it is not followed apart."""
-    if not scene.track or not system.is_framed:
-        return None
-    centre = kind_of(scene.body).centre(initial) if "centre" in scene.track else None
-    return Place.of(rotation_matrix(initial.attitude), centre)

@@ -12,10 +12,8 @@ from typing import Any
 from mpmath import mp
 
 from taylor_verify.exact import ellipsoid
-from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.elements import Element, Elements, elements
-from taylor_verify.exact.kirchhoff.screws import Screw, screws_beside
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.explain.loads import loads_document
@@ -61,9 +59,6 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     patience = Patience(_SECONDS)
     orbit = patience.made(partial(_orbit, scene), _NO_ORBIT)
     path = patience.made(partial(_loaded_path, scene, rung_named(rung)), None)
-    screws = patience.made(
-        lambda: [_screw(screw) for screw in screws_beside(scene)], list[dict[str, Any]]()
-    )
     loads = patience.made(lambda: path and loads_document(scene, path), None)
     too_long = _unjudged(scene, rung)
     judged, lacking = patience.made(partial(_judged, scene, rung_named(rung)), too_long)
@@ -91,7 +86,6 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
             **{name: None if lacking else getattr(first, name) for name in effort},
         },
         **orbit,
-        "screws": screws,
         "loads": loads,
         "condition": patience.made(lambda: condition(period) if judged.record else None, None),
         "outcome": first.outcome,
@@ -179,40 +173,6 @@ def _orbit(scene: Scene) -> Mapping[str, Any]:
 def _element(element: Element) -> dict[str, str]:
     words = {name: getattr(element, name) for name in ("unit", "meaning", "source")}
     return {"name": element.name, "value": _written(element.value), **words}
-
-
-def _screw(screw: Screw) -> dict[str, Any]:
-    """Return a steady screw with the F and the turning of the start, its numbers as text.
-
-    ``axis`` (body axes, unit length), ``velocity`` of the origin along it, ``turning`` Omega about it in
-    radians/time, ``pitch`` the advance in one turn, velocity 2 pi/turning (null of a translation);
-    ``mu`` the eigenvalue that exact.kirchhoff.screws has; ``spectrum`` the exponents of a small
-    disturbance as [re, im], beside the two that are 0; ``stability`` what is proven of it.
-    """
-    # Balls of 128 bits and more: their midpoints have more digits than are written.
-    with mp.workdps(2 * _DIGITS):
-        axis = [midpoint(n) for n in screw.axis()]
-        turning = mp.convert(screw.turn) * mp.norm([midpoint(entry) for entry in screw.x])
-        velocity = midpoint(screw.speed)
-        c2, c0 = midpoint(screw.c2), midpoint(screw.c0)
-        root = mp.sqrt(mp.mpc(c2 * c2 - 4 * c0))
-        # The larger of the two s^2 has no cancellation, and the other is their product over it.
-        larger = max((-c2 - root) / 2, (-c2 + root) / 2, key=abs)
-        roots = [mp.sqrt(square) for square in (larger, c0 / larger if larger else larger)]
-        return {
-            "axis": [_written(n) for n in axis],
-            "velocity": _written(velocity),
-            "turning": _written(turning),
-            "pitch": _written(2 * mp.pi * velocity / turning) if turning else None,
-            "mu": _written(midpoint(screw.mu)),
-            "spectrum": [
-                [_written(part) for part in (sign * s.real, sign * s.imag)]
-                for s in roots
-                for sign in (1, -1)
-            ],
-            "stability": screw.stability.name.lower().replace("_", " "),
-            "sentence": screw.stability.value,
-        }
 
 
 def _written(value: Any) -> str:

@@ -17,14 +17,12 @@ from typing import Final, NamedTuple, final
 import numpy as np
 from flint import arb, arb_mat
 
-from taylor_verify.exact.balls import balls, midpoint
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.flow import Flow, Steps, products
 from taylor_verify.exact.conditioning.path_times import MOST_OF_RUN, times_of_run
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Image
-from taylor_verify.exact.enclosure.loaded import LoadedBody
-from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.proving import Times
@@ -148,20 +146,14 @@ class _Run(Enclosing):
             assert row.since is not None
             self.visited.append((self._point(row, self.elapsed[place]), _floats(row.since)))
             if place in times:
-                yield place, self._in_space(row)
+                yield place, row
             if not any(times.values()):
                 # The start belongs to both directions of time.
                 return
 
-    @cached_property
-    def _system(self) -> System:
-        scene = self.scene
-        assert scene.body.loads is not None
-        return LoadedBody(scene, scene.body.loads, frame(scene)).system()
-
     def _course(self, bits: int, most_bits: int) -> Iterator[Row]:
         start = self._system.start_balls()
-        course = Course.of(self._system, _widened(start, bits), None, bits, most_bits)
+        course = Course.of(self._system, _widened(start, bits), bits, most_bits)
         course = replace(course, differentiates=True, begin=self.scene.clock.start)
         yield replace(course, start=start).first_row()
         if later := self.elapsed[1:]:
@@ -177,19 +169,6 @@ class _Run(Enclosing):
         slopes = _floats(Image(image, Box.about(row.state), time).outputs().slopes)
         momentum = kind_of(self.scene.body).momentum_matrix(self.scene.body).astype(float)
         return _Point(state, -momentum @ slopes[:d, own], has_wheels=True)
-
-    def _in_space(self, row: Row) -> Row:
-        """The row with the frame that its state has."""
-        initial, track = self.scene.initial, self.scene.track
-        d, has_centre = len(initial.moving), "centre" in track
-        if not track or row.turn:
-            return row
-        start = arb_mat([*map(balls, rotation_matrix(initial.attitude))])
-        turn = (start * arb_mat(rotation_rows(row.state[d : d + 4]))).entries()
-        centre = row.state[d + 4 : d + 7] if has_centre else None
-        # The centre is the block behind the turn.
-        largest = (*row.largest[:-1], row.largest[d // 3 + 1])
-        return replace(row, turn=turn, centre=centre, largest=largest)
 
 
 def _widened(start: Sequence[arb], bits: int) -> list[arb]:

@@ -8,7 +8,6 @@ from fractions import Fraction
 
 from flint import arb
 
-from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.stopping import MOST_STEPS
 from taylor_verify.exact.enclosure.system import System
@@ -19,7 +18,7 @@ from taylor_verify.exact.enclosure.walk import Row, Walk
 class Course:
     """Steps from a start, away from it, at one precision; to be used at that precision.
 
-    ``start`` are balls about the state; ``place`` is the frame there, or None where it is not tracked.
+    ``start`` are balls about the state.
     More than ``most_bits`` bits, or ``most_steps`` steps, are never asked for. ``begin`` is what a clock
     shows at the start, for messages alone; ``origin`` is the start's time since that of the scene.
     With ``differentiates`` the rows have derivatives; then no component of the start is exact. Held
@@ -28,7 +27,6 @@ class Course:
 
     stepper: Stepper
     start: Sequence[arb]
-    place: Place | None
     bits: int
     most_bits: int
     most_steps: int = MOST_STEPS
@@ -38,13 +36,9 @@ class Course:
     has_values: bool = False
 
     @classmethod
-    def of(
-        cls, system: System, start: Sequence[arb], place: Place | None, bits: int, most_bits: int
-    ) -> Course:
+    def of(cls, system: System, start: Sequence[arb], bits: int, most_bits: int) -> Course:
         """The course of a system, at the ambient precision of ``bits`` bits."""
-        has_centre = place is not None and place.centre is not None
-        stepper = Stepper.of(system, place is not None, has_centre)
-        return cls(stepper, start, place, bits, most_bits)
+        return cls(Stepper(system), start, bits, most_bits)
 
     @property
     def system(self) -> System:

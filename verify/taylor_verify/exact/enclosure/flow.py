@@ -20,7 +20,7 @@ from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent, identity
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.derivative import Jacobian, jacobian
-from taylor_verify.exact.enclosure.system import column, intervals, magnitudes, reached
+from taylor_verify.exact.enclosure.system import intervals, magnitudes
 from taylor_verify.exact.enclosure.tube import Tube, accumulated
 
 # The derivative of the flow is wanted to its leading digits alone: orders beyond are bounded, not computed.
@@ -32,13 +32,9 @@ _MOST_GROWTH: Final = 100.0
 
 @dataclass(frozen=True)
 class Flow:
-    """V(s) = sum of the terms s^k, and ``defect`` about it: the rows of the components that move.
-
-    ``spread`` bounds how far each term moves a state of the box from its point, in all components.
-    """
+    """V(s) = sum of the terms s^k, and ``defect`` about it: the rows of the components that move."""
 
     terms: list[arb_mat]
-    spread: list[arb_mat]
     defect: arb_mat
 
     def at(self, s: arb) -> arb_mat:
@@ -66,10 +62,9 @@ def flow(bounds: Bounds, box: Box, tube: Tube) -> Flow:
         for j in range(1, k + 1):
             total = total + inner[k - j] * terms[j]
         terms.append(total * (h / (k + 1)))
-    spread = [box.apart, *(_padded(reached(term, box.apart), n) for term in terms[1:])]
     left = flow_defect(slopes, terms) * h.abs_upper()
     growth = _part(tube.growth, moving, moving)
-    return Flow(terms, spread, accumulated(growth, magnitudes(left), order=1))
+    return Flow(terms, accumulated(growth, magnitudes(left), order=1))
 
 
 def _part(matrix: arb_mat, rows: int, columns: int) -> arb_mat:
@@ -77,11 +72,6 @@ def _part(matrix: arb_mat, rows: int, columns: int) -> arb_mat:
     if (rows, columns) == (matrix.nrows(), matrix.ncols()):
         return matrix
     return arb_mat(rows, columns, [e for row in matrix.tolist()[:rows] for e in row[:columns]])
-
-
-def _padded(vector: arb_mat, length: int) -> arb_mat:
-    """The column with zeros at its end."""
-    return column([*vector.entries(), *[arb(0)] * (length - vector.nrows())])
 
 
 def _order(growth: arb_mat, rows: Rows) -> int:

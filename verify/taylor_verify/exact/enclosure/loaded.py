@@ -1,54 +1,55 @@
-"""The equations of a body under loads that its scene writes down, and of the scene's own states.
+"""The equations of a body, under loads that its scene writes down or without, and of own states.
 
-Loads that depend on the attitude bring it into the state: as the quaternion e since the start, e(0) = 1, so
-that R = R_0 R(e) with the attitude R_0 of the start. Those that depend on the centre bring it in too. Then
-follow the scene's own states, a block for each: those with a rate, and those whose values are held.
+An attitude that the scene tracks or a load depends on is in the state: as the quaternion e since the start,
+e(0) = 1, so that R = R_0 R(e) with the attitude R_0 of the start. So is the centre. Then follow the scene's
+own states, a block for each: those with a rate, and those whose values are held.
 
 Under a rotor h of texts the state is H = I omega + h in place of omega, H' = H x omega + M with
-omega = K (H - h): so no derivative of h is needed, which may have kinks. A tracked attitude is then in the
-state too, because the spin is no linear function of it.
+omega = K (H - h): so no derivative of h is needed, which may have kinks.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-from flint import arb
+from flint import arb, arb_mat
 
-from taylor_verify.exact.balls import balls
+from taylor_verify.exact.balls import ball_matrix, balls
 from taylor_verify.exact.enclosure.box import Box, over_box
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.layout import Layout
 from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
 from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.system import Piece, System, Taken
-from taylor_verify.exact.equations import Exact
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.scene import Scene
 
 
+def posed(scene: Scene) -> System:
+    """The equations of a scene's body, and where its motion begins."""
+    return LoadedBody(scene, scene.body.loads or Loads(scene.model, ())).system()
+
+
 class LoadedBody:
     """The tapes of one scene, each made when a motion comes to its piece of time.
 
-    ``frame`` names what is in the state though no load may depend on it: the attitude, or also the centre.
     ``orders`` are those of the rates of change that functions of the motion are wanted with.
     """
 
-    def __init__(
-        self, scene: Scene, loads: Loads, frame: frozenset[str] = frozenset(), orders: int = 0
-    ) -> None:
+    def __init__(self, scene: Scene, loads: Loads, orders: int = 0) -> None:
         self._scene, self._loads, self._orders = scene, loads, orders
         self._kind = kind_of(scene.body)
         self._layout = Layout(
             size=len(self._kind.state(scene.initial)),
-            turns=bool(loads.reads_attitude or frame or (loads.rotor and scene.track)),
-            travels=loads.reads_centre or "centre" in frame,
+            turns=bool(loads.reads_attitude or scene.track),
+            travels=loads.reads_centre or "centre" in scene.track,
             declared=loads.states,
         )
         self._tapes: dict[Any, PieceTapes] = {}
@@ -56,15 +57,12 @@ class LoadedBody:
         self._tapes_from: dict[Fraction | None, PieceTapes] = {}
 
     def system(self) -> System:
-        equations, loads = self._kind.equations(self._scene.body), self._loads
-        spin, velocity = map(self._widened, (equations.spin, equations.velocity))
+        loads = self._loads
         return System(
             pieces=self.piece,
             blocks=self._layout.blocks,
             start=self.start,
-            spin=spin,
-            velocity=velocity,
-            current=loads.current if any(loads.current) else (),
+            framed=self._framed if self._scene.track else None,
             begin=self._begin if loads.rotor else None,
             exactly=self._exactly() if loads.held_values else None,
             own=self._layout.own,
@@ -105,10 +103,12 @@ class LoadedBody:
             start[:3] = [None if h is None else z + h for z, h in zip(start, wheels, strict=False)]
         return start
 
-    def _widened(self, form: Exact) -> Exact:
-        more = len(self.start) - self._layout.size
-        wide: Exact = np.hstack([form, np.full((len(form), more), Fraction(0), dtype=object)])
-        return wide
+    def _framed(self, state: Sequence[arb]) -> list[arb]:
+        """The entries of R = R_0 R(e)."""
+        start = ball_matrix(rotation_matrix(self._scene.initial.attitude))
+        turn = list(self._layout.turn(state))
+        entries: list[arb] = (start * arb_mat(rotation_rows(turn))).entries()
+        return entries
 
     def piece(self, elapsed: Fraction, is_later: bool) -> Piece:
         """The tape from an elapsed time on."""

@@ -128,9 +128,8 @@ class PieceTapes:
 
     @cached_property
     def image(self) -> Tape:
-        """The spin, and the nine entries of R where the scene tracks the attitude."""
-        rotation = self._frame.rotation if self._scene.track else []
-        return self._tape([*self._spin, *(entry for row in rotation for entry in row)])
+        """The spin."""
+        return self._tape(self._spin)
 
     @cached_property
     def wheels(self) -> Tape:

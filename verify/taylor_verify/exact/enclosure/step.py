@@ -10,16 +10,14 @@ from typing import Final
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent
-from taylor_verify.exact.enclosure.coefficients import Rows, frame_series, scaled
+from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.crossing import least_length, plan
 from taylor_verify.exact.enclosure.flow import Flow, flow
 from taylor_verify.exact.enclosure.kinks import Kink
-from taylor_verify.exact.enclosure.placing import Leg, leg
 from taylor_verify.exact.enclosure.series import Series
-from taylor_verify.exact.enclosure.system import Forms, Piece, System
+from taylor_verify.exact.enclosure.system import Piece, System
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong, Tube, tube
 from taylor_verify.numbers.precision import floor_log2, power_of_two
@@ -52,7 +50,6 @@ class Step:
     state: Rows
     tube: Tube
     flow: Flow | None
-    leg: Leg | None
     terms: list[arb]
     is_flat: bool
     reach: float | None
@@ -61,23 +58,9 @@ class Step:
 
 @dataclass(frozen=True)
 class Stepper:
-    """Makes steps of a system at the ambient precision, which is that of the forms.
-
-    ``is_placed`` and ``has_centre`` say whether the frame and its origin are followed.
-    """
+    """Makes steps of a system at the ambient precision."""
 
     system: System
-    forms: Forms
-    sizes: Forms
-    is_placed: bool
-    has_centre: bool
-
-    @classmethod
-    def of(cls, system: System, is_placed: bool, has_centre: bool) -> Stepper:
-        forms = Forms.of(system)
-        with ctx.workprec(BOUND_BITS):
-            sizes = forms.magnitudes()
-        return cls(system, forms, sizes, is_placed, has_centre)
 
     @property
     def order(self) -> int:
@@ -95,7 +78,7 @@ class Stepper:
         if piece.end is not None and abs(piece.end - now) < abs(left):
             left = piece.end - now
         order = self._enough(reach, guess, left)
-        series, frame = self._fitted(piece.tape, box, now, guess, left, order)
+        series = self._fitted(piece.tape, box, now, guess, left, order)
         for _ in range(_HALVINGS):
             with ctx.workprec(BOUND_BITS):
                 bounds = Bounds(series)
@@ -106,14 +89,12 @@ class Stepper:
                     around = None
             excess = 0.0 if around is None or series.flat else self._excess(series, around)
             if around is not None and excess <= 0:
-                way = self._leg(series, frame, around, moving, box)
                 terms, is_flat = bounds.terms(), bool(series.flat)
                 radius = reach if is_flat else self._reach(series)
                 state, step = series.rows, series.step
-                return Step(step, state, around, moving, way, terms, is_flat, radius, piece)
+                return Step(step, state, around, moving, terms, is_flat, radius, piece)
             share = Fraction(1, 2) if around is None else _cut(Fraction(1), -excess / self.order)
             series.rescale(series.step * share)
-            frame = scaled(frame, ball(share))
         raise StepTooLong
 
     def _enough(self, reach: float | None, guess: Fraction, left: Fraction) -> int:
@@ -142,20 +123,12 @@ class Stepper:
                 excess = max(excess, lost - size + ctx.prec - SPARE_BITS)
         return excess
 
-    def _leg(
-        self, series: Series, frame: Rows, around: Tube, moving: Flow | None, box: Box
-    ) -> Leg | None:
-        if not self.is_placed:
-            return None
-        rows, h = series.rows, series.length
-        return leg(self.forms, self.sizes, rows, frame, h, around, moving, box)
-
     # The length.
 
     def _fitted(
         self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction, order: int
-    ) -> tuple[Series, Rows]:
-        """The series of state and frame of a step at whose end they fall below the last bit."""
+    ) -> Series:
+        """The series of a step at whose end it falls below the last bit."""
         first = self._first(tape, box, now, guess, left)
         try:
             series = Series(tape, box.point, now, first, order)
@@ -166,11 +139,9 @@ class Stepper:
             # It lies within the rounding of the start.
             least = least_length(self._usual(tape, box, now, guess))
             return self._flat(tape, box, now, left, frozenset((kink.node,)), least)
-        frame = self._frame(series)
-        length = self._length(box, series, frame, left)
+        length = self._length(box, series, left)
         if length != first:
             series.rescale(length)
-            frame = scaled(frame, ball(length / first))
         if tape.has_kinks:
             usual = abs(length)
             if length == left:
@@ -181,8 +152,7 @@ class Stepper:
                 return self._flat(tape, box, now, left, ahead.flat, abs(ahead.length))
             if ahead.length != length:
                 series.rescale(ahead.length)
-                frame = scaled(frame, ball(ahead.length / length))
-        return series, frame
+        return series
 
     def _flat(
         self,
@@ -192,21 +162,15 @@ class Stepper:
         left: Fraction,
         flat: frozenset[int],
         length: Fraction,
-    ) -> tuple[Series, Rows]:
+    ) -> Series:
         """The series of a short step across kinks, with fewer orders."""
         step = min(length, abs(left)) * (1 if left > 0 else -1)
         order = max(_LEAST_ORDER, self.order // 4)
         while True:
             try:
-                series = Series(tape, box.point, now, step, order, flat)
-                return series, self._frame(series)
+                return Series(tape, box.point, now, step, order, flat)
             except Kink as kink:
                 flat |= {kink.node}
-
-    def _frame(self, series: Series) -> Rows:
-        if not self.is_placed:
-            return []
-        return frame_series(self.forms, series.rows, series.length, self.has_centre)
 
     def _first(
         self, tape: Tape, box: Box, now: Fraction, guess: Fraction, left: Fraction
@@ -227,11 +191,9 @@ class Stepper:
         """Return a guess of the length of a step that no end cuts short."""
         return abs(self._first(tape, box, now, guess, guess))
 
-    def _length(self, box: Box, series: Series, frame: Rows, left: Fraction) -> Fraction:
+    def _length(self, box: Box, series: Series, left: Fraction) -> Fraction:
         rows = series.rows
         tests = [self._root_test_of(rows)]
-        if frame:
-            tests.append(self.root_test(frame, [range(4)]))
         if timed := series.of_time():
             tests.append(self.root_test(timed, [range(len(timed[0]))]))
         factor = min(*tests, _log2(left) - _log2(series.step))

@@ -1,8 +1,7 @@
 """The equations of a scene as tapes, one for each piece of time between two switches of its loads.
 
-The state is z = omega, or z = (x, y), and what written loads add (`loaded`). The body's spin Omega = W z
-and, for a solid in a fluid, the velocity of its origin U = Y z are linear in z, but for a body with a rotor
-of texts. All of it is exact; numbers become balls at the precision of a course.
+The state is z = omega, or z = (x, y), and what the scene and its loads add (`loaded`). All of it is exact;
+numbers become balls at the precision of a course.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, vanishes
-from taylor_verify.exact.equations import Equations, Exact
+from taylor_verify.exact.equations import Equations
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.states import Instant
 
@@ -26,7 +25,7 @@ from taylor_verify.scenes.loads.states import Instant
 class Piece(NamedTuple):
     """A tape, and the first time at which it is another one, in the direction of the motion; or None.
 
-    Where ``image`` is a tape, its outputs are omega and the entries of R, and stand for them in rows.
+    Where ``image`` is a tape, its outputs are omega, and stand in rows for the momentum.
     Those of ``functions`` are wanted all along the motion.
     """
 
@@ -48,8 +47,8 @@ class System:
     """The equations as a tape for each piece of time, and the state at time zero, ``start``, exactly.
 
     ``pieces`` takes an elapsed time and whether the motion goes on to later ones. ``blocks`` are the ends
-    of the vectors that z is made of; ``spin`` and ``velocity`` are W and Y. The centre drifts with the
-    ``current`` of the fluid, if there is one.
+    of the vectors that z is made of. ``framed`` makes the nine entries of R of a state; None where the
+    attitude is not tracked.
 
     ``begin`` makes balls of the start at a time, where that is no exact one. If values are taken there,
     ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's
@@ -60,9 +59,7 @@ class System:
     pieces: Callable[[Fraction, bool], Piece]
     blocks: tuple[int, ...]
     start: Vector
-    spin: Exact
-    velocity: Exact
-    current: Vector = ()
+    framed: Callable[[Sequence[arb]], list[arb]] | None = None
     begin: Callable[[Fraction], list[arb]] | None = None
     exactly: Sequence[Any] | None = None
     own: Mapping[str, range] = field(default_factory=dict)
@@ -72,11 +69,6 @@ class System:
     def start_balls(self, time: Fraction = Fraction(0)) -> list[arb]:
         """The start in balls at the ambient precision, for a motion that begins at an elapsed time."""
         return balls(self.start) if self.begin is None else self.begin(time)
-
-    @property
-    def is_framed(self) -> bool:
-        """True if omega is linear in z, so that the frame may be followed apart from the state."""
-        return self.begin is None
 
     @property
     def others(self) -> list[range]:
@@ -93,13 +85,6 @@ class System:
         return [range(first, last) for first, last in pairwise((0, *self.blocks))]
 
 
-def always(
-    tape: Tape, blocks: tuple[int, ...], start: Vector, spin: Exact, velocity: Exact
-) -> System:
-    """The system of one tape for all times."""
-    return System(lambda time, is_later: Piece(tape, None), blocks, start, spin, velocity)
-
-
 def natural(graph: Graph, equations: Equations, z: Sequence[Sum]) -> list[Sum]:
     """N(z) = constant + linear z + z.hessian z/2."""
     rates = [Sum(constant) for constant in equations.constant]
@@ -110,25 +95,6 @@ def natural(graph: Graph, equations: Equations, z: Sequence[Sum]) -> list[Sum]:
             share = Fraction(1, 2) if a == b else Fraction(1)
             rates[i] += graph.product(z[a], z[b]).times(share * number)
     return rates
-
-
-@dataclass(frozen=True)
-class Forms:
-    """W and Y in balls, or bounds of them."""
-
-    spin: arb_mat
-    velocity: arb_mat
-
-    @classmethod
-    def of(cls, system: System) -> Forms:
-        """The balls at the ambient precision."""
-        return cls(
-            *(arb_mat([balls(row) for row in form]) for form in (system.spin, system.velocity))
-        )
-
-    def magnitudes(self) -> Forms:
-        """Upper bounds of the magnitudes."""
-        return Forms(magnitudes(self.spin), magnitudes(self.velocity))
 
 
 def magnitudes(matrix: arb_mat) -> arb_mat:

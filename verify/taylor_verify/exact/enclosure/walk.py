@@ -26,7 +26,6 @@ from taylor_verify.exact.enclosure.flow import Flow
 from taylor_verify.exact.enclosure.image import Functions, Image
 from taylor_verify.exact.enclosure.jumps import OnJump
 from taylor_verify.exact.enclosure.operations import Domain
-from taylor_verify.exact.enclosure.placing import Place
 from taylor_verify.exact.enclosure.step import Step, size_of
 from taylor_verify.exact.enclosure.stopping import Coarse, Unreached, Watch
 from taylor_verify.exact.enclosure.tape import Tape
@@ -50,15 +49,14 @@ _progress: Final = logging.getLogger("taylor_verify.progress")
 class Row:
     """The state at one time in balls. ``turn`` is R, nine entries row by row, and may be empty.
 
-    ``largest`` is log2 of the largest size so far of each block of the state, and last of the centre. A
-    block is as large as the terms of its rate make it in a step, though they may cancel. ``peaks`` are
+    ``largest`` is log2 of the largest size so far of each block of the state. A block is as large as the
+    terms of its rate make it in a step, though they may cancel. ``peaks`` are
     lower bounds of the largest norm so far of each own state. ``since`` is the derivative of the state by
     the one at the row before it, or at the start, if the course has derivatives.
     """
 
     state: list[arb]
     turn: list[arb]
-    centre: list[arb] | None
     largest: tuple[float, ...]
     peaks: Mapping[str, arb] = field(default_factory=dict)
     since: arb_mat | None = None
@@ -103,7 +101,7 @@ class Walk:
             # A motion that is of own states alone is lost by these.
             self._system.others or self._system.spans,
         )
-        self._box, self._place = Box.about(course.start), course.place
+        self._box = Box.about(course.start)
         self._now, self._last = Fraction(0), times[-1]
         self._pending = list(times[::-1])
         self._steps, self._lengths = 0, list[Fraction]()
@@ -182,12 +180,9 @@ class Walk:
     def _row(self, step: Step, time: Fraction) -> Row:
         """The row of a time that the step passes."""
         share = ball((time - self._now) / step.length)
-        place = None
-        if self._place is not None and step.leg is not None:
-            place = step.leg.place(self._place, share)
         if step.piece.image is None:
             state = within(self._box, step.state, step.tube, step.flow, share)
-            row = self._complete(state, _framed(place), time)
+            row = self._complete(state)
         else:
             row = self._imaged(self._carried(step, share), step.piece.image, time)
         since = None if self._since is None else self._since.at_row(step.flow, share)
@@ -197,26 +192,21 @@ class Walk:
         """The row of the time that is reached."""
         image = self._system.pieces(self._course.origin + self._now, self._last >= 0).image
         if image is None:
-            row = self._complete(self._box.balls(), _framed(self._place), self._now)
+            row = self._complete(self._box.balls())
         else:
             row = self._imaged(self._box, image, self._now)
         since = None if self._since is None else self._since.at_row(None, _ONE)
         return replace(row, since=since)
 
     def _imaged(self, box: Box, image: Tape, time: Fraction) -> Row:
-        """The row over a box, with omega and R by an image of it."""
+        """The row over a box, with omega by an image of it."""
         outputs = over_box(box, *self._outputs(Image(image, box, self._course.origin + time)))
-        return self._complete([*outputs[:3], *box.balls()[3:]], (outputs[3:], None), time)
+        return self._complete([*outputs, *box.balls()[3:]])
 
-    def _complete(
-        self, state: list[arb], frame: tuple[list[arb], list[arb] | None], time: Fraction
-    ) -> Row:
-        turn, centre = frame
-        if centre is not None and self._system.current:
-            drift = self._system.current
-            centre = [c + ball(v * time) for c, v in zip(centre, drift, strict=True)]
+    def _complete(self, state: list[arb]) -> Row:
         self._raise_peaks(state)
-        return Row(state, turn, centre, self._largest, dict(self._peaks))
+        turn = [] if self._system.framed is None else self._system.framed(state)
+        return Row(state, turn, self._largest, dict(self._peaks))
 
     # Steps.
 
@@ -255,8 +245,6 @@ class Walk:
         if self._since is not None:
             self._since.to(step.flow, _ONE)
         self._box = self._carried(step)
-        if self._place is not None and step.leg is not None:
-            self._place = step.leg.carried(self._place)
         self._now, self._reach = self._now + step.length, step.reach
         pairs = zip(self._exact, step.piece.tape.still, strict=True)
         self._exact = [number if is_still else None for number, is_still in pairs]
@@ -303,16 +291,14 @@ class Walk:
     # Sizes.
 
     def _sizes(self) -> tuple[float, ...]:
-        """log2 of the size of each block, and of the centre."""
-        centre = [] if self._place is None or self._place.centre is None else self._place.centre
-        sizes = [size_of(self._box.point, span) for span in self._system.spans]
-        return (*sizes, size_of(centre, range(len(centre))))
+        """log2 of the size of each block."""
+        return tuple(size_of(self._box.point, span) for span in self._system.spans)
 
     def _terms(self, step: Step) -> tuple[float, ...]:
         """log2 of what the terms of the rates make of each block in a step, none cancelled."""
         with ctx.workprec(BOUND_BITS):
             added = [size * ball(step.length) for size in step.terms]
-        return (*(size_of(added, span) for span in self._system.spans), float("-inf"))
+        return tuple(size_of(added, span) for span in self._system.spans)
 
     def _grow(self) -> None:
         self._largest = _larger(self._largest, self._sizes())
@@ -344,7 +330,3 @@ class Walk:
 
 def _larger(first: Sequence[float], second: Sequence[float]) -> tuple[float, ...]:
     return tuple(map(max, zip(first, second, strict=True)))
-
-
-def _framed(place: Place | None) -> tuple[list[arb], list[arb] | None]:
-    return ([], None) if place is None else place.balls()

@@ -24,8 +24,7 @@ from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
-from taylor_verify.exact.kirchhoff.screws import is_steady
-from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.kirchhoff.solid import is_steady, solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER

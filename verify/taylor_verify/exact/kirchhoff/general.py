@@ -1,8 +1,7 @@
 """The elements of the orbit of a solid that is not Clebsch's body, and those of every free solid.
 
-Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; the
-numbers of the case that the motion is, such as a period, two rates or a pitch; and of the steady screws
-beside it, which of them are stable.
+Three numbers at least, T, F and G; a fourth integral where the body is of an integrable family; and the
+numbers of the case that the motion is, such as a period, two rates or a pitch.
 """
 
 from __future__ import annotations
@@ -21,15 +20,12 @@ from taylor_verify.exact.kirchhoff.displaced import centred, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import family_of
 from taylor_verify.exact.kirchhoff.plane import Plane, swing
 from taylor_verify.exact.kirchhoff.reduced import Reduced
-from taylor_verify.exact.kirchhoff.screws import Screw, Stability, is_steady, screws_beside
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.quotients import rates
 from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.exact.written import as_rationals
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -49,10 +45,6 @@ _FAMILIES: Final[Mapping[str, str]] = {
     "chaplygin": "Chaplygin's family, where FG = 0",
     "sokolov": "Sokolov's family",
 }
-_NOT_THREE: Final = (
-    "Of the steady screws that turn as the start does two have the same mu: every axis of a plane "
-    "is one."
-)
 _UNBUILT: Final = "The energy is not of Clebsch's form about any axis: no closed form is built."
 _UNSOLVED: Final = (
     "The energy is not of Clebsch's form about any axis: no closed form is built, and for a body "
@@ -119,9 +111,7 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
     if family is not None:
         name, _ = family
         sentences.append(f"Conserved too: {name}, the fourth integral of {_FAMILIES[name]}.")
-    return Elements(
-        kind, settled(numbers, digits), (*sentences, *_screw_story(as_rationals(scene)))
-    )
+    return Elements(kind, settled(numbers, digits), tuple(sentences))
 
 
 def _own(solved: Case, working: int) -> list[Element]:
@@ -205,35 +195,3 @@ def _weber_rates(curve: Curve, working: int) -> list[Element]:
         Element(f"{which}_rate", rate, "radians/time", meaning.format(which), _CURVE)
         for which, rate in zip(("first", "second"), rates(curve, working), strict=True)
     ]
-
-
-def _screw_story(scene: Scene) -> list[str]:
-    """The stability of the three screws beside the motion, and whether the start is one of them."""
-    body, start = solid(scene)
-    if not body.is_free or not any(start.linear):
-        return []
-    sentences = ["The start is itself a steady screw."] if is_steady(body, start) else []
-    beside = screws_beside(scene)
-    if not beside:
-        return [*sentences, _NOT_THREE]
-    sentences.append(
-        "Steady screws with this F that turn about it as the start does, lambda = Omega.x/F^2 = "
-        f"{float_text(beside[0].turn)}: three, by rising mu."
-    )
-    for number, screw in enumerate(beside, 1):
-        axis = ", ".join(f"{float(entry.mid()):.3g}" for entry in screw.axis())
-        sentences.append(
-            f"Screw {number}, along ({axis}), advancing at {float(screw.speed.mid()):.3g}, is "
-            f"{screw.stability.value}{_pace(screw)}."
-        )
-    return sentences
-
-
-def _pace(screw: Screw) -> str:
-    """The rates that go with the statement."""
-    if screw.stability is Stability.UNDECIDED:
-        return ""
-    if screw.stability is Stability.UNSTABLE:
-        return f", by e in {1 / float(screw.growth().mid()):.3g} units of time"
-    slow, fast = (float(rate.mid()) for rate in screw.swings())
-    return f" (swings at {slow:.3g} and {fast:.3g} radians per unit of time)"

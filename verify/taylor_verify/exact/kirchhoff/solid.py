@@ -28,6 +28,15 @@ def velocities(body: ImmersedBody, start: Impulse) -> tuple[Vector, Vector]:
     return both[:3], both[3:]
 
 
+def is_steady(body: ImmersedBody, start: Impulse) -> bool:
+    """Return True if x and y stay as they are at the start, exactly, under the constant loads."""
+    x, y = start.linear, start.angular
+    U, Omega = velocities(body, start)
+    force = tensors.plus(tensors.cross(x, Omega), body.force)
+    torque = tensors.plus(tensors.cross(y, Omega), tensors.cross(x, U))
+    return not any(force + tensors.plus(torque, body.couple))
+
+
 def short_digits(U: Vector, start: Impulse, elapsed: Sequence[Time]) -> int:
     """The digits by which |y|/F, whose change is the way across F, exceeds the centre itself.
 
