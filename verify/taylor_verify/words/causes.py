@@ -10,6 +10,8 @@ _NOTHING: Final = 1e-7
 # A change below this part of the largest one is none: the entry agrees.
 _AGREES: Final = 1e-4
 _MOST_DIGITS: Final = 15
+# An entry below this part of the largest one is 0, rounded.
+_ROUNDED: Final = 1e-13
 # A factor so near to a whole number is one.
 _WHOLE: Final = 1e-6
 
@@ -65,6 +67,7 @@ def _pace(clock: float) -> str:
 def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> str:
     """Return the entries that changed, each with its relative change, and how well the others agree."""
     largest = max(map(abs, right)) or 1.0
+    right = [0.0 if abs(old) < _ROUNDED * largest else old for old in right]
     parts = [
         abs(value - old) / (abs(old) or largest) for old, value in zip(right, values, strict=True)
     ]
