@@ -34,7 +34,7 @@ from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR
-from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.answers import LikelyCause, MissingLoad
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -43,7 +43,7 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.words.causes import sentence
+from taylor_verify.words.causes import missing_load_line, sentence
 
 if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
@@ -85,7 +85,13 @@ class Explained:
 
     causes: tuple[LikelyCause, ...] = ()
     is_motion: bool = False
-    notes: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
+    missing_load: tuple[MissingLoad, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The facts, and the load that is missing, as sentences."""
+        return (*self.facts, *map(missing_load_line, filter(None, [self.missing_load])))
 
 
 def causes_of_file(
@@ -104,8 +110,8 @@ def causes_of_file(
             known = explained(answer)
             # A convention reaches the rounding of what it reads: no load is missing there.
             is_read = not _MOVING.isdisjoint(conventions.readings)
-            return replace(known, notes=facts if is_read else (*facts, *known.notes))
-    return Explained(notes=facts)
+            return replace(known, facts=facts, missing_load=() if is_read else known.missing_load)
+    return Explained(facts=facts)
 
 
 def _no_rotation(file: TrajectoryFile) -> tuple[str, ...]:
@@ -150,11 +156,12 @@ def explained(answer: Answer) -> Explained:
         return Explained()
     causes = [*causes, *plugged_causes(answer)] if answer.has_rates else _of_frame(answer, causes)
     is_motion = bool(causes) and not any(map(_is_convention, causes))
-    notes: tuple[str, ...] = ()
+    missing: tuple[MissingLoad, ...] = ()
     if not causes and answer.has_rates:
         with suppress(*_SILENT):
-            notes = tuple(filter(None, (missing_load(answer),)))
-    return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
+            missing = missing_load(answer)
+    likely = tuple(_likely(cause, answer) for cause in causes)
+    return Explained(likely, is_motion, missing_load=missing)
 
 
 def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
