@@ -172,7 +172,7 @@ class ImmersedBody(Body):
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
     constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; its coefficients are
-    irrational.
+    irrational. ``added`` is the part of the mass matrix that a scene calls added mass, where it does.
     """
 
     linear: Matrix
@@ -181,6 +181,7 @@ class ImmersedBody(Body):
     force: Vector = ZERO_VECTOR
     couple: Vector = ZERO_VECTOR
     ellipsoid: Ellipsoid | None = None
+    added: Matrix | None = None
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
 
@@ -325,6 +326,9 @@ class Ellipsoid:
             coupling=ZERO_MATRIX,
             angular=tensors.diagonal(angular),
             ellipsoid=self,
+            added=tensors.diagonal(
+                tuple(map(stand_in, (*self.inertias.added_mass, *self.inertias.added_inertia)))
+            ),
         )
 
 
