@@ -1,7 +1,7 @@
 """The folder in which a site is made: what was finished before an interrupt is there the next time.
 
 It lies in the user's cache, one for each report and each text of this package. A drawing has the digest of
-its picture for a name. Pages are Sphinx's own to go on with, as long as their sources are the same; other
+its picture for a name. What Sphinx has read of the pages is kept, as long as all sources are the same; other
 sources begin anew. The folder is removed when the site is whole.
 """
 
