@@ -1,8 +1,8 @@
 """The folder in which a site is made: what was finished before an interrupt is there the next time.
 
 It lies in the user's cache, one for each report and each text of this package. A drawing has the digest of
-its picture for a name. What Sphinx has read of the pages is kept, as long as all sources are the same; other
-sources begin anew. The folder is removed when the site is whole.
+its picture for a name. What Sphinx has read of the pages is kept, as long as all sources are the same;
+others begin anew. The folder is removed when the site is whole.
 """
 
 from __future__ import annotations
