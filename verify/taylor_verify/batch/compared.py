@@ -29,10 +29,9 @@ class ComparedJudgement(Judgement):
         return self.comparison.passed and (self.comparison.decides or super().passed)
 
     def raise_for_failure(self) -> None:
-        """Raise NotPassed, with the lines of the judgement or of the comparison, unless both passed."""
-        if not self.comparison.decides:
-            super().raise_for_failure()
+        """Raise NotPassed, with the lines of the comparison or else of the judgement, unless it passed."""
         self.comparison.raise_for_failure()
+        super().raise_for_failure()
 
 
 def earlier(baseline: str | PathLike[str] | Mapping[str, Any] | None, gate: str) -> Earlier | None:
