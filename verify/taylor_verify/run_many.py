@@ -11,15 +11,15 @@ from taylor_verify import types
 
 def run_many(
     scenes: (
-        types.Selection
-        | Iterable[types.Scene | str | PathLike[str]]
-        | types.Scene
-        | str
+        str
         | PathLike[str]
+        | types.Scene
+        | types.Selection
+        | Iterable[types.Scene | str | PathLike[str]]
         | None
     ) = None,
     solver: types.Solver | Callable[..., Any] | str = "taylor",
-    rungs: Iterable[str] | str | None = None,
+    rungs: str | Iterable[str] | None = None,
     jobs: int | None = None,
     executor: types.Executor | None = None,
     resume: bool = False,
