@@ -9,13 +9,13 @@ from random import Random
 import pytest
 from builders.turns import by_turns
 
+from taylor_verify.chain import posed
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import exact_value, rung
-from taylor_verify.run import posed
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor

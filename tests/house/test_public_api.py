@@ -6,8 +6,11 @@ import inspect
 import pickle
 import subprocess
 import sys
+from collections.abc import Iterator
+from dataclasses import is_dataclass
+from itertools import chain
 from types import FunctionType
-from typing import Any, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 import pytest
 from builders.turns import by_turns
@@ -107,6 +110,25 @@ def test_the_hints_of_a_function_are_types(function: FunctionType) -> None:
     hints = get_type_hints(function)
     assert hints.keys() == {*inspect.signature(function).parameters, "return"}
     assert not any(isinstance(hint, str) for hint in hints.values())
+
+
+def named_in(hint: Any) -> Iterator[type]:
+    """The classes of this package that an annotation names."""
+    if isinstance(hint, type) and hint.__module__.startswith("taylor_verify"):
+        yield hint
+    inner = hint if isinstance(hint, list) else get_args(hint)
+    yield from chain.from_iterable(map(named_in, inner))
+
+
+def test_the_hints_of_what_functions_take_and_return_are_types() -> None:
+    """So are those of every dataclass within: pydantic reads them all to check an answer."""
+    waiting, known = [*FUNCTIONS], set[object]()
+    while waiting:
+        each = waiting.pop()
+        if each not in known and (isinstance(each, FunctionType) or is_dataclass(each)):
+            known.add(each)
+            waiting += chain.from_iterable(map(named_in, get_type_hints(each).values()))
+    assert {taylor_verify.Motion, taylor_verify.Trajectory, taylor_verify.Judgement} <= known
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)

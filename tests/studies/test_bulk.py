@@ -18,6 +18,7 @@ from taylor_verify.cli import main
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies import archive, bulk
+from taylor_verify_reports.studies.study import Progress
 
 SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]
@@ -71,6 +72,26 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
     assert {name: (report / name).read_bytes() for name in removed} == removed
     assert {file: file.read_bytes() for file in committed} == committed
     assert missing(report).data == ""
+
+
+def test_what_was_made_before_an_interrupt_stays(
+    report: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of each kind one scene is finished, and only the other one is lacking afterwards."""
+    without_bulk(report)
+
+    def interrupted(work: Any, asked: Sequence[Any], *, ended: Any, **_: Any) -> None:
+        ended(asked[0], work(asked[0]))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("taylor_verify.batch.runs.run_all", interrupted)
+    monkeypatch.setattr("taylor_verify_reports.studies.documents.run_all", interrupted)
+    for kind, lacks in missing(report).lacking[1:]:
+        with pytest.raises(KeyboardInterrupt):
+            list(kind.make(report, lacks, Progress()))
+    assert missing(report).data == (
+        "4 tables for searching, 2 records of runs, 1 portraits of scenes, 1 exact trajectories as JSON"
+    )
 
 
 def test_records_of_other_verdicts_are_made_again(report: Path) -> None:

@@ -139,9 +139,9 @@ def check(
             from taylor_verify.run_many import run_many
 
             return run_many(scene, answer, [rung_named(rung).name], tolerance=tolerance)
-        from taylor_verify.run import run
+        from taylor_verify.chain import judge_scene
 
-        return run(scene, answer, rung, tolerance)
+        return judge_scene(scene, answer, rung, tolerance)
     if isinstance(scene, list | tuple):
         raise ValueError(
             "expected a callable with several scenes, got a trajectory @ solve_or_file"

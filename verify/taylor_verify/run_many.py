@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
 from taylor_verify import types
-
-if TYPE_CHECKING:
-    pass
 
 
 def run_many(
     scenes: (
-        types.Selection
-        | Iterable[types.Scene | str | PathLike[str]]
-        | types.Scene
-        | str
+        str
         | PathLike[str]
+        | types.Scene
+        | types.Selection
+        | Iterable[types.Scene | str | PathLike[str]]
         | None
     ) = None,
     solver: types.Solver | Callable[..., Any] | str = "taylor",
-    rungs: Iterable[str] | str | None = None,
+    rungs: str | Iterable[str] | None = None,
     jobs: int | None = None,
     executor: types.Executor | None = None,
     resume: bool = False,
     out: str | PathLike[str] | None = None,
     progress: types.Progress | None = None,
     tolerance: types.Tolerances | types.Tolerance = None,
+    *,
+    baseline: str | PathLike[str] | Mapping[str, Any] | None = None,
+    gate: Literal["bound", "baseline"] = "bound",
 ) -> types.Judgements:
     """Solve many scenes on some rungs and judge the answers.
 
@@ -62,6 +62,8 @@ def run_many(
         ends. ``str(job)`` names the scene and its rungs.
     tolerance
         The error that is allowed, as that of `run`. A name is that of a quantity of some of the scenes.
+    baseline, gate
+        Earlier verdicts to compare with, and what decides, as those of `run`.
 
     Returns
     -------
@@ -74,8 +76,8 @@ def run_many(
     records.faults.Refused
         For scenes that cannot be read, with every fault of all of them.
     ValueError
-        For what is no solver, no rung, no number of processes or no tolerance, and for any other argument
-        of a wrong kind.
+        For what is no solver, no rung, no number of processes, no tolerance or no baseline, and for any
+        other argument of a wrong kind.
     batch.lock.Occupied
         If another run writes to ``out``.
     batch.failure.Failed
@@ -93,8 +95,10 @@ def run_many(
     stands under ``if __name__ == "__main__":``.
     """
     from contextlib import nullcontext
+    from dataclasses import replace
     from pathlib import Path
 
+    from taylor_verify.batch.compared import earlier
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import judge_all
     from taylor_verify.batch.lock import alone_in
@@ -106,6 +110,7 @@ def run_many(
 
     if faults := list(_faults(solver, jobs, executor, resume, out, progress)):
         raise ValueError("\n".join(faults))
+    before = earlier(baseline, gate)
     chosen = as_solver(solver)
     name = solver if isinstance(solver, str) else chosen.name
     if isinstance(scenes, Selection) and rungs is not None:
@@ -117,6 +122,9 @@ def run_many(
         asked = selection.jobs(solver if isinstance(solver, str) else chosen, tolerated)
         judgements = judge_all(asked, progress, jobs, executor, resume, folder)
         results = Judgements(tuple(judgements), selection, name)
+        if before is not None:
+            comparison = before.compare_as_baseline(results, gate == "baseline")
+            results = replace(results, comparison=comparison)
         if folder is not None:
             try:
                 write_report(folder, results)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from taylor_verify.records.verdict import Verdict as Verdict
     from taylor_verify.scenes.motion import Motion as Motion
     from taylor_verify.scenes.scene import Scene as Scene
+    from taylor_verify.solvers.files.file import TrajectoryFile as TrajectoryFile
     from taylor_verify.solvers.solver import Solver as Solver
     from taylor_verify.solvers.trajectory import Trajectory as Trajectory
     from taylor_verify.tradeoff.recommendation import Recommendation as Recommendation
@@ -57,6 +58,7 @@ else:
         "Tolerances": "taylor_verify.judge.tolerances",
         "TradeOff": "taylor_verify.tradeoff.trade_off",
         "Trajectory": "taylor_verify.solvers.trajectory",
+        "TrajectoryFile": "taylor_verify.solvers.files.file",
         "Verdict": "taylor_verify.records.verdict",
     }
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike, fspath
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.batch import earlier_file
 from taylor_verify.batch.differences import (
@@ -15,10 +16,13 @@ from taylor_verify.batch.differences import (
     compare,
     finite,
 )
-from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
+
+if TYPE_CHECKING:
+    from taylor_verify.batch.judgements import Judgements
 
 _EDITED: Final = "is not what a run has written, by its own sum: nothing passes by it"
 _WITHOUT_SUM: Final = "has no sum: nothing says that it is what a run has written"
@@ -44,6 +48,7 @@ class Comparison:
     notes: tuple[str, ...] = ()
     decides: bool = False
     doubted: bool = False
+    source: str = ""
 
     @property
     def exit_status(self) -> int:
@@ -59,6 +64,13 @@ class Comparison:
 
     def __bool__(self) -> bool:
         return self.passed
+
+    def document(self) -> AgainstBaseline:
+        """Return the comparison as a document of `--json` has it."""
+        kinds = (self.failures, self.undecided, self.changes)
+        regressions, undecided, changes = (tuple(map(str, kind)) for kind in kinds)
+        rows = (self.compared, regressions, undecided, changes, self.notes)
+        return AgainstBaseline(self.source, *rows, "baseline" if self.decides else "bound")
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError with a line for each difference, unless it passed."""
@@ -104,7 +116,7 @@ class Earlier:
         )
         changes = report.towards(Direction.BETTER, Direction.CHANGED, Direction.UNAVAILABLE)
         compared = report.compared, failures, undecided, changes, before, (*self._notes, *notes)
-        return Comparison(*compared, decides, doubted=bool(self.edited))
+        return Comparison(*compared, decides, bool(self.edited), self.source)
 
     def compare_as_published(self, results: Judgements | Judgement) -> Comparison:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
@@ -114,7 +126,7 @@ class Earlier:
             *(each for each in Direction if each is not Direction.UNAVAILABLE)
         )
         compared = report.compared, failures, (), (), before, self._notes
-        return Comparison(*compared, doubted=bool(self.edited))
+        return Comparison(*compared, doubted=bool(self.edited), source=self.source)
 
 
 def compare_with_baseline(
@@ -137,6 +149,15 @@ def read_baseline(file: str | PathLike[str]) -> Earlier:
     something else.
     """
     return Earlier(fspath(file), *earlier_file.load(fspath(file)))
+
+
+def earlier_document(document: Mapping[str, Any]) -> Earlier:
+    """Return the rows of the document of `run --json`. Raises ValueError for any other."""
+    try:
+        content = json.dumps(document).encode()
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"expected a JSON document, got {error} @ baseline") from None
+    return Earlier("the baseline", *earlier_file.of_document(content, "baseline"))
 
 
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:
@@ -164,7 +185,7 @@ def _of_one_file(
     Whoever writes a file for each run gives each a name of its own.
     """
     files = {v.setting for v in results.verdicts if v.solver == Recorded.name}
-    if isinstance(results, Judgements) or len(files) != 1:
+    if not isinstance(results, Judgement) or len(files) != 1:
         return before, ()
     (name,) = files
     asked = {(v.scene, v.solver, v.rung) for v in results.verdicts}

@@ -18,23 +18,30 @@ def load(file: Path | str) -> tuple[tuple[Verdict, ...], bool | None]:
     """Return the verdicts of a file, and whether they were edited; None where no sum says it.
 
     The sum is that of the document, or stands in a file beside verdicts.json. Raises
-    records.faults.Refused for a file that cannot be read. Raises ValueError, which names what was expected
-    and where, for a file with other content: a half-understood baseline would pass everything.
+    records.faults.Refused for a file that cannot be read, and ValueError as `of_document` does.
     """
-    content = read_bytes(Path(file), "a file of verdicts", DOCUMENT)
+    place = Path(file)
+    content = read_bytes(place, "a file of verdicts", DOCUMENT)
+    verdicts, edited = of_document(content, place)
+    beside = place.with_name(store.SUM)
+    if place.name == store.VERDICTS and beside.exists():
+        line = read_bytes(beside, "a sum", DOCUMENT)
+        edited = line != sums.line(content, store.VERDICTS).encode()
+    return verdicts, edited
+
+
+def of_document(content: bytes, place: object) -> tuple[tuple[Verdict, ...], bool | None]:
+    """Return the verdicts of a document, and whether they were edited; None where no sum says it.
+
+    Raises ValueError, which names what was expected and where, for other content: a half-understood
+    baseline would pass everything.
+    """
     try:
         placed = dict(_placed(parsed(content, _Rows)))
         check_rows(placed)
     except ValueError as fault:
-        raise ValueError(f"{fault} @ {file}") from fault
-    return tuple(placed.values()), _is_edited(content, Path(file))
-
-
-def _is_edited(content: bytes, file: Path) -> bool | None:
-    beside = file.with_name(store.SUM)
-    if file.name != store.VERDICTS or not beside.exists():
-        return sums.is_edited(content)
-    return read_bytes(beside, "a sum", DOCUMENT) != sums.line(content, file.name).encode()
+        raise ValueError(f"{fault} @ {place}") from fault
+    return tuple(placed.values()), sums.is_edited(content)
 
 
 @dataclass(frozen=True)

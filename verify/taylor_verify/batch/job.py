@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
-
-if TYPE_CHECKING:
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.solver import Solver
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, overload
 
+from taylor_verify.batch.comparison import Comparison
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
 from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.costs import total
@@ -16,6 +17,7 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
+from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.words.account import account
 
@@ -30,12 +32,14 @@ _MOST_SHOWN: Final = 40
 class Judgements(Sequence[Judgement]):
     """A sequence of Judgement, in the order of the scenes and of the rungs within each.
 
-    It equals a list of the same judgements. Its truth value is ``passed``.
+    It equals a list of the same judgements. ``comparison`` is that with a baseline, where one was given.
+    Its truth value is ``passed``.
     """
 
     judgements: tuple[Judgement, ...]
     selection: Selection
     solver: str
+    comparison: Comparison | None = None
 
     @overload
     def __getitem__(self, index: int) -> Judgement: ...
@@ -84,9 +88,16 @@ class Judgements(Sequence[Judgement]):
 
         0 all is as it should be; 1 a gate failed, or an extreme was not as expected; 3 something is
         undecided and nothing failed. Where nothing was judged: 2 if a package is missing, 0 if this machine
-        lacks every number format asked for, 3 otherwise.
+        lacks every number format asked for, 3 otherwise. The comparison with a baseline counts too, and
+        alone where it decides.
         """
-        return self.agreement.exit_status
+        own = self.agreement.exit_status
+        if self.comparison is None or own == 2:
+            return own
+        if self.comparison.decides:
+            return self.comparison.exit_status
+        # A failure is graver than what is undecided.
+        return next((k for k in (1, 3) if k in (own, self.comparison.exit_status)), 0)
 
     @property
     def unjudged(self) -> str:
@@ -105,6 +116,8 @@ class Judgements(Sequence[Judgement]):
         """
         if self.passed:
             return
+        if self.comparison is not None:
+            self.comparison.raise_for_failure()
         others = [v for v in self.unexpected if v.verdict is not Status.PASS]
         lines = account(others, self.causes, self.notes)
         lines += [str(mismatch) for mismatch in self.agreement.mismatches]
@@ -134,7 +147,9 @@ class Judgements(Sequence[Judgement]):
             document["causes"] = [complete(cause) for cause in self.causes]
         if self.notes:
             document["notes"] = list(self.notes)
-        return document
+        if self.comparison is not None:
+            document["baseline"] = complete(self.comparison.document())
+        return with_sum(document)
 
     @property
     def causes(self) -> tuple[LikelyCause, ...]:

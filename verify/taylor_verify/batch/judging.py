@@ -107,8 +107,8 @@ def _may_end_the_process(job: Job) -> bool:
 
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
+    from taylor_verify.chain import judge_scene
     from taylor_verify.records.faults import Refused
-    from taylor_verify.run import run
     from taylor_verify.scenes.reading.reader import as_scene
 
     with failing(job.name, Refused):
@@ -116,7 +116,7 @@ def run_job(job: Job) -> list[Judgement]:
     judgements = []
     for rung in job.rungs:
         with failing(f"{job.name} on {rung}", Refused):
-            judgements.append(run(scene, job.solver, rung, job.tolerances))
+            judgements.append(judge_scene(scene, job.solver, rung, job.tolerances))
     return judgements
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
-
-if TYPE_CHECKING:
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.solver import Solver
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.solver import Solver
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,6 @@ def _several(asked: Any, what: str) -> Sequence[Any]:
     """Return what was asked for as a sequence: a text is one name, and no row of letters."""
     from taylor_verify.numbers.precision import Rung
     from taylor_verify.records.faults import brief
-    from taylor_verify.scenes.scene import Scene
 
     if isinstance(asked, str | PathLike | Scene | Rung):
         return [asked]

@@ -16,7 +16,6 @@ from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wron
 from taylor_verify.cli.folders import not_written, writable_file
 from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.sums import with_sum
@@ -73,11 +72,7 @@ def concluded(
     if asked.baseline is not None:
         source = asked.baseline.source
         comparison = asked.baseline.compare_as_baseline(results, asked.by_baseline)
-        departures = (comparison.failures, comparison.undecided, comparison.changes)
-        regressions, undecided, changes = (tuple(map(str, kind)) for kind in departures)
-        rows = (comparison.compared, regressions, undecided, changes, comparison.notes)
-        gate = "baseline" if comparison.decides else "bound"
-        content["baseline"] = complete(AgainstBaseline(source, *rows, gate))
+        content["baseline"] = complete(comparison.document())
         messages += _messages(source, comparison)
         if not comparison.compared:
             messages.append(_nothing_shared(asked.baseline.verdicts, results.verdicts))

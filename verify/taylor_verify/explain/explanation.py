@@ -11,6 +11,7 @@ from typing import Any
 
 from mpmath import mp
 
+from taylor_verify.chain import judge_scene
 from taylor_verify.exact import ellipsoid
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.elements import Element, Elements, elements
@@ -31,7 +32,6 @@ from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.run import run
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
@@ -118,7 +118,7 @@ def _loaded_path(scene: Scene, rung: Rung) -> Path | None:
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
     """Return the judgement of heyoka's answer, or, without heyoka, of the exact motion and a warning."""
-    judged = run(scene, "taylor", rung)
+    judged = judge_scene(scene, "taylor", rung)
     first = judged.verdicts[0]
     lacks_heyoka = first.outcome == Outcome.NO_PACKAGE.value
     exact = _judged_exact_motion(scene, rung) if lacks_heyoka else None

@@ -86,9 +86,11 @@ def add_records(folder: Path, records: Iterable[Record]) -> tuple[Path, ...]:
     `write` does.
     """
     data = folder / FOLDER
-    stale = [] if has_own_records(folder) else _own_records(data)
     stamp = {STAMP: line(_stored_bytes(data / VERDICTS), f"../{VERDICTS}")}
-    return replace_files(data, {**_record_texts(records), **stamp}, stale=stale)
+    # Before the new stamp is there, so that an interrupt leaves none that it would not fit.
+    for record in () if has_own_records(folder) else _own_records(data):
+        record.unlink(missing_ok=True)
+    return replace_files(data, {**_record_texts(records), **stamp})
 
 
 def has_own_records(folder: Path) -> bool:

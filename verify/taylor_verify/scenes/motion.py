@@ -6,16 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
+
+import numpy as np
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
-
-if TYPE_CHECKING:
-    import numpy as np
 
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 IDENTITY: Quaternion = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))

@@ -10,11 +10,12 @@ from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mpmath import mp
 
+from taylor_verify import types
 from taylor_verify.models.evaluated import wheels
 from taylor_verify.models.form import labelled
 from taylor_verify.models.frame import rotation
@@ -28,9 +29,6 @@ from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
-
-if TYPE_CHECKING:
-    from taylor_verify.solvers.files.file import TrajectoryFile
 
 
 class Outcome(Enum):
@@ -156,7 +154,7 @@ class Trajectory(Sampled):
     seconds: float = 0.0
     compile_seconds: float = 0.0
     inner_seconds: float | None = None
-    file: TrajectoryFile | None = None
+    file: types.TrajectoryFile | None = None
     times: Sequence[Fraction] = ()
 
     @property

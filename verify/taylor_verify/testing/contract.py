@@ -55,11 +55,11 @@ def check_reader(reader: Any, example: str | PathLike[str]) -> None:
 
 
 def _use_solver(content: Any) -> None:
-    from taylor_verify.run import solve
+    from taylor_verify.chain import solve_scene
     from taylor_verify.solvers.function import solver_of
     from taylor_verify.solvers.trajectory import Outcome
 
-    trajectory = solve(_SCENE, solver_of(content, "a plug-in"))
+    trajectory = solve_scene(_SCENE, solver_of(content, "a plug-in"))
     if trajectory.outcome is not Outcome.FINISHED and not trajectory.outcome.is_unavailable:
         raise BrokenContract(f"it {trajectory.outcome.value} ({trajectory.detail})")
 

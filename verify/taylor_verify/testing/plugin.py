@@ -157,10 +157,10 @@ def _judgement(
     __tracebackhide__ = True
     from dataclasses import replace
 
+    from taylor_verify.chain import judge_scene
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.records.faults import Refused
-    from taylor_verify.run import run
     from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.callback import Callback
     from taylor_verify.solvers.registry import as_solver
@@ -181,7 +181,7 @@ def _judgement(
         exact_rung, asked = rung_named(rung), tolerances(tolerance, [scene])
     except (Refused, ValueError) as fault:
         raise pytest.fail.Exception(str(fault)) from None
-    judgement = run(scene, solver, exact_rung, asked)
+    judgement = judge_scene(scene, solver, exact_rung, asked)
     return judgement, raised[0] if raised else None
 
 

@@ -16,15 +16,23 @@ Document = dict[str, Any]
 
 
 def documents(
-    make: Callable[[Scene], Document], names: Sequence[str], finished: Callable[[str], None]
+    make: Callable[[Scene], Document],
+    names: Sequence[str],
+    finished: Callable[[str], None],
+    keep: Callable[[Document], object] | None = None,
 ) -> list[Document]:
     """Return ``make(scene)`` for many scenes, in the order given.
 
-    ``finished`` is called with the name of each scene as it ends. Raises Failed for one that came to
-    nothing.
+    As each scene ends, ``keep`` is called with its document and ``finished`` with its name. Raises Failed
+    for one that came to nothing.
     """
-    work = partial(document, make)
-    return run_all(work, names, ended=lambda name, _: finished(name), raises=Failed)
+
+    def ended(name: str, document: Document) -> None:
+        if keep is not None:
+            keep(document)
+        finished(name)
+
+    return run_all(partial(document, make), names, ended=ended, raises=Failed)
 
 
 def document(make: Callable[[Scene], Document], name: str) -> Document:

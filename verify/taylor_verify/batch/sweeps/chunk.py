@@ -9,12 +9,12 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.batch.failure import fault
 from taylor_verify.batch.store import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
+from taylor_verify.chain import judge_scene
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.reason import Cause, Reason, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.run import run
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome
@@ -79,7 +79,7 @@ def explain(chunk: Chunk) -> Explained:
     (question,) = chunk.questions.questions(chunk.first, chunk.stop)
     assert isinstance(question.scene, Scene)
     try:
-        judged = run(question.scene, chunk.solver, chunk.rung, chunk.tolerances)
+        judged = judge_scene(question.scene, chunk.solver, chunk.rung, chunk.tolerances)
     except Exception:
         # Its row is undecided, and says what broke.
         return Explained(chunk.first, ())
@@ -95,7 +95,7 @@ def _verdicts(question: Question, chunk: Chunk) -> Sequence[Verdict]:
         )
         return [_unjudged(question, chunk, Status.REFUSED, *refused)]
     try:
-        return run(
+        return judge_scene(
             question.scene, chunk.solver, chunk.rung, chunk.tolerances, causes=False
         ).verdicts
     except Exception as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records import store
 from taylor_verify.records.runs import Run
@@ -12,6 +12,10 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import TABLES
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
+
+if TYPE_CHECKING:
+    from taylor_verify.batch.job import Job
+    from taylor_verify.judge.judgement import Judgement
 
 _SOLVER: Final = "taylor"
 # A run that was never judged has no record.
@@ -53,19 +57,25 @@ def _runs_lacking(report: Published) -> tuple[Run, ...]:
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
-    """Run the published runs once more to write their records."""
+    """Run the published runs once more; the records of a scene are written as its runs end."""
+    from taylor_verify.batch.failure import Failed
     from taylor_verify.batch.job import Job
-    from taylor_verify.batch.judging import judge_all
+    from taylor_verify.batch.judging import run_job
+    from taylor_verify.batch.runs import run_all
 
     rungs: dict[str, list[str]] = {}
     for run in lacking:
         rungs.setdefault(run.scene, []).append(run.rung)
     jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
-    with progress.jobs() as bar:
-        results = judge_all(jobs, bar)
-    return store.add_records(
-        folder, [result.record for result in results if result.record is not None]
-    )
+    finished, written = progress.counting(len(jobs)), dict[Path, None]()
+
+    def keep(job: Job, judged: Sequence[Judgement]) -> None:
+        records = [one.record for one in judged if one.record is not None]
+        written.update(dict.fromkeys(store.add_records(folder, records)))
+        finished(str(job))
+
+    run_all(run_job, jobs, ended=keep, raises=Failed)
+    return tuple(written)
 
 
 STUDY: Final = Study(

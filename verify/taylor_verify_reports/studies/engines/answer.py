@@ -15,11 +15,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.chain import posed
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.json_text import complete, parsed
 from taylor_verify.records.store import laid_out
-from taylor_verify.run import posed, solve
+from taylor_verify.run import solve
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.engine import PREFIX, Outside, engines, solve_together
 from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named

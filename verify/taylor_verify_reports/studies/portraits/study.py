@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,14 +23,20 @@ def _measure(folder: Path, progress: Progress) -> Measured:
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    return PORTRAITS.add(folder, _portraits(scenes, progress))
+    written: list[Path] = []
+    _portraits(scenes, progress, lambda one: written.extend(PORTRAITS.add(folder, [one])))
+    return written
 
 
-def _portraits(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+def _portraits(
+    scenes: Sequence[str],
+    progress: Progress,
+    keep: Callable[[dict[str, Any]], object] | None = None,
+) -> list[dict[str, Any]]:
     from taylor_verify_reports.studies.documents import documents
     from taylor_verify_reports.studies.portraits.measure import portrait
 
-    return documents(portrait, scenes, progress.counting(len(scenes)))
+    return documents(portrait, scenes, progress.counting(len(scenes)), keep)
 
 
 STUDY: Final = Study[None](

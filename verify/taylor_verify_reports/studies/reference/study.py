@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -27,14 +27,20 @@ def _lacking(report: Published) -> tuple[str, ...]:
 
 
 def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
-    return page.add_json(folder, _trajectories(scenes, progress))
+    written: list[Path] = []
+    _trajectories(scenes, progress, lambda one: written.extend(page.add_json(folder, [one])))
+    return written
 
 
-def _trajectories(scenes: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+def _trajectories(
+    scenes: Sequence[str],
+    progress: Progress,
+    keep: Callable[[dict[str, Any]], object] | None = None,
+) -> list[dict[str, Any]]:
     from taylor_verify_reports.studies.documents import documents
     from taylor_verify_reports.studies.reference.measure import reference
 
-    return documents(reference, scenes, progress.counting(len(scenes)))
+    return documents(reference, scenes, progress.counting(len(scenes)), keep)
 
 
 STUDY: Final = Study[None](

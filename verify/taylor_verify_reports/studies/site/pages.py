@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Final
 
@@ -32,6 +32,7 @@ from taylor_verify_reports.studies.site.stage import (
     docs_beside,
     smaller,
 )
+from taylor_verify_reports.studies.site.unfinished import Drawings
 from taylor_verify_reports.studies.source import Document, Report
 
 _GATES: Final = f"{REPORTS}/tables/gates.md"
@@ -60,9 +61,10 @@ _COLUMNS: Final = (
 )
 
 
-def staged(folder: Path) -> Stage:
+def staged(folder: Path, stored: Drawings) -> Stage:
     """Return a stage with every page of the site and the files that pages link to.
 
+    Drawings that are ``stored`` are not made again.
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
@@ -76,7 +78,8 @@ def staged(folder: Path) -> Stage:
             for drawn in pictures.values()
             for picture in drawn
             if not report.has(drawing_of(picture))
-        ]
+        ],
+        stored,
     )
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     motions = dict(_motions(report))
@@ -110,13 +113,16 @@ def _pictures_of(portrait: Document | None, records: Mapping[str, Document]) -> 
     return []
 
 
-def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
+def _drawn(pictures: Sequence[Picture], stored: Drawings) -> dict[str, str]:
     """Return the SVG of each picture by the name of its file; many are drawn on all cores."""
-    names = [f"{picture.stem}.svg" for picture in pictures]
-    if len(pictures) < _MANY:
-        return dict(zip(names, map(_svg, pictures), strict=True))
-    with LocalPool(available_cores()) as pool:
-        return dict(zip(names, pool.map(_svg, pictures), strict=True))
+    drawn = {picture.stem: stored.find(picture) for picture in pictures}
+    lacking = [picture for picture in pictures if drawn[picture.stem] is None]
+    with LocalPool(available_cores()) if len(lacking) >= _MANY else nullcontext() as pool:
+        made = map(_svg, lacking) if pool is None else pool.map(_svg, lacking)
+        for picture, svg in zip(lacking, made, strict=True):
+            stored.keep(picture, svg)
+            drawn[picture.stem] = svg
+    return {f"{stem}.svg": svg for stem, svg in drawn.items() if svg is not None}
 
 
 def _svg(picture: Picture) -> str:

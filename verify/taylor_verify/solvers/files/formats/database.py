@@ -64,8 +64,9 @@ class Database:
         rows = self._rows(f"SELECT timestamp, rowid FROM messages WHERE {among}")
         # They are sorted here: without an index SQLite would sort the messages themselves.
         for _, row in sorted(self._each(rows)):
-            for (data,) in self._each(self._rows(f"SELECT data FROM messages WHERE rowid = {row}")):
-                yield data
+            # As a list: a reader that ends early must leave no cursor behind.
+            one = self._rows(f"SELECT data FROM messages WHERE rowid = {row}")
+            yield from [data for (data,) in self._each(one)]
 
     def _check_tables(self) -> None:
         """Refuse a database whose topics or messages are a view or a virtual table, which has no page."""
