@@ -189,9 +189,26 @@ COVARIANCE_STOP
 """
 
 
-def test_orbit_ephemerides_have_the_centre(tmp_path: Path) -> None:
+def orbit_in_xml() -> str:
+    """The same message in XML."""
+    pairs = [line.partition(" = ") for line in ORBIT.splitlines() if " = " in line]
+    metadata = "".join(f"<{key}>{value}</{key}>" for key, _, value in pairs[1:])
+    rows = [line.split() for line in ORBIT.splitlines() if line.startswith("2024-") and "T" in line]
+    names = ("EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT")
+    states = [
+        "".join(f"<{n}>{cell}</{n}>" for n, cell in zip(names, row, strict=False)) for row in rows
+    ]
+    data = "".join(f"<stateVector>{state}</stateVector>" for state in states)
+    return (
+        f"<ndm:oem xmlns:ndm='x'><segment><metadata>{metadata}</metadata>{data}</segment></ndm:oem>"
+    )
+
+
+@pytest.mark.parametrize("suffix", [".oem", ".xml"])
+def test_orbit_ephemerides_have_the_centre(suffix: str, tmp_path: Path) -> None:
     """The position of an OEM is c1 c2 c3 in km, from START_TIME; covariances are passed over."""
-    table = read(written(tmp_path, ORBIT, "run.oem"))
+    content = ORBIT if suffix == ".oem" else orbit_in_xml()
+    table = read(written(tmp_path, content, f"run{suffix}"))
     assert (table.times, table.groups["centre"][1]) == ((0, Fraction(1, 2)), (1500, 2000, 3000))
 
 
@@ -241,7 +258,7 @@ FAULTS: Mapping[str, tuple[str, str]] = {
         "expected ANGVEL_FRAME = EME2000 or SC_BODY_1, got none",
     ),
     "cut": (text()[: -len("DATA_STOP\n")], "expected DATA_STOP, got the end of the file"),
-    "no data": ("CCSDS_AEM_VERS = 2.0\n", "expected a segment with attitude data, got none"),
+    "no data": ("CCSDS_AEM_VERS = 2.0\n", "expected a segment with states, got none"),
     "stranger": (text() + "hello\n", "expected KEYWORD = value or a block of data, got 'hello'"),
     "long": (text("1" * 5000), "expected at most 4096 characters in a line"),
 }
@@ -261,9 +278,9 @@ XML_FAULTS: Mapping[str, tuple[str, str]] = {
         "expected XML without a document type",
     ),
     "cut": ("<aem><body>", "expected an XML document, got a fault in it"),
-    "orbit": ("<oem/>", "expected an attitude ephemeris .*got <oem>"),
+    "another message": ("<opm/>", "expected an attitude or orbit ephemeris .*got <opm>"),
     "no metadata": ("<aem><attitudeState/></aem>", "expected metadata before the states"),
-    "empty": ("<aem></aem>", "expected a segment with attitude data, got none"),
+    "empty": ("<aem></aem>", "expected a segment with states, got none"),
 }
 
 

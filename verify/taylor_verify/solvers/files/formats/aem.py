@@ -123,7 +123,7 @@ def chosen(segments: Sequence[Kind], part: str, path: Path) -> Kind:
     """Return the segment of this number, or the only one."""
     last = len(segments)
     if not segments:
-        raise refusal("a segment with attitude data", "none", path)
+        raise refusal("a segment with states", "none", path)
     if not part and last > 1:
         raise refusal("one segment", last, path, f"name one: FILE#1 ... FILE#{last}")
     if part and part not in map(str, range(1, last + 1)):
