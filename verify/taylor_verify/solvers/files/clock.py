@@ -58,6 +58,7 @@ def with_times(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
 ) -> Times:
     """Return the columns with times that count from the scene's start, and ask for the one that fits."""
+    columns = [_without_units(c) if _is_called_a_time(Name(c)) else c for c in columns]
     sums = list(_sums_of_seconds(columns, place, faults))
     notes = [each.note for each in sums]
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
@@ -88,6 +89,17 @@ def _clocks(
         times = [column for column in columns if _is_called_a_time(Name(column))]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
     return [_Clock(column, scene, _of_program(column, names)) for column in times]
+
+
+def _without_units(column: Column) -> Column:
+    """Return the times of a timetable of MATLAB, each of which has its unit behind it: 0.5 sec."""
+    texts = [str(value).split() for value in column.values[:1]]
+    if not texts or len(texts[0]) != 2 or not in_brackets(texts[0][1], "time"):
+        return column
+    cells = [str(value).split() for value in column.values]
+    if any(cell[1:] != texts[0][1:] for cell in cells):
+        return column
+    return Column(f"{column.name} [{texts[0][1]}]", [cell[0] for cell in cells])
 
 
 def _of_program(column: Column, names: Candidates) -> Spelling | None:

@@ -55,7 +55,7 @@ _STEMS: Final = {
     ),
     "linear_impulse": "linearimpulse impulselinear",
     "angular_impulse": "angularimpulse impulseangular",
-    "centre": "c centre center position pos translation location",
+    "centre": "c centre center position pos pose translation location",
     "rotvec": "rotvec rotationvector",
     "mrp": "mrp mrps modifiedrodrigues",
     **{name: f"euler{name} euler{name}angle" for name in SEQUENCES},
