@@ -212,7 +212,6 @@ def _with_volume(
     size = None if volume is None else reading.positive(volume, volume.text, "volume")
     at = None if place is None else reading.vector(place, place.text, place.name)
     heavy = reading.number(density, density.text, density.name) if density else _FRESH
-    shape = volumes.Displaced(
-        (size or 0) * (heavy or 0), at or link.centre, "the volume is the plugin's"
-    )
+    mass = Fraction(size or 0) * Fraction(heavy or 0)
+    shape = volumes.Displaced(mass, at or link.centre, "the volume is the plugin's")
     return _floating(water, link, shape, everything, reading)
