@@ -546,6 +546,11 @@ BUOYANCY = (
     '<plugin name="gz::sim::systems::Buoyancy">'
     "<uniform_fluid_density>1000</uniform_fluid_density></plugin>"
 )
+# Gazebo's own plugin before gz-sim, which states the volume.
+FLOATING = (
+    '<plugin name="b" filename="libBuoyancyPlugin.so"><fluid_density>1000</fluid_density>'
+    '<link name="hull"><center_of_volume>0 0 0.1</center_of_volume><volume>0.005</volume></link></plugin>'
+)
 THRUSTER = '<plugin name="gz::sim::systems::Thruster"><joint_name>shaft</joint_name></plugin>'
 # What a file has, and the line of the scene that says it.
 ACTING = {
@@ -571,6 +576,10 @@ ACTING = {
         "weight = { force = [0, 0, -8], at = [0, 0, -0.5] }",
     ),
     "a volume": (plugged(world=BUOYANCY), "buoyancy = { force = [0, 0, 1225], at = [0, 0, 0.25] }"),
+    "a volume that is stated": (
+        plugged(model=hydrodynamics("<xDotU>-5</xDotU>") + FLOATING),
+        "buoyancy = { force = [0, 0, 49], at = [0, 0, 0.1] }",
+    ),
     "a thruster": (plugged(model=THRUSTER), 'force = ["0", "0", "thrust1"]'),
     "its arm": (plugged(model=THRUSTER), 'couple = ["0.5*thrust1", "thrust1", "0"]'),
     "uuv, x with pitch": (underwater(UUV_MASS), "  [2, 0, 0, 0, -0.5, 0],"),
@@ -622,6 +631,28 @@ DRY = {
     "one of another plugin": (
         plugged(model='<plugin name="vrx::SimpleHydrodynamics"><xDotU>5</xDotU></plugin>'),
         "vrx::SimpleHydrodynamics of line 8 acts on bodies and is left out (it has xDotU)",
+    ),
+    "a link that is slowed": (
+        plugged().replace(
+            "<inertial>", "<velocity_decay><linear>.1</linear></velocity_decay><inertial>"
+        ),
+        "<velocity_decay> of line 2 slows the link",
+    ),
+    "wind of the world": (
+        plugged(world="<wind/>").replace("<inertial>", "<enable_wind>1</enable_wind><inertial>"),
+        "<wind> acts on the link and is left out",
+    ),
+    "a factor of uuv": (
+        underwater(UUV_MASS + "<scaling_damping>1.5</scaling_damping>"),
+        "<scaling_damping> is left out",
+    ),
+    "MuJoCo's actuators": (
+        mjcf(full(I)).replace("</mujoco>", "<actuator><motor/></actuator></mujoco>"),
+        "actuators are left out",
+    ),
+    "MuJoCo's damping": (
+        mjcf(full(I)).replace("<inertial", '<joint damping="0.1"/><inertial'),
+        "the damping of joints is left out",
     ),
     "a mesh that floats": (
         plugged(world=BUOYANCY).replace("<box><size>1 0.5 0.25</size></box>", "<mesh/>"),

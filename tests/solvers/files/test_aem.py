@@ -154,7 +154,7 @@ def test_rates_of_euler_angles_are_not_taken_for_angular_velocities(tmp_path: Pa
     content = text(state, version="1.0", ATTITUDE_TYPE="QUATERNION/RATE", QUATERNION_TYPE="LAST")
     table = read(written(tmp_path, content))
     assert set(table.groups) == {"quaternion"}
-    assert table.notes[-1] == "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
+    assert table.notes[-1] == "rates of Euler angles are not read"
 
 
 ANGLES = "2024-061T00:00:00 90 0 -30"
@@ -189,9 +189,26 @@ COVARIANCE_STOP
 """
 
 
-def test_orbit_ephemerides_have_the_centre(tmp_path: Path) -> None:
+def orbit_in_xml() -> str:
+    """The same message in XML."""
+    pairs = [line.partition(" = ") for line in ORBIT.splitlines() if " = " in line]
+    metadata = "".join(f"<{key}>{value}</{key}>" for key, _, value in pairs[1:])
+    rows = [line.split() for line in ORBIT.splitlines() if line.startswith("2024-") and "T" in line]
+    names = ("EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT")
+    states = [
+        "".join(f"<{n}>{cell}</{n}>" for n, cell in zip(names, row, strict=False)) for row in rows
+    ]
+    data = "".join(f"<stateVector>{state}</stateVector>" for state in states)
+    return (
+        f"<ndm:oem xmlns:ndm='x'><segment><metadata>{metadata}</metadata>{data}</segment></ndm:oem>"
+    )
+
+
+@pytest.mark.parametrize("suffix", [".oem", ".xml"])
+def test_orbit_ephemerides_have_the_centre(suffix: str, tmp_path: Path) -> None:
     """The position of an OEM is c1 c2 c3 in km, from START_TIME; covariances are passed over."""
-    table = read(written(tmp_path, ORBIT, "run.oem"))
+    content = ORBIT if suffix == ".oem" else orbit_in_xml()
+    table = read(written(tmp_path, content, f"run{suffix}"))
     assert (table.times, table.groups["centre"][1]) == ((0, Fraction(1, 2)), (1500, 2000, 3000))
 
 
@@ -234,14 +251,14 @@ FAULTS: Mapping[str, tuple[str, str]] = {
     "clock": (text(TIME_SYSTEM="SCLK"), "expected a TIME_SYSTEM like UTC, TAI or TT, got SCLK"),
     "start": (text(START_TIME="noon"), "an epoch like .*got noon @ .*START_TIME"),
     "epoch": (text(STATE.replace("061", "367")), "an epoch on a day .* @ .*state 1, EPOCH"),
-    "number": (text(STATE.replace("0.2", "x")), "got 'x' @ .*state 1, Q2"),
+    "number": (text(STATE.replace(" 0.2", " x")), "got 'x' @ .*row 1, column q2"),
     "few": (text("2024-061T00:00:00 0.1 0.2"), "expected EPOCH Q1 Q2 Q3 QC, got 3 values @ .*line"),
     "rates": (
         text(f"{STATE} 1 2 3", ATTITUDE_TYPE="QUATERNION/ANGVEL"),
         "expected ANGVEL_FRAME = EME2000 or SC_BODY_1, got none",
     ),
     "cut": (text()[: -len("DATA_STOP\n")], "expected DATA_STOP, got the end of the file"),
-    "no data": ("CCSDS_AEM_VERS = 2.0\n", "expected a segment with attitude data, got none"),
+    "no data": ("CCSDS_AEM_VERS = 2.0\n", "expected a segment with states, got none"),
     "stranger": (text() + "hello\n", "expected KEYWORD = value or a block of data, got 'hello'"),
     "long": (text("1" * 5000), "expected at most 4096 characters in a line"),
 }
@@ -261,9 +278,9 @@ XML_FAULTS: Mapping[str, tuple[str, str]] = {
         "expected XML without a document type",
     ),
     "cut": ("<aem><body>", "expected an XML document, got a fault in it"),
-    "orbit": ("<oem/>", "expected an attitude ephemeris .*got <oem>"),
+    "another message": ("<opm/>", "expected an attitude or orbit ephemeris .*got <opm>"),
     "no metadata": ("<aem><attitudeState/></aem>", "expected metadata before the states"),
-    "empty": ("<aem></aem>", "expected a segment with attitude data, got none"),
+    "empty": ("<aem></aem>", "expected a segment with states, got none"),
 }
 
 

@@ -299,8 +299,8 @@ def test_a_group_is_asked_for_by_its_first_word() -> None:
 
 def test_faults_of_what_is_asked_for_come_all_at_once() -> None:
     """A name that is none of ours, a column that is none, and one column twice."""
-    message = refusal("t a b c", {"w1": "a", "w2": "a", "omega_3": "c", "w3": "bb"})
-    assert "got `omega_3` @ columns omega_3=c" in message
+    message = refusal("t a b c", {"w1": "a", "w2": "a", "spin": "c", "w3": "bb"})
+    assert "got `spin` @ columns spin=c" in message
     assert "expected every column once, got `a`, which is w1" in message
     assert "got `bb` @ columns w3=bb (near it: `b`" in message
     # What follows from them is none of its own.
@@ -400,10 +400,9 @@ def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) 
         taylor_verify.check(SCENE, file)
 
 
-@pytest.mark.parametrize("encoding", ["utf-16-be", "latin-1"])
-def test_text_in_another_encoding_is_refused(encoding: str, tmp_path: Path) -> None:
-    """Text that is not UTF-8 and has no byte order mark is never guessed at."""
-    (tmp_path / "mine.csv").write_bytes("t,w1,w2,w3\n0,é,2,3\n".encode(encoding))
+def test_text_in_another_encoding_is_refused(tmp_path: Path) -> None:
+    """UTF-16 without a byte order mark is never guessed at."""
+    (tmp_path / "mine.csv").write_bytes("t,w1,w2,w3\n0,é,2,3\n".encode("utf-16-be"))
     with pytest.raises(Refused, match="expected text in UTF-8, got other bytes"):
         read(tmp_path / "mine.csv")
 

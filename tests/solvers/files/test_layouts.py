@@ -192,6 +192,69 @@ def test_a_binary_layout_is_read_exactly(name: str, scene: Scene, tmp_path: Path
     assert table.groups["omega"] == exact(W.tolist())
 
 
+def signals(values: Any) -> dict[str, Any]:
+    """A struct with time, as Simulink's block To Workspace saves it."""
+    return {"time": MATRIX[:2, :1], "signals": {"values": values, "label": "w"}, "blockName": "m/w"}
+
+
+def test_structs_with_time_of_simulink_are_read_together(scene: Scene, tmp_path: Path) -> None:
+    """Signals of equal times are one trajectory; matrices are stacked, and the scalar of quat is first."""
+    stack = np.moveaxis(np.array([np.eye(3)] * 2), 0, -1)
+    parts = {"pqr": signals(W[:2]), "DCM_be": signals(stack)}
+    scipy.io.savemat(tmp_path / "run.mat", parts)
+    table = read(tmp_path / "run.mat", (), scene)
+    assert table.groups["omega"] == exact(W[:2].tolist())
+    assert table.groups["attitude"][1] == (1, 0, 0, 0, 1, 0, 0, 0, 1)
+    late = signals(stack) | {"time": MATRIX[:2, :1] + 1}
+    scipy.io.savemat(tmp_path / "late.mat", parts | {"DCM_be": late})
+    with pytest.raises(Refused, match="times in the groups DCM_be, pqr"):
+        read(tmp_path / "late.mat", (), scene)
+
+
+def test_reports_of_42_are_read_together(scene: Scene, tmp_path: Path) -> None:
+    """The times, angular velocities and attitudes of a folder are one file, the scalar of q last."""
+    quaternions = [[0.5, -0.5, 0.1, 0.7]] * 3
+    for name, rows in (("time", MATRIX[:, 0]), ("wbn", W), ("qbn", quaternions)):
+        np.savetxt(tmp_path / f"{name}.42", rows, fmt="%g")
+    table = read(tmp_path / "wbn.42", (), scene)
+    assert table.groups["omega"] == exact(OMEGA)
+    assert table.groups["quaternion"][0] == exact([("0.7", "0.5", "-0.5", "0.1")])[0]
+    (tmp_path / "time.42").unlink()
+    with pytest.raises(Refused, match=r"its times in time\.42 beside it"):
+        read(tmp_path / "qbn.42", (), scene)
+
+
+def test_a_stack_of_vectors_of_octave_has_its_times_last(scene: Scene, tmp_path: Path) -> None:
+    """Numbers of 3 x 1 x 2 stand in MATLAB's order, one in a line, and may be in a struct."""
+    stack = "\n".join(cell for row in OMEGA[:2] for cell in row)
+    text = f"""# name: run
+# type: scalar struct
+# ndims: 2
+ 1 1
+# length: 2
+# name: t
+# type: matrix
+# rows: 1
+# columns: 2
+ 0 1
+# name: omega
+# type: matrix
+# ndims: 3
+ 3 1 2
+{stack}
+"""
+    (tmp_path / "run.mat").write_text(text)
+    assert read(tmp_path / "run.mat", (), scene).groups["omega"] == exact(OMEGA[:2])
+
+
+def test_a_matrix_of_stk_takes_space_to_body(scene: Scene, tmp_path: Path) -> None:
+    """AttitudeTimeDCM has rows from the reference axes to those of the body."""
+    rows = "".join(f"{t} 0 1 0 -1 0 0 0 0 1\n" for t in TIMES)
+    (tmp_path / "run.a").write_text(f"BEGIN Attitude\nAttitudeTimeDCM\n{rows}END Attitude\n")
+    table = read(tmp_path / "run.a", (), scene)
+    assert table.groups["attitude"][0] == (0, -1, 0, 1, 0, 0, 0, 0, 1)
+
+
 TWINS: Mapping[str, tuple[str, Callable[[Path], None], str, str]] = {
     "npy and no request": (".npy", lambda file: np.save(file, MATRIX), "", "--columns t=1,w1=2,"),
     "npy of objects": (

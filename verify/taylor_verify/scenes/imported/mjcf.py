@@ -76,7 +76,13 @@ def _fluid(root: Node) -> Iterator[str]:
                     f'MuJoCo\'s {key} = "{cut(node.attributes[key])}" acts on the body there: write it as '
                     "text in `moment`, or take model kirchhoff with `force` and `couple`"
                 )
-    shapes = {n.attributes.get("fluidshape") for n in root.all() if n.name == "geom"}
+    everything = [*root.all()]
+    dampings = (n.attributes.get("damping", "0") for n in everything if "joint" in n.name)
+    if any(damping != "0" for damping in dampings):
+        yield "the damping of joints is left out: write `damping`"
+    if any(node.children for node in root.named("actuator")):
+        yield "actuators are left out: write what they do as text in `moment`, or in `force` and `couple`"
+    shapes = {n.attributes.get("fluidshape") for n in everything if n.name == "geom"}
     if "ellipsoid" in shapes:
         yield (
             'MuJoCo\'s fluidshape = "ellipsoid" gives geoms an added mass and drag: model kirchhoff '

@@ -14,7 +14,7 @@ from taylor_verify.numbers.precision import float_text
 from taylor_verify.scenes.imported import volumes
 from taylor_verify.scenes.imported.document import Node
 from taylor_verify.scenes.imported.link import Link
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.reading import Reading, is_true
 from taylor_verify.scenes.imported.thrusters import with_thruster
 from taylor_verify.scenes.imported.water import (
     Water,
@@ -29,6 +29,26 @@ _TWICE: Final = (
     "the file has an added mass in <fluid_added_mass> and another in a plugin: the scene has that of the "
     "tag, and a simulator that takes both counts it twice"
 )
+
+
+# Words in the names of plugins that act on bodies.
+_ACTING: Final = (
+    *(
+        "wind",
+        "liftdrag",
+        "buoyancy",
+        "magnet",
+        "hydro",
+        "drag",
+        "wave",
+        "surface",
+        "aero",
+        "motormodel",
+    ),
+    *("propeller", "usv"),
+)
+# The density of water in Gazebo's BuoyancyPlugin.
+_FRESH: Final = Fraction("999.1026")
 
 
 class Scoped(NamedTuple):
@@ -73,8 +93,25 @@ def surrounded(link: Link, root: Node, reading: Reading) -> Link:
     if added is not None and any(map(any, added)):
         link = replace(link, added_mass=added)
     remarks = (*link.remarks, *water.remarks)
-    left_out = (*link.water.left_out, *water.left_out)
+    left_out = (*link.water.left_out, *water.left_out, *_slowed(link, everything, root))
     return replace(link, water=replace(water, left_out=left_out), remarks=remarks)
+
+
+def _slowed(link: Link, everything: list[Scoped], root: Node) -> Iterator[str]:
+    """Yield sentences about what slows a link or blows at it without a plugin."""
+    node = _node_of(link, everything)
+    for decay in node.named("velocity_decay") if node else ():
+        if any(child.text.strip() not in ("", "0") for child in decay.children):
+            yield f"<velocity_decay> of line {decay.line} slows the link and is left out: write `damping`"
+    has_wind = any(each.name == "wind" for each in root.all())
+    if node and has_wind and any(is_true(each.text) for each in node.named("enable_wind")):
+        yield "<wind> acts on the link and is left out: write it as text in `force` and `couple`"
+
+
+def _node_of(link: Link, everything: list[Scoped]) -> Node | None:
+    links = (item for item in everything if item.node.name == "link")
+    mine = (i.node for i in links if _is_called(link, i.scope, i.node.attributes.get("name", "")))
+    return next(mine, None)
 
 
 def _is_water(plugin: Node) -> bool:
@@ -111,8 +148,11 @@ def _with_plugin(
         return with_thruster(water, link, item, everything, reading)
     if words.partition(" ")[0].endswith("::buoyancy"):
         return _with_buoyancy(water, link, plugin, everything, reading)
-    names = [] if is_hydrodynamics(plugin) else coefficients(plugin)
-    if names or any(word in words for word in ("wind", "liftdrag", "buoyancyengine", "magnet")):
+    if "buoyancyplugin" in words and (stated := _stated(link, item)):
+        return _with_volume(water, link, stated, plugin, everything, reading)
+    is_known = is_hydrodynamics(plugin) or _is_water(plugin)
+    names = [] if is_known else coefficients(plugin)
+    if names or (not is_known and any(word in words for word in _ACTING)):
         name = plugin.attributes.get("name") or plugin.attributes.get("filename", "")
         sentence = f"the plugin {name} of line {plugin.line} acts on bodies and is left out"
         listed = f" (it has {', '.join(names[:6])})" if names else ""
@@ -125,11 +165,9 @@ def _with_buoyancy(
 ) -> Water:
     """Return the water with weight and buoyancy from the collision shapes of the link."""
     density = plugin.child("uniform_fluid_density")
-    links = [i for i in everything if i.node.name == "link"]
-    node = next(
-        i.node for i in links if _is_called(link, i.scope, i.node.attributes.get("name", ""))
-    )
-    shape = None if plugin.child("graded_buoyancy") else volumes.displaced(node, reading)
+    node = _node_of(link, everything)
+    is_graded = plugin.child("graded_buoyancy") is not None
+    shape = None if is_graded or node is None else volumes.displaced(node, reading)
     if shape is None:
         sentence = (
             "weight and buoyancy are left out: the plugin Buoyancy needs the volume of shapes that are not "
@@ -137,11 +175,43 @@ def _with_buoyancy(
         )
         return replace(water, left_out=(*water.left_out, sentence))
     heavy = reading.number(density, density.text, density.name) if density else Fraction(1000)
-    mass = shape.volume * (heavy or 0)
+    displaced = shape._replace(volume=shape.volume * (heavy or 0))
+    return _floating(water, link, displaced, everything, reading)
+
+
+def _floating(
+    water: Water,
+    link: Link,
+    displaced: volumes.Displaced,
+    everything: list[Scoped],
+    reading: Reading,
+) -> Water:
+    """Return the water with weight and buoyancy of a link; the volume is the mass that it displaces."""
     written = next((i.node for i in everything if i.node.name == "gravity"), None)
     own = None if written is None else reading.vector(written, written.text, "gravity")
     gravity = own or volumes.GRAVITY
-    hanging = balance(link.mass, link.centre, mass, shape.centre, gravity)
+    hanging = balance(link.mass, link.centre, displaced.volume, displaced.centre, gravity)
     text = ", ".join(map(float_text, gravity))
-    remark = f"Weight and buoyancy: {shape.sentence}, and gravity is ({text})."
+    remark = f"Weight and buoyancy: {displaced.sentence}, and gravity is ({text})."
     return replace(water, hanging=hanging, remarks=(*water.remarks, remark))
+
+
+def _stated(link: Link, item: Scoped) -> Node | None:
+    """Return what Gazebo's BuoyancyPlugin states of the link; None where it computes the volume itself."""
+    links = item.node.named("link")
+    mine = (n for n in links if _is_called(link, item.scope, n.attributes.get("name", "")))
+    return next((node for node in mine if node.child("volume")), None)
+
+
+def _with_volume(
+    water: Water, link: Link, stated: Node, plugin: Node, everything: list[Scoped], reading: Reading
+) -> Water:
+    """Return the water with weight and buoyancy from the volume that the plugin states."""
+    volume, place = stated.child("volume"), stated.child("center_of_volume")
+    density = plugin.child("fluid_density")
+    size = None if volume is None else reading.positive(volume, volume.text, "volume")
+    at = None if place is None else reading.vector(place, place.text, place.name)
+    heavy = reading.number(density, density.text, density.name) if density else _FRESH
+    mass = Fraction(size or 0) * Fraction(heavy or 0)
+    shape = volumes.Displaced(mass, at or link.centre, "the volume is the plugin's")
+    return _floating(water, link, shape, everything, reading)

@@ -155,6 +155,7 @@ def of_uuv(link: Node, mass: Fraction, centre: Vector, plugin: Node, reading: Re
     if kind and kind != "fossen":
         named = f"uuv_simulator computes added mass and drag of the type {kind} itself"
         return Water(left_out=(f"{named}: they are left out",))
+    changed = [child.name for child in model.children if _changes(child)]
     node = model.child("added_mass")
     added = None if node is None else _added_mass(_square(node, reading), node, reading)
     terms: list[list[str]] = [[] for _ in range(6)]
@@ -168,11 +169,18 @@ def of_uuv(link: Node, mass: Fraction, centre: Vector, plugin: Node, reading: Re
         added,
         tuple(map(tuple, terms)),
         _buoyant(link, mass, centre, plugin, reading),
+        left_out=tuple(f"<{name}> is left out: multiply or add it yourself" for name in changed),
         remarks=(
             "Added mass and damping are those of <hydrodynamic_model>, whose y and z point the other way: "
             "entries that couple y or z with x change their sign.",
         ),
     )
+
+
+def _changes(child: Node) -> bool:
+    """Return True for a factor or an offset of uuv_simulator that changes what it stands beside."""
+    neutral = {"scaling": "1", "offset": "0"}.get(child.name.partition("_")[0])
+    return neutral is not None and child.text.strip().removesuffix(".0") != neutral
 
 
 def _square(node: Node, reading: Reading) -> list[list[Fraction]]:

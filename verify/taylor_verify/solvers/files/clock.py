@@ -34,14 +34,9 @@ _FRACTIONS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("nanoseconds", "nanosecs", "nanosec", "nsecs", "nsec"), 10**9),
     **dict.fromkeys(("microseconds", "usecs", "usec"), 10**6),
 }
-# Seconds since 1970 of the years 2001 to 2286, and in how many parts of a second they may be counted.
+# Seconds since 1970 of the years 2001 to 2286, and the parts of a second in which they may be counted.
 _CLOCK: Final = (10**9, 10**10)
-_PARTS: Final[Mapping[int, str]] = {
-    1: "seconds",
-    10**3: "milliseconds",
-    10**6: "microseconds",
-    10**9: "nanoseconds",
-}
+_PARTS: Final[Mapping[str, int]] = {"ms": 10**3, "us": 10**6, "ns": 10**9}
 # A file whose first row is this near to the start, in spans of the scene, begins there.
 _NEAR: Final = Fraction(1, 10**6)
 
@@ -58,6 +53,7 @@ def with_times(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
 ) -> Times:
     """Return the columns with times that count from the scene's start, and ask for the one that fits."""
+    columns = [_without_units(c) if _is_called_a_time(Name(c)) else c for c in columns]
     sums = list(_sums_of_seconds(columns, place, faults))
     notes = [each.note for each in sums]
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
@@ -88,6 +84,17 @@ def _clocks(
         times = [column for column in columns if _is_called_a_time(Name(column))]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
     return [_Clock(column, scene, _of_program(column, names)) for column in times]
+
+
+def _without_units(column: Column) -> Column:
+    """Return the times of a timetable of MATLAB, each of which has its unit behind it: 0.5 sec."""
+    texts = [str(value).split() for value in column.values[:1]]
+    if not texts or len(texts[0]) != 2 or not in_brackets(texts[0][1], "time"):
+        return column
+    cells = [str(value).split() for value in column.values]
+    if any(cell[1:] != texts[0][1:] for cell in cells):
+        return column
+    return Column(f"{column.name} [{texts[0][1]}]", [cell[0] for cell in cells])
 
 
 def _of_program(column: Column, names: Candidates) -> Spelling | None:
@@ -168,16 +175,27 @@ class _Clock:
     def _habit(self) -> Spelling | None:
         """The spelling of the program whose unit this is; None where somebody has made seconds of it."""
         spelling = None if self._is_calendar else self._spelling
-        if spelling is None or spelling.unit in ("s", "d"):
+        if spelling is None or spelling.unit in ("s", "d") or not len(self.column.values):
             return spelling
         is_whole = all(number == number // 1 for number in self._numbers)
         return spelling if is_whole and abs(self._numbers[-1]) > self._last else None
 
     @cached_property
+    def _implied(self) -> str:
+        """The unit of a program's habit, or of large whole numbers since 1970; empty for a stated one."""
+        if self._habit:
+            return self._habit.unit
+        stated = Name(self.column).unit("time")
+        if self._is_calendar or (stated and stated.words) or self._first.denominator != 1:
+            return ""
+        fitting = (u for u, n in _PARTS.items() if _CLOCK[0] <= self._first / n < _CLOCK[1])
+        return next(fitting, "")
+
+    @cached_property
     def _unit(self) -> Unit:
-        """The unit that the name states, or the program's manual, by which the numbers are multiplied."""
-        stated = in_brackets(self._habit.unit, "time") if self._habit else None
-        return stated or Name(self.column).unit("time") or OWN
+        """The unit by which the numbers are multiplied."""
+        stated = None if self._is_calendar else Name(self.column).unit("time")
+        return in_brackets(self._implied, "time") or stated or OWN
 
     @cached_property
     def _is_calendar(self) -> bool:
@@ -197,26 +215,13 @@ class _Clock:
         return first if isinstance(first, Fraction) else Fraction(0)
 
     @cached_property
-    def _factor(self) -> Fraction:
-        """The scene's unit of time in that of the column."""
-        return OWN.factor if self._is_calendar else self._unit.factor / self._parts
-
-    @cached_property
-    def _parts(self) -> int:
-        """The parts of a second that large whole numbers since 1970 count; 1 for all other numbers."""
-        if self._is_calendar or self._unit.words or self._first.denominator != 1:
-            return 1
-        fitting = (parts for parts in _PARTS if _CLOCK[0] <= self._first / parts < _CLOCK[1])
-        return next(fitting, 1)
-
-    @cached_property
     def is_of_the_day(self) -> bool:
         """True for times of a calendar, of a program's clock, and since 1970, that are not the scene's."""
-        first = self._first * self._factor
+        first = self._first * self._unit.factor
         is_since_1970 = _CLOCK[0] <= first < _CLOCK[1] and first > self._last
         if self._is_calendar or is_since_1970 or not self._habit or self._scene is None:
             return self._is_calendar or is_since_1970
-        last, span = self._numbers[-1] * self._factor, abs(self._scene.clock.elapsed[-1])
+        last, span = self._numbers[-1] * self._unit.factor, abs(self._scene.clock.elapsed[-1])
         return first != self._scene.clock.start and last > self._last + _NEAR * span
 
     @cached_property
@@ -231,7 +236,7 @@ class _Clock:
         start = self._scene.clock.start if self._scene else Fraction(0)
         zero = self._first if self.is_of_the_day else Fraction(0)
         shift = start if self.is_of_the_day else Fraction(0)
-        return [(number - zero) * self._factor + shift for number in self._numbers]
+        return [(number - zero) * self._unit.factor + shift for number in self._numbers]
 
     @cached_property
     def runs(self) -> bool:
@@ -262,9 +267,10 @@ class _Clock:
         column, shown_name = self.column, cut(self.column.name)
         notes = []
         try:
-            if habit := self._habit:
-                notes.append(f"`{shown_name}` is in {habit.unit}, the habit of {habit.whose}")
-                column = column._replace(name=f"{column.name} [{habit.unit}]")
+            if unit := self._implied:
+                whose = f", the habit of {self._habit.whose}" if self._habit else ""
+                notes.append(f"`{shown_name}` is in {unit}{whose}")
+                column = column._replace(name=f"{column.name} [{unit}]")
             if not self.is_of_the_day:
                 return column, notes
             values = [time / self._unit.factor for time in self.times]
@@ -273,8 +279,7 @@ class _Clock:
         unit = Name(column).unit_text if self._is_calendar else ""
         bare = column.name.replace(unit, "").strip(" []()") if unit else column.name
         first = shown(column.values[0]).strip("'")
-        parts = "" if self._parts == 1 else f", in {_PARTS[self._parts]}"
-        notes.append(f"t counts from {first} of `{shown_name}`{parts}, the first row")
+        notes.append(f"t counts from {first} of `{shown_name}`, the first row")
         return Column(bare or "t", values), notes
 
     def _without_faults(self, place: str, faults: Faults) -> Column:

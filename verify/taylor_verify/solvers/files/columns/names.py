@@ -2,7 +2,7 @@
 
 A spelling has a name for every component of a group, in our order. Names are compared by their letters
 and digits alone, small: ``omega_x``, ``Omega.X`` and ``omega[x]`` are ``omegax``. To accept a name is to
-add it here; the notes of a file, the help and the documentation speak of what was taken.
+add it to `usual.txt`; the notes of a file, the help and the documentation speak of what was taken.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from itertools import product
 from typing import Final
 
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
-from taylor_verify.solvers.files.columns.programs import entries, spellings_of
-from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
+from taylor_verify.solvers.files.columns.forms import FORMS
+from taylor_verify.solvers.files.columns.programs import entries, spellings_of, usual
+from taylor_verify.solvers.files.columns.spelling import Spelling
 
 # Every group of columns, time and forms of the attitude among them, with the names that are ours.
 GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -44,57 +44,6 @@ COMPONENTS: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
     "axis_angle": ((*_LETTERS, "angle"), (*_FROM_ONE, "4"), (*_FROM_ZERO, "3")),
 }
 
-# Names that take x y z, 1 2 3 or 0 1 2 behind them.
-_STEMS: Final = {
-    "omega": (
-        "w omega wb omegab wbody omegabody bodyomega angvel angularvelocity angularvelocitybody "
-        "angularrate angularrates twistangular pqr gyro gyr gyroscope rate rates bodyrate bodyrates"
-    ),
-    "linear_velocity": (
-        "u uvw linvel linearvelocity linearvelocitybody bodyvelocity velocitybody vbody twistlinear"
-    ),
-    "linear_impulse": "linearimpulse impulselinear",
-    "angular_impulse": "angularimpulse impulseangular",
-    "centre": "c centre center position pos translation location",
-    "rotvec": "rotvec rotationvector",
-    "mrp": "mrp mrps modifiedrodrigues",
-    **{name: f"euler{name} euler{name}angle" for name in SEQUENCES},
-}
-_OF_ANGLES: Final = ("euler", "eulerangle", "eulerangles", "eul", "att", "attitude", "angle")
-# Names that say that the components are along axes of space.
-_IN_SPACE: Final = (
-    "omegaworld omegaspace worldomega spaceomega angvelworld angularvelocityworld "
-    "angularvelocityspace worldangularvelocity"
-)
-# Other names of all components, in our order.
-_WORDS: Final = {
-    "centre": ("xpos ypos zpos",),
-    "omega": ("rollrate pitchrate yawrate", "rollspeed pitchspeed yawspeed"),
-    "quaternion": (
-        "qc q1 q2 q3",
-        "qs q1 q2 q3",
-        "qw q1 q2 q3",
-        "qr qi qj qk",
-        "eta eps1 eps2 eps3",
-        "eta epsilon1 epsilon2 epsilon3",
-        "beta0 beta1 beta2 beta3",
-        "ep0 ep1 ep2 ep3",
-    ),
-    "mrp": ("sigma1 sigma2 sigma3", "sigma0 sigma1 sigma2"),
-    "axis_angle": ("axisx axisy axisz angle", "axis1 axis2 axis3 angle", "axis0 axis1 axis2 angle"),
-    # Of ships, aircraft and robots: yaw, then pitch, then roll, about axes that move along.
-    "zyx": (
-        *(f"{yaw} pitch roll" for yaw in ("yaw", "heading")),
-        *("psi theta phi", "heading trim heel", "yawangle pitchangle rollangle"),
-        *(f"{stem}yaw {stem}pitch {stem}roll" for stem in _OF_ANGLES),
-        *(f"{stem}psi {stem}theta {stem}phi" for stem in _OF_ANGLES),
-        *("rpy2 rpy1 rpy0", "rpy3 rpy2 rpy1", "rpyz rpyy rpyx", "ypr0 ypr1 ypr2", "ypr1 ypr2 ypr3"),
-    ),
-}
-_TIMES: Final = (
-    "time times timestamp timestamps stamp tout seconds sec simtime simulationtime elapsed "
-    "elapsedtime"
-)
 _ATTITUDES: Final = "q quat quaternion orientation orn attitude att rotation"
 _MATRICES: Final = "r rot rotation rotationmatrix rotmat rmat orientation attitude attitudematrix"
 # A direction cosine matrix takes space to body as often as body to space.
@@ -120,17 +69,8 @@ def _spellings() -> Iterator[Spelling]:
         yield from spellings_of(entry, _REMARKS.get(entry["group"], ""))
     for group, names in GROUPS.items():
         yield Spelling(group, names, _REMARKS.get(group, ""))
-    for group, stems in _STEMS.items():
-        for stem, triple in product(stems.split(), _TRIPLES):
-            yield Spelling(group, tuple(stem + c for c in triple), _REMARKS.get(group, ""))
-    for stem, triple in product(_IN_SPACE.split(), _TRIPLES):
-        yield Spelling("omega", tuple(stem + c for c in triple), turn=Turn.SPACE_AXES)
-    for group, spelled in _WORDS.items():
-        for words in spelled:
-            frame = Frame.ANGLES if words.startswith("roll") else Frame.UNSAID
-            yield Spelling(group, tuple(words.split()), _REMARKS.get(group, ""), frame=frame)
-    for name in _TIMES.split():
-        yield Spelling("time", (name,))
+    for entry in usual():
+        yield from spellings_of(entry, _REMARKS.get(entry["group"], ""))
     yield Spelling("centre", _LETTERS, is_whole=True)
     yield Spelling("centre", _P, apart_from=_L)
     yield Spelling("linear_impulse", _P, "linear momentum beside Lx Ly Lz", company=_L)

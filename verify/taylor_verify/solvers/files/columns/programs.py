@@ -13,30 +13,41 @@ from typing import Final
 
 from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
 
-TABLE: Final = files(__package__).joinpath("programs.txt").read_text(encoding="utf-8")
-FIELDS: Final = ("program", "group", "names", "beside", "unit", "frame", "turn", "source")
+_OF_PROGRAMS: Final = ("program", "group", "names", "beside", "unit", "frame", "turn", "source")
+_USUAL: Final = ("group", "names", "frame", "turn")
 
 
 def entries() -> Iterator[dict[str, str]]:
-    """Yield the entries of the table, each field by its name."""
-    for line in TABLE.splitlines():
+    """Yield the entries of the table of programs, each field by its name."""
+    return _entries("programs.txt", _OF_PROGRAMS)
+
+
+def usual() -> Iterator[dict[str, str]]:
+    """Yield the entries of usual names, each stem by itself."""
+    for entry in _entries("usual.txt", _USUAL):
+        names = entry["names"]
+        for each in names.split() if "*" in names else [names]:
+            yield entry | {"names": each}
+
+
+def _entries(file: str, fields: Sequence[str]) -> Iterator[dict[str, str]]:
+    for line in files(__package__).joinpath(file).read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
-            fields = (field.strip() for field in line.split("|"))
-            yield dict(zip(FIELDS, fields, strict=True))
+            yield dict(zip(fields, (field.strip() for field in line.split("|")), strict=True))
 
 
 def spellings_of(entry: Mapping[str, str], remark: str = "") -> Iterator[Spelling]:
     """Yield the spelling of an entry; three for names with a star."""
-    together = [sign.split("+") for sign in entry["beside"].split()]
+    together = [sign.split("+") for sign in entry.get("beside", "").split()]
     for names in _written_out(entry["names"].split(), entry["group"]):
         yield Spelling(
             group=entry["group"],
             keys=tuple(map(_letters, names)),
             remark="" if entry["turn"] else remark,
-            whose=entry["program"],
+            whose=entry.get("program", ""),
             is_behind=names[0].startswith("_"),
             signs=tuple(tuple(map(_letters, signs)) for signs in together),
-            unit=entry["unit"],
+            unit=entry.get("unit", ""),
             frame=Frame[entry["frame"].upper() or "UNSAID"],
             turn=Turn(entry["turn"]),
         )

@@ -36,7 +36,7 @@ _LONGEST: Final = 200
 # Words in front of a name that is then no state of the body.
 _OF_NO_STATE: Final = (
     "cmd command des desired ref reference target goal sp setpoint err error bias cov std var acc accel "
-    "dot euler angle wheel wheels rw rotor motor cmg joint prop thruster noise"
+    "b dot euler angle wheel wheels rw rotor motor cmg joint prop thruster noise"
 )
 _NO_STATE: Final = frozenset(_OF_NO_STATE.split())
 

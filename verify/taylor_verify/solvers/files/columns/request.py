@@ -24,7 +24,7 @@ from taylor_verify.solvers.files.formats.column import Column
 Request = Sequence[tuple[str, str]]
 
 # A comma belongs to the name of a column unless NAME= follows it.
-_NEXT: Final = re.compile(r",(?=\s*\w+\s*=)")
+_NEXT: Final = re.compile(r",(?=\s*\w+(?:\s*[\[(][^\[\](),=]{0,40}[\])])?\s*=)")
 _MOST_NEAR: Final = 3
 # The axes of a sequence by number: 321 is zyx.
 _AXES: Final = str.maketrans("123", "xyz")

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from taylor_verify.records.faults import Faults, cut
 from taylor_verify.solvers.files.columns.choice import (
     MOST_NAMED,
@@ -121,7 +123,7 @@ class _Chooser:
         clear = [choice for choice in every if not choice.doubt]
         best = min((choice.rank for choice in clear), default=Rank.BEHIND_A_WORD)
         alike = [choice for choice in clear if choice.rank == best]
-        if clear := self._of_best_frame(alike):
+        if clear := _distinct(self._of_best_frame(alike)):
             if len(clear) == 1:
                 return clear[0]
             got = " and ".join(choice.shown for choice in clear[:3])
@@ -238,6 +240,20 @@ class _Chooser:
             more = len(ignored) - MOST_NAMED
             named = shown_names(ignored[:MOST_NAMED])
             yield f"ignored: {named}{f' and {more} more' if more > 0 else ''}"
+
+
+def _distinct(choices: Sequence[Choice]) -> list[Choice]:
+    """Return the choices without those that have the numbers of one before."""
+    distinct: list[Choice] = []
+    for choice in choices:
+        if not any(choice.units == other.units and _equal(choice, other) for other in distinct):
+            distinct.append(choice)
+    return distinct
+
+
+def _equal(choice: Choice, other: Choice) -> bool:
+    pairs = zip(choice.names, other.names, strict=True)
+    return all(np.array_equal(a.column.values, b.column.values) for a, b in pairs)
 
 
 def _scalar_requests(choice: Choice) -> str:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Final
+from importlib.resources import files
+from typing import Final, NamedTuple
 
 from mpmath import mp
 
@@ -41,100 +42,40 @@ def _of_pi(rational: Fraction) -> Fraction:
 
 # A degree in radians.
 DEGREE: Final = _of_pi(Fraction(1, 180))
-_RATES: Final = "radians per unit of time"
-# Dimension by dimension: the factor, its words, and the ways to write it.
-_WRITTEN: Final[Mapping[str, Sequence[tuple[Fraction, str, str]]]] = {
-    "time": (
-        (Fraction(1), "the scene's unit of time", "s sec secs second seconds"),
-        (
-            Fraction(1, 1000),
-            "thousandths of the scene's unit of time",
-            "ms msec millisecond milliseconds",
-        ),
-        (
-            Fraction(1, 10**6),
-            "millionths of the scene's unit of time",
-            "us usec microsecond microseconds",
-        ),
-        (Fraction(1, 10**9), "1e-9 of the scene's unit of time", "ns nsec nanosecond nanoseconds"),
-        (Fraction(60), "sixties of the scene's unit of time", "min mins minute minutes"),
-        (Fraction(3600), "3600 of the scene's unit of time", "h hr hour hours"),
-        (Fraction(86400), "86400 of the scene's unit of time", "d day days"),
-    ),
-    "rate": (
-        (
-            Fraction(1),
-            _RATES,
-            "rad/s rads/s rad/sec rads rad.s^-1 rad.s-1 rads^-1 radps rad_per_s 1/s radian/second",
-        ),
-        (Fraction(1, 1000), f"thousandths of {_RATES}", "mrad/s"),
-        (
-            DEGREE,
-            "degrees per unit of time",
-            "deg/s deg/sec degs degps deg_per_s dps degree/second",
-        ),
-        (
-            _of_pi(Fraction(1, 30)),
-            "turns per minute, the unit of time being the second",
-            "rpm rev/min revolution/minute revolutions_per_minute",
-        ),
-        (_of_pi(Fraction(2)), "turns per unit of time", "rev/s rps"),
-    ),
-    "angle": (
-        (Fraction(1), "radians", "rad rads radian radians -"),
-        (DEGREE, "degrees", "deg degs degree degrees"),
-        (Fraction(1, 1000), "thousandths of a radian", "mrad milliradian"),
-        (DEGREE / 3600, "seconds of arc", "arcsec"),
-        (_of_pi(Fraction(2)), "turns", "rev turns"),
-    ),
-    "velocity": (
-        (
-            Fraction(1),
-            "the scene's unit of velocity",
-            "m/s m/sec m.s^-1 m.s-1 ms^-1 mps m_per_s meter/second",
-        ),
-        (Fraction(1, 100), "hundredths of the scene's unit of velocity", "cm/s"),
-        (Fraction(1, 1000), "thousandths of the scene's unit of velocity", "mm/s"),
-        (Fraction(1000), "1000 of the scene's unit of velocity", "km/s"),
-    ),
-    "length": (
-        (Fraction(1), "the scene's unit of length", "m metre metres meter meters"),
-        (Fraction(1, 100), "hundredths of the scene's unit of length", "cm"),
-        (Fraction(1, 1000), "thousandths of the scene's unit of length", "mm"),
-        (Fraction(1000), "1000 of the scene's unit of length", "km"),
-    ),
-    "impulse": ((Fraction(1), "the scene's unit of impulse", "n.s ns kg.m/s kgm/s"),),
-    "moment of impulse": (
-        (Fraction(1), "the scene's unit of angular impulse", "n.m.s nms kg.m^2/s kgm2/s kgm^2/s"),
-    ),
-    "number": ((Fraction(1), "plain numbers", "-"),),
-}
+
+
+class _Row(NamedTuple):
+    """A unit of the table `units.txt`: its dimension, its factor, its words, and the ways to write it."""
+
+    dimension: str
+    factor: str
+    words: str
+    texts: str
+
+    @property
+    def unit(self) -> Unit:
+        times, pi, over = self.factor.partition("pi")
+        rational = Fraction(f"{times.strip('*') or 1}{over}") if pi else Fraction(self.factor)
+        return Unit(_of_pi(rational) if pi else rational, self.words)
+
+
+_LINES: Final = files(__package__).joinpath("units.txt").read_text(encoding="utf-8").splitlines()
+_TABLE: Final = tuple(_Row(*map(str.strip, line.split("|"))) for line in _LINES[1:])
 # The dimension of each group of columns.
 DIMENSION: Final[Mapping[str, str]] = {
     "time": "time",
     **{name: group.dimension for name, group in GROUPS.items()},
     **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
-_GREEK: Final = str.maketrans(
-    {
-        "ω": "omega",
-        "η": "eta",
-        "ε": "eps",
-        "μ": "u",
-        "φ": "phi",
-        "θ": "theta",
-        "ψ": "psi",
-        "°": "deg",
-        "·": ".",
-        "*": ".",
-    }
-)
+_GREEK: Final = dict(
+    zip("ωηεμφθψ", ("omega", "eta", "eps", "u", "phi", "theta", "psi"), strict=True)
+) | {"°": "deg", "·": ".", "*": "."}
 
 
 def plain(text: str) -> str:
     """Return a text in small letters, with Greek letters and signs by name, without outer blanks."""
     normal = unicodedata.normalize("NFKC", text.replace("°", "deg")).lower()
-    return normal.translate(_GREEK).strip(" \t\r\n\ufeff\"'")
+    return normal.translate(str.maketrans(_GREEK)).strip(" \t\r\n\ufeff\"'")
 
 
 def _key(text: str) -> str:
@@ -148,9 +89,12 @@ def letters(text: str) -> str:
 
 _IN_BRACKETS: Final = {
     dimension: {
-        _key(text): Unit(factor, words) for factor, words, texts in rows for text in texts.split()
+        _key(text): row.unit
+        for row in _TABLE
+        for text in row.texts.split()
+        if row.dimension == dimension
     }
-    for dimension, rows in _WRITTEN.items()
+    for dimension in {row.dimension for row in _TABLE}
 }
 _AS_SUFFIX: Final = {
     dimension: {letters(text): unit for text, unit in units.items() if text[0].isalpha()}
@@ -170,4 +114,5 @@ def as_suffix(text: str, group: str) -> Unit | None:
 
 def known_units(group: str) -> str:
     """Return the first spelling of every unit of a group, in one line."""
-    return ", ".join(texts.split()[0] for _, _, texts in _WRITTEN[DIMENSION[group]])
+    rows = (row for row in _TABLE if row.dimension == DIMENSION[group])
+    return ", ".join(row.texts.split()[0] for row in rows)

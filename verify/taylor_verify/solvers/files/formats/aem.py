@@ -15,16 +15,10 @@ from math import nan
 from pathlib import Path
 from typing import Final, TypeVar
 
-from taylor_verify.models.algebra import apply, dot, transpose
-from taylor_verify.models.frame import attitude_rate, rotation
+from taylor_verify.models.algebra import dot
+from taylor_verify.models.frame import attitude_rate
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
-from taylor_verify.solvers.files.columns.units import DEGREE
-from taylor_verify.solvers.files.formats.aem_euler import (
-    angle_columns,
-    negative,
-    quaternion,
-    sequence,
-)
+from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.formats.aem_segment import (
     ANGLES,
     ANGULAR_VELOCITY,
@@ -59,6 +53,7 @@ _TURNING: Final = (
     ),
     *("TNW", "NTW", "VNC", "SEZ", "NSW"),
 )
+_AXES: Final = str.maketrans("123", "xyz")
 _NOT_UNIFORM: Final = ("UT1", "GMST", "SCLK", "MET", "MRT")
 _BLANK: Final = b"\xef\xbb\xbf \t\r\n"
 # The scalar of ours comes first, that of a message last.
@@ -89,28 +84,15 @@ def read(file: Content, path: Path, part: str) -> Table:
     segment = chosen(in_xml(file, path) if is_xml else in_text(file, path), part, path)
     reverse = _check_frames(segment, path)
     faults = Faults()
-    times = _times(segment, path, faults)
-    states = list(_rows(segment, ANGLES if segment.is_of_angles else QUATERNION, path, faults))
-    rates = [
-        rate
-        for names in (ANGULAR_VELOCITY, DERIVATIVE)
-        if names[0] in segment.columns
-        for rate in _rows(segment, names, path, faults)
-    ]
+    columns = [Column("t", _times(segment, path, faults))]
+    if segment.is_of_angles:
+        columns += _angle_columns(segment, reverse, path)
+    else:
+        columns += _quaternion_columns(segment, reverse)
+    rates, note = _angular_velocities(segment, reverse, path, faults)
+    columns += rates
     if faults.lines:
         raise Refused(faults.lines)
-    if segment.is_of_angles:
-        axes = sequence(segment, path)
-        turned = [quaternion(axes, angles, reverse) for angles in states]
-        columns = [Column("t", times), *angle_columns(segment, reverse, path)]
-    else:
-        turned = [_body_to_space(q, reverse) for q in states]
-        columns = [Column("t", times), *_quaternion_columns(segment, reverse)]
-    velocities, note = _angular_velocities(segment, reverse, turned, rates, path)
-    columns += [
-        Column(f"w{i}", list(values))
-        for i, values in enumerate(zip(*velocities, strict=True), start=1)
-    ]
     space = next(f for f in (segment.frame("A"), segment.frame("B")) if not f.startswith(_BODY))
     notes = (
         f"t counts from START_TIME = {cut(segment.metadata['START_TIME'])}",
@@ -123,7 +105,7 @@ def chosen(segments: Sequence[Kind], part: str, path: Path) -> Kind:
     """Return the segment of this number, or the only one."""
     last = len(segments)
     if not segments:
-        raise refusal("a segment with attitude data", "none", path)
+        raise refusal("a segment with states", "none", path)
     if not part and last > 1:
         raise refusal("one segment", last, path, f"name one: FILE#1 ... FILE#{last}")
     if part and part not in map(str, range(1, last + 1)):
@@ -160,7 +142,7 @@ def _times(segment: Segment, path: Path, faults: Faults) -> list[Fraction]:
     except ValueError as error:
         zero = Fraction(0)
         faults.add(str(error), cut(start), f"{path}, START_TIME")
-    epochs = _numbers(segment, "EPOCH", lambda text: seconds(text, is_utc), path, faults)
+    epochs = _numbers(segment, "EPOCH", path, faults, lambda text: seconds(text, is_utc))
     return [Fraction(epoch) - zero for epoch in epochs if isinstance(epoch, Fraction)]
 
 
@@ -171,12 +153,12 @@ def check_clock(system: str, path: Path) -> bool:
     return system.upper() == "UTC"
 
 
-def _rows(segment: Segment, names: Sequence[str], path: Path, faults: Faults) -> Iterator[Row]:
-    return zip(*(list(_numbers(segment, n, exact, path, faults)) for n in names), strict=True)
-
-
 def _numbers(
-    segment: Segment, name: str, value: Callable[[str], Value], path: Path, faults: Faults
+    segment: Segment,
+    name: str,
+    path: Path,
+    faults: Faults,
+    value: Callable[[str], Value] = exact,
 ) -> Iterator[Value]:
     with alike(faults, f"{path}, {name}") as wrong:
         for row, text in enumerate(segment.columns.get(name, ()), start=1):
@@ -190,30 +172,26 @@ def _numbers(
 # What the numbers mean.
 
 
-def _body_to_space(q: Row, reverse: bool) -> Row:
-    """Return the quaternion with its scalar first."""
-    scalar, *vector = (q[i] for i in _SCALAR_FIRST)
-    return (scalar, *(-entry for entry in vector)) if reverse else (scalar, *vector)
-
-
 def _quaternion_columns(segment: Segment, reverse: bool) -> Iterator[Column]:
     """Yield q0 ... q3 as text, so that the number of printed digits is known."""
     for i, place in enumerate(_SCALAR_FIRST):
         texts = segment.columns[QUATERNION[place]]
-        yield Column(f"q{i}", [negative(t) for t in texts] if reverse and i else texts)
+        yield Column(f"q{i}", [_negative(t) for t in texts] if reverse and i else texts)
 
 
 def _angular_velocities(
-    segment: Segment, reverse: bool, turned: Sequence[Row], rates: Sequence[Row], path: Path
-) -> tuple[list[Row], str]:
-    """Return w1 w2 w3 in body axes and radians a second, where the message has them, and a note."""
-    if segment.kind == "QUATERNION/RATE":
-        return [], "X_RATE Y_RATE Z_RATE are rates of Euler angles, and are not read"
+    segment: Segment, reverse: bool, path: Path, faults: Faults
+) -> tuple[list[Column], str]:
+    """Return the angular velocity, where the message has one, and a note."""
     if segment.kind == "QUATERNION/DERIVATIVE":
-        dots = [_body_to_space(rate, reverse) for rate in rates]
-        velocities = [_of_derivative(q, dot) for q, dot in zip(turned, dots, strict=True)]
-        return velocities, "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
-    if segment.kind in ("EULER_ANGLE/DERIVATIVE", "EULER_ANGLE/RATE"):
+        states, rates = (
+            [*zip(*(list(_numbers(segment, n, path, faults)) for n in names), strict=True)]
+            for names in (QUATERNION, DERIVATIVE)
+        )
+        rows = [_of_derivative(q, dot, reverse) for q, dot in zip(states, rates, strict=True)]
+        columns = [Column(f"w{i}", [row[i - 1] for row in rows]) for i in (1, 2, 3)]
+        return columns, "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
+    if segment.kind.endswith(("/RATE", "/DERIVATIVE")):
         return [], "rates of Euler angles are not read"
     if not segment.kind.endswith("/ANGVEL"):
         return [], ""
@@ -222,24 +200,49 @@ def _angular_velocities(
     frame = frames.get(stated, stated)
     if frame not in frames.values():
         raise refusal(f"ANGVEL_FRAME = {' or '.join(frames.values())}", cut(frame) or "none", path)
-    sign = -1 if segment.frame("A").startswith(_BODY) else 1
-    velocities = [[sign * DEGREE * v for v in rate] for rate in rates]
-    if not frame.startswith(_BODY):
-        velocities = [_in_body(q, v) for q, v in zip(turned, velocities, strict=True)]
-    return velocities, f"w1 w2 w3 are ANGVEL in {stated}, degrees a second"
+    stem = "w" if frame.startswith(_BODY) else "omega_space_"
+    # ANGVEL is that of B relative to A.
+    is_reversed = segment.frame("A").startswith(_BODY)
+    columns = []
+    for k, key in enumerate(ANGULAR_VELOCITY, start=1):
+        texts = segment.columns[key]
+        values = [_negative(text) for text in texts] if is_reversed else texts
+        columns.append(Column(f"{stem}{k} [deg/s]", values))
+    return columns, f"the angular velocity is ANGVEL in {stated}, degrees a second"
 
 
-def _of_derivative(q: Row, derivative: Row) -> Row:
-    """Return w of q' = q (0, w) / 2: q' is linear in w, with columns orthogonal and |q|/2 long."""
-    columns = (attitude_rate(q, unit) for unit in _UNIT_VECTORS)
-    return _divided([4 * dot(column, derivative) for column in columns], q)
-
-
-def _in_body(q: Row, v: Row) -> Row:
-    """Return a vector of space axes in body axes."""
-    return _divided(apply(transpose(rotation(q)), v), q)
-
-
-def _divided(vector: Row, q: Row) -> Row:
+def _of_derivative(q: Row, derivative: Row, reverse: bool) -> Row:
+    """Return w of q' = q (0, w) / 2, body to space: q' is linear in w, with columns |q|/2 long."""
+    signs = (1, *[-1 if reverse else 1] * 3)
+    ours, dots = (
+        [sign * row[i] for sign, i in zip(signs, _SCALAR_FIRST, strict=True)]
+        for row in (q, derivative)
+    )
     square = sum(entry * entry for entry in q)
-    return [entry / square if square else nan for entry in vector]
+    columns = (attitude_rate(ours, unit) for unit in _UNIT_VECTORS)
+    return [4 * dot(column, dots) / square if square else nan for column in columns]
+
+
+# Euler angles: EULER_ROT_SEQ turns the axes of REF_FRAME_A into those of REF_FRAME_B.
+
+
+def _sequence(segment: Segment, path: Path) -> str:
+    """Return the sequence of axes, as `zyx`."""
+    stated = segment.metadata.get("EULER_ROT_SEQ", "none")
+    axes = stated.lower().translate(_AXES)
+    if axes not in FORMS or len(axes) != len(ANGLES):
+        raise refusal("EULER_ROT_SEQ like ZYX", cut(stated), path)
+    return axes
+
+
+def _angle_columns(segment: Segment, reverse: bool, path: Path) -> Iterator[Column]:
+    """Yield the angles that turn the space axes into those of the body, in degrees, as text."""
+    axes, texts = _sequence(segment, path), [segment.columns[name] for name in ANGLES]
+    if reverse:
+        axes, texts = axes[::-1], [[_negative(text) for text in each] for each in reversed(texts)]
+    for k, each in enumerate(texts, start=1):
+        yield Column(f"euler_{axes}_{k} [deg]", each)
+
+
+def _negative(text: str) -> str:
+    return text.removeprefix("-") if text.startswith("-") else f"-{text.removeprefix('+')}"

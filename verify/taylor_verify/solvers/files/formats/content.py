@@ -81,6 +81,8 @@ class Content:
             for number, line in enumerate(self._limited(longest), start=1):
                 if len(line) > longest.most:
                     raise longest.refusal("more", f"{self.path}, line {number}")
+                if "\0" in line:
+                    raise no_utf8(self.beginning(2), self.path)
                 if number > LINES.most:
                     raise LINES.refusal("more", self.path)
                 yield line

@@ -22,7 +22,6 @@ from taylor_verify.solvers.files.formats.column import (
     VALUES,
     Column,
     Table,
-    check_size,
     refuse_part,
     shown,
 )
@@ -48,8 +47,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     if _are_objects(document):
         counted = enumerate(document, start=1)
         return table((_object(each, f"{path}, row {k}") for k, each in counted), path)
-    if isinstance(document, dict) and isinstance(document.get("columns"), dict | list):
-        document = _by_name(document["columns"], document.get("data"), path)
+    if isinstance(document, dict) and isinstance(document.get("columns"), dict):
+        document = document["columns"]
     while isinstance(document, dict) and len(document) == 1:
         (inner,) = document.values()
         if not isinstance(inner, dict):
@@ -65,18 +64,6 @@ def read(file: Content, path: Path, part: str) -> Table:
         raise Refused(faults.lines)
     COLUMNS.check(len(columns), path)
     return Table(columns)
-
-
-def _by_name(names: Any, rows: Any, path: Path) -> Any:
-    """Return the columns of a table whose rows stand apart from their names, as pandas splits it."""
-    if isinstance(names, dict) or not isinstance(rows, list):
-        return names
-    check_size(len(names), len(rows), path)
-    return {str(n): [_entry(row, k) for row in rows] for k, n in enumerate(names)}
-
-
-def _entry(row: Any, k: int) -> Any:
-    return row[k] if isinstance(row, list) and k < len(row) else None
 
 
 def _columns(document: Mapping[str, Any], path: Path, group: str = "") -> Iterator[Column]:

@@ -30,6 +30,7 @@ MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
 # A name with its unit in brackets, between blanks.
 _WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s{0,3}[\[(][^\[\]()]{0,40}[\])])?")
+_OUTSIDE_BRACKETS: Final = re.compile(r",(?![^\[(,]{0,20}[\])])")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _MOSTLY: Final = 0.5
@@ -200,6 +201,7 @@ def _ways(text: str, mark: str) -> Iterator[list[str]]:
     """Yield the cells of a header by each mark, that of the rows first."""
     for each in (mark, *(other for other in MARKS if other != mark)):
         yield _cells(text, each)
+    yield [cell.strip() for cell in _OUTSIDE_BRACKETS.split(text.strip())]
     yield [cell.strip() for cell in _WIDE_BLANKS.split(text.strip())]
     yield _WITH_UNIT.findall(text)
 
