@@ -14,6 +14,7 @@ from builders.scenes import vector
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
+import taylor_verify
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.elements import disturbance
 from taylor_verify.exact.euler.regime import FreeSpin
@@ -156,6 +157,22 @@ def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) ->
 
 
 # Euler.
+
+
+@pytest.mark.parametrize("name", ["euler/generic", "euler/tennis-racket"])
+def test_amplitudes_and_phase_are_those_of_the_textbook(name: str) -> None:
+    """omega is (A dn, B sn, C cn) of rate t + phase, by mpmath's functions, at the times of the scene."""
+    scene = load(name)
+    orbit = elements(scene, 30)
+    with mp.workdps(30):
+        exact = taylor_verify.exact(scene, scene.times[:5], 25)["omega"]
+        for t, omega in zip(scene.clock.elapsed, exact, strict=False):
+            u = orbit["rate"].value * mp.convert(t) + orbit["phase"].value
+            waves = [mp.ellipfun(kind, u=u, m=orbit["m"].value) for kind in ("dn", "sn", "cn")]
+            sizes = [orbit[f"amplitude_{kind}"].value for kind in ("dn", "sn", "cn")]
+            expected = sorted(abs(size * wave) for size, wave in zip(sizes, waves, strict=True))
+            components = sorted(map(abs, omega))
+            assert all(abs(a - b) <= 1e-20 for a, b in zip(expected, components, strict=True))
 
 
 @pytest.mark.parametrize("off", ["0.1", "0.01", "1e-4", "1e-8", "1e-15"])

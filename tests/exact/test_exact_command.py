@@ -293,3 +293,14 @@ def test_the_separatrix_is_printed_at_any_time(capsys: pytest.CaptureFixture[str
     (row,) = json.loads(capsys.readouterr().out)["rows"]
     assert row["omega"][0].endswith("e-132974985")
     assert len(row["omega"][0].split("e")[0].replace(".", "")) == 20
+
+
+@pytest.mark.parametrize(("digits", "lines"), [(12, 6), (30, 12)])
+def test_a_matrix_fits_a_terminal(
+    digits: int, lines: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No line has more than 80 characters; entries that do not fit beside each other have a line each."""
+    assert main(["exact", "euler/with-attitude", "--at", "10", "--digits", str(digits)]) == 0
+    _, *rows = capsys.readouterr().out.strip().split("\n\n")[-1].splitlines()
+    assert max(map(len, rows)) <= 80
+    assert len(rows) == lines

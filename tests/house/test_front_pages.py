@@ -19,7 +19,7 @@ def _as_a_reader(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 # They judge several files and look for the cause of each error.
-LONG = ("engine-author", "satellite", "vehicle")
+LONG = ("engine-author", "integrator-author", "satellite", "vehicle")
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.slow] if page.stem in LONG else [])
     for page in FRONT_PAGES

@@ -17,9 +17,8 @@ LIGHT, DARK = "light", "dark"
 KINDS = (
     "index.html",
     "docs/method.html",
-    "docs/tutorials/check-my-simulator.html",
+    "docs/for/satellite.html",
     "docs/gallery/dzhanibekov.html",
-    "docs/gallery/simulator.html",
     "docs/glossary.html",
     "docs/reference/calls.html",
     "reports/README.html",

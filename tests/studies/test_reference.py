@@ -311,6 +311,16 @@ def test_the_example_sees_a_wrong_number(
     assert compared(example, exact, mine, "1e-8") == status
 
 
+def test_the_example_names_a_column_that_is_missing(example: Path, tmp_path: Path) -> None:
+    """A file without w3 ends with status 2 and the name of the column."""
+    exact, mine = tmp_path / "exact.csv", tmp_path / "mine.csv"
+    exact.write_text("t,w1,w2,w3,radius\n0,1,0,0,5e-32\n", encoding="utf-8")
+    mine.write_text("t,w1,w2\n0,1,0\n", encoding="utf-8")
+    command = [str(example), str(exact), str(mine), "1"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, f"expected a column w3, got none in {mine}\n")
+
+
 @by_set
 def test_the_example_accepts_every_reference(scenes: Sequence[str], example: Path) -> None:
     """Each file read twice agrees with itself exactly, and no other scene passes for it."""

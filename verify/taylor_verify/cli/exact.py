@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
@@ -17,6 +17,9 @@ from taylor_verify.exact.printed_events import events_document
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+
+# Characters of a line of 80 beside the name of a quantity. Entries of a wider matrix get a line each.
+_ROOM: Final = 62
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -104,6 +107,9 @@ def _print_quantity(page: Page, name: str, value: Sequence[Any] | str) -> None:
     # A column for the sign, so that digits stand below digits.
     signed = [[text if text.startswith("-") else f" {text}" for text in row] for row in rows]
     width = max(len(text) for row in signed for text in row)
-    for i, row in enumerate(signed):
-        line = " ".join(text.ljust(width) for text in row).rstrip()
-        page.line(f"  {name if i == 0 else '':15} {line}")
+    lines = [("", " ".join(text.ljust(width) for text in row).rstrip()) for row in signed]
+    if len(signed[0]) > 1 and max(len(line) for _, line in lines) > _ROOM:
+        lines = [(f"r{i}{k}", x) for i, row in enumerate(signed, 1) for k, x in enumerate(row, 1)]
+    for label, line in lines:
+        page.line(f"  {name.ljust(12 if label else 15)}{label} {line}")
+        name = ""

@@ -278,6 +278,13 @@ this often :: 2K/lam
     nutation_frequency :: radians/time :: frequency at which the encircled axis nods to H, \
 in space axes :: pi lam/K
 """
+_WAVES: Final = """
+    amplitude_dn :: radians/time :: omega about the encircled axis is this times dn(rate t + phase) :: \
+Heinbockel (2.2.72), M = 0
+    amplitude_sn :: radians/time :: likewise about the middle axis, times sn :: Heinbockel (2.2.72), M = 0
+    amplitude_cn :: radians/time :: likewise about the third axis, times cn :: Heinbockel (2.2.72), M = 0
+    phase :: radians :: of the elliptic argument, at the start :: Heinbockel (2.2.72), M = 0
+"""
 _FLIPS: Final = """
     flip_law :: time :: flip_time by its leading law near the separatrix :: ln(16/m')/lam
     flip_law_2 :: time :: the same with the next term :: (2/lam)(L + (L - 1) m'/4), L = ln(16/m')/2
@@ -294,7 +301,10 @@ def _triaxial(spin: FreeSpin) -> list[Element]:
         L = mp.log(16 / orbit.m_prime) / 2
         laws = L, L + (L - 1) * orbit.m_prime / 4
         numbers += described(_FLIPS, (2 * law / orbit.rate for law in laws))
-    return [*numbers, *_saddle(spin)]
+    # The phase may be zero, and a quarter period is its size.
+    *amplitudes, phase = described(_WAVES, (*orbit.amplitudes, orbit.phase))
+    waves = [*amplitudes, replace(phase, size=orbit.quarter_period)]
+    return [*numbers, *waves, *_saddle(spin)]
 
 
 _SEPARATRIX: Final = """
