@@ -286,7 +286,8 @@ class Motions(Report):
 
     def records(self, scene: str) -> Any:
         times = self.portrait(scene)["course"]["t"]
-        gates = [{"quantity": "omega", "errors": [1e-16] * len(times)}]
+        errors = [1e-16] * len(times)
+        gates = [{"quantity": "omega", "errors": errors, "attainable": errors}]
         return {"f64": {"rung": "f64", "times": times, "unit_roundoff": 2.0**-53, "gates": gates}}
 
 
