@@ -315,7 +315,7 @@ def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
     kinds: dict[Any, list[Picture]] = {}
     for picture in drawable():
         kinds.setdefault(picture.figure.func, []).append(picture)
-    assert len(kinds) >= 9
+    assert len(kinds) >= 8
     for same in kinds.values():
         picture = min(same, key=lambda one: published_as(one).stat().st_size)
         assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
