@@ -111,15 +111,15 @@ def picture(
 
 def _figure(panels: Panels, in_roundoffs: bool, words: str) -> Figure:
     names = list(dict.fromkeys(line.name for lines in panels.values() for line in lines))
-    looks = {
+    styles = {
         name: (look_of_rung(name) if in_roundoffs else look_of_line(k)).line
         for k, name in enumerate(names)
     }
-    entries: list[Entry] = [(looks[name], _short(name)) for name in names]
+    entries: list[Entry] = [(styles[name], _short(name)) for name in names]
     entries.append(({"color": QUIET, **_FLOOR}, "roundoff floor"))
     figure, places = sheet(len(panels), entries, words, _HEIGHT)
     for axes, (quantity, lines) in zip(places, panels.items(), strict=True):
-        _draw(axes, quantity, lines, looks)
+        _draw(axes, quantity, lines, styles)
         units = ("u rad", "u") if in_roundoffs else ("rad", "relative")
         axes.set_ylabel(f"error ({units[quantity != 'attitude']})")
     return figure
@@ -130,11 +130,11 @@ def _short(name: str) -> str:
     return name if len(name) <= _LONGEST_NAME else f"…{name[1 - _LONGEST_NAME :]}"
 
 
-def _draw(axes: Axes, quantity: str, lines: Sequence[Line], looks: Mapping[str, Any]) -> None:
+def _draw(axes: Axes, quantity: str, lines: Sequence[Line], styles: Mapping[str, Any]) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     for line in lines:
-        look = {**looks[line.name], "markevery": max(1, len(line.times) // _MARKS)}
+        look = {**styles[line.name], "markevery": max(1, len(line.times) // _MARKS)}
         axes.plot(line.times, line.errors, gid="course", zorder=3, **look)
         axes.plot(line.times, line.floor, color=look["color"], zorder=2, **_FLOOR)
     values = np.concatenate([part for line in lines for part in (line.errors, line.floor)])
