@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from taylor_verify.cli import main
+
 pytestmark = pytest.mark.browser
 
 WIDE, PHONE = (1280, 900), (390, 844)
@@ -160,6 +162,36 @@ def test_a_phone_never_scrolls_sideways(reader: Reader, page: str, theme: str) -
     reader.set(PHONE, theme)
     reader.open(page)
     reader.look_at_motions()
+    assert reader.run("return document.documentElement.scrollWidth") <= PHONE[0]
+    assert reader.complaints() == []
+
+
+@pytest.mark.parametrize("width", [1024, 1330, 1366, 1460, 1600])
+def test_a_laptop_never_scrolls_sideways(reader: Reader, width: int) -> None:
+    """A page beside its lists of pages and of headings is no wider than the window."""
+    reader.set((width, 900))
+    for page in KINDS:
+        reader.open(page)
+        assert reader.run("return document.documentElement.scrollWidth") <= width, page
+
+
+CLASS = ["euler/tennis-racket", "loads/falling-plate", "loads/heavy-top", "loads/pd-wheels"]
+DRAWN = "return document.querySelector('.body canvas').toDataURL()"
+
+
+@pytest.mark.parametrize("scene", CLASS)
+def test_a_page_for_a_class_turns_by_touch(reader: Reader, tmp_path: Path, scene: str) -> None:
+    """On a phone a finger turns the body that `draw --animate` shows, and the page fits the screen."""
+    out = tmp_path / "moving.html"
+    assert main(["draw", scene, "--animate", "--out", str(out)]) == 0
+    reader.set(PHONE)
+    reader.driver.get(f"{out.as_uri()}#part=0.3")
+    before = reader.run(DRAWN)
+    for kind, points in (("Start", [150]), ("Move", [190]), ("Move", [240]), ("End", [])):
+        touches = [{"x": x, "y": 240} for x in points]
+        event = {"type": f"touch{kind}", "touchPoints": touches}
+        reader.driver.execute_cdp_cmd("Input.dispatchTouchEvent", event)
+    assert reader.run(DRAWN) != before
     assert reader.run("return document.documentElement.scrollWidth") <= PHONE[0]
     assert reader.complaints() == []
 

@@ -26,6 +26,7 @@ from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import look_of_line, look_of_rung
 from taylor_verify.plotting.wording import plain, power_of_ten
 from taylor_verify.records.quantities import is_conserved, states_among
+from taylor_verify.records.record import Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,13 +58,16 @@ class Line:
 Panels = Mapping[str, Sequence[Line]]
 
 
-def panels_of(records: Mapping[str, Row], start: float, *, in_roundoffs: bool = False) -> Panels:
+def panels_of(
+    records: Mapping[str, Record | Row], start: float, *, in_roundoffs: bool = False
+) -> Panels:
     """Return the lines of each state quantity, then of one conserved quantity, mostly the energy.
 
-    ``records`` are the documents of the answers' records, by name. The row at ``start`` is left out.
+    ``records`` are those of the answers, or their documents, by name. The row at ``start`` is left out.
     """
     lines_of: dict[str, list[Line]] = {}
-    for name, record in records.items():
+    for name, each in records.items():
+        record = each.document() if isinstance(each, Record) else each
         unit = record["unit_roundoff"] if in_roundoffs else 1.0
         times = np.array(record["times"])
         for gate in record["gates"]:
@@ -84,13 +88,13 @@ def _above_zero(values: Sequence[float | None]) -> Numbers:
 
 
 def picture(
-    document: Document, records: Mapping[str, Row], *, in_roundoffs: bool = False
+    document: Document, records: Mapping[str, Record | Row], *, in_roundoffs: bool = False
 ) -> Picture:
     """Return the errors of all answers in one picture, beside the roundoff floor.
 
-    ``document`` is the exact motion. ``records`` are the documents of the judged answers' records, by the
-    names that the picture shows: files, or rungs, whose errors are in their own roundoffs. Raises NotDrawn
-    if no error is above zero.
+    ``document`` is the exact motion. ``records`` are those of the judged answers, or their documents, by
+    the names that the picture shows: files, or rungs, whose errors are in their own roundoffs. Raises
+    NotDrawn if no error is above zero.
     """
     panels = panels_of(records, document["course"]["t"][0], in_roundoffs=in_roundoffs)
     if not panels:
@@ -111,15 +115,15 @@ def picture(
 
 def _figure(panels: Panels, in_roundoffs: bool, words: str) -> Figure:
     names = list(dict.fromkeys(line.name for lines in panels.values() for line in lines))
-    looks = {
+    styles = {
         name: (look_of_rung(name) if in_roundoffs else look_of_line(k)).line
         for k, name in enumerate(names)
     }
-    entries: list[Entry] = [(looks[name], _short(name)) for name in names]
+    entries: list[Entry] = [(styles[name], _short(name)) for name in names]
     entries.append(({"color": QUIET, **_FLOOR}, "roundoff floor"))
     figure, places = sheet(len(panels), entries, words, _HEIGHT)
     for axes, (quantity, lines) in zip(places, panels.items(), strict=True):
-        _draw(axes, quantity, lines, looks)
+        _draw(axes, quantity, lines, styles)
         units = ("u rad", "u") if in_roundoffs else ("rad", "relative")
         axes.set_ylabel(f"error ({units[quantity != 'attitude']})")
     return figure
@@ -130,11 +134,11 @@ def _short(name: str) -> str:
     return name if len(name) <= _LONGEST_NAME else f"…{name[1 - _LONGEST_NAME :]}"
 
 
-def _draw(axes: Axes, quantity: str, lines: Sequence[Line], looks: Mapping[str, Any]) -> None:
+def _draw(axes: Axes, quantity: str, lines: Sequence[Line], styles: Mapping[str, Any]) -> None:
     from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     for line in lines:
-        look = {**looks[line.name], "markevery": max(1, len(line.times) // _MARKS)}
+        look = {**styles[line.name], "markevery": max(1, len(line.times) // _MARKS)}
         axes.plot(line.times, line.errors, gid="course", zorder=3, **look)
         axes.plot(line.times, line.floor, color=look["color"], zorder=2, **_FLOOR)
     values = np.concatenate([part for line in lines for part in (line.errors, line.floor)])

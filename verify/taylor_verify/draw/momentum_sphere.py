@@ -68,18 +68,17 @@ class Spins:
     @property
     def circle(self) -> Numbers:
         """The steady spins across the axis of the third moment, if two are equal and h is along it."""
-        pair = [k for k in range(3) if self._equals(k) == 2]
+        pair = [k for k in range(3) if self.equals(k) == 2]
         if not pair or self.wheels[pair].any():
             return np.empty((0, 3))
         (third,) = {0, 1, 2} - set(pair)
         along = self.wheels[third] / (1 - self.moments[third] / self.moments[pair[0]])
         radius = np.sqrt(max(self.size**2 - along**2, 0.0))
-        base = along * np.eye(3)[third]
-        return (
-            base + radius * Ellipsoid((1.0,) * 3).circle(np.eye(3)[third]) if radius else base[:0]
-        )
+        across = Ellipsoid((radius,) * 3).circle(np.eye(3)[third])
+        return np.asarray(across[: len(across) * bool(radius)] + along * np.eye(3)[third])
 
-    def _equals(self, k: int) -> int:
+    def equals(self, k: int) -> int:
+        """Return how many of the three moments are equal to this one."""
         return int(
             np.count_nonzero(np.abs(self.moments - self.moments[k]) <= _ZERO * self.moments[k])
         )
@@ -129,7 +128,7 @@ def _momenta(document: Document, moments: Numbers, wheels: Numbers) -> Numbers:
 def _without_wheels(bare: Spins) -> Spins:
     """Two spins along the axis of each moment that no other equals; unstable along the middle axis."""
     order = np.argsort(bare.moments)
-    poles = {int(k): bare.size * np.eye(3)[k] for k in order if bare._equals(int(k)) == 1}
+    poles = {int(k): bare.size * np.eye(3)[k] for k in order if bare.equals(int(k)) == 1}
     middle = poles.pop(int(order[1]), None) if len(poles) == 3 else None
     stable = tuple(sign * pole for pole in poles.values() for sign in (1, -1))
     unstable = () if middle is None else (middle, -middle)

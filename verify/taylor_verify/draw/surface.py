@@ -101,8 +101,8 @@ def figure(drawn: Surface, words: str) -> Figure:
     for mark in (*drawn.marks, *drawn.ends):
         over.mark(mark.point, mark.look)
     entries: list[Entry] = [({"color": scale()(0.6), "linewidth": _WIDTH}, drawn.name)]
-    named = {each.name: each.look for each in (*drawn.curves, *drawn.ends, *drawn.marks)}
-    entries += [(look, name) for name, look in named.items()]
+    parts: list[Curve | Mark] = [*drawn.curves, *drawn.ends, *drawn.marks]
+    entries += [(look, name) for name, look in {each.name: each.look for each in parts}.items()]
     note = f"Faint: on the far side. {words}" if drawn.semi_axes else words
     stage.legend(entries, note, _LEGEND)
     stage.time_bar(drawn.times, _TIME)

@@ -50,7 +50,9 @@ def html_table(
 
 
 _MOST_POINTS: Final = 500
-_COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+_COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "currentColor")
+# A start that is exact but for its last rounding takes no more of a logarithmic axis than this.
+_MOST_DECADES: Final = 12
 
 
 def picture(
@@ -65,12 +67,13 @@ def picture(
     if not known or t[0] == t[-1]:
         return ""
     low, high = min(known), max(known)
+    low = max(low, high - _MOST_DECADES) if log else low
     across, up = 560 / (t[-1] - t[0]), 180 / ((high - low) or 1.0)
     lines = []
     for k, (name, curve) in enumerate(heights.items()):
         colour = _COLOURS[k % len(_COLOURS)]
         points = " ".join(
-            f"{40 + (time - t[0]) * across:.1f},{200 - (y - low) * up:.1f}"
+            f"{40 + (time - t[0]) * across:.1f},{200 - (max(y, low) - low) * up:.1f}"
             for time, y in zip(t, curve, strict=True)
             if y is not None
         )
@@ -83,7 +86,8 @@ def picture(
         for y, end in zip((24, 204), ends, strict=True)
     ]
     lines.append(f'<text x="40" y="12" font-size="11">{escape(title)}</text>')
-    return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 620 260">{"".join(lines)}</svg>'
+    size = 'viewBox="0 0 620 260" style="max-width: 46rem" fill="currentColor"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(lines)}</svg>'
 
 
 def _height(value: Any, log: bool) -> float | None:

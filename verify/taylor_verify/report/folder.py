@@ -26,9 +26,7 @@ GATES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
 """Makers of the tables with the reason of every verdict, by their paths."""
 TABLES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
     "tables/accuracy.md": tables.accuracy,
-    "tables/accuracy.csv": csv_tables.accuracy,
     "tables/conserved.md": tables.conserved,
-    "tables/conserved.csv": csv_tables.conserved,
     **GATES,
 }
 """Makers of all tables of verdicts, by their paths."""

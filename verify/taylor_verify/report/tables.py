@@ -37,10 +37,10 @@ _RATIO: Final = (
 _CONTENTS: Final = (
     (
         "[State errors](accuracy.md)",
-        "`accuracy.csv`",
+        "`gates.csv`",
         "the error of what each scene tracks, beside that of perfect rounding",
     ),
-    ("[Conserved quantities](conserved.md)", "`conserved.csv`", "their drift, a run a line"),
+    ("[Conserved quantities](conserved.md)", "`gates.csv`", "their drift, a run a line"),
     (
         "Gates",
         "`gates.csv`",

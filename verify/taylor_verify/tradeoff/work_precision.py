@@ -213,11 +213,15 @@ def _draw(
     kind = series[-1].kind
     for line in series:
         look = look_of(line.family, line.rung)
-        for number, run in enumerate(line.runs):
-            # One of its runs has the name of a family. Thick lines are below thin ones.
-            name = {"label": line.label if line.kind == kind else line.family} if not number else {}
+        name: str | None = line.label if line.kind == kind else line.family
+        for run in line.runs:
+            # Thick lines are below thin ones.
             order = 4 - look.width / 10
-            axes.plot(*zip(*run, strict=True), gid=line.family, zorder=order, **name, **look.line)
+            axes.plot(
+                *zip(*run, strict=True), gid=line.family, label=name, zorder=order, **look.line
+            )
+            # One of its runs has the name of a family.
+            name = None
     name_lines(axes)
     corners = _stairs(front, axes.get_xlim()[1], axes.get_ylim()[1])
     axes.plot(*zip(*corners, strict=True), color=QUIET, linewidth=0.6, zorder=1, gid="front")

@@ -85,7 +85,6 @@ STUDY: Final = Study(
     measure=_measure,
     find=_find,
     page=lambda verdicts, folder: TABLES["tables/accuracy.md"](verdicts),
-    sheet=TABLES["tables/accuracy.csv"],
     beside={path: make for path, make in TABLES.items() if "accuracy" not in path},
     bulk=(
         Bulk(
