@@ -33,7 +33,7 @@ def _in_this_process() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(measure, "run_all", run_all)
-        patched.setattr(own, "check", partial(check, tolerance=1))
+        patched.setattr(own, "check", partial(check, tolerance=0.9))
         patched.setattr(replay, "with_causes", lambda result, *others: result)
         yield
 
@@ -79,7 +79,7 @@ def test_an_engine_of_ones_own_stands_on_a_copy(added: tuple[Path, Any]) -> None
 def test_each_row_leads_to_a_file_that_check_judges(folder: Path) -> None:
     """The file of a row is judged to the error of the row."""
     for row in rows_of(folder):
-        verdicts = check("engines/oblique", folder / row["file"], tolerance=1).verdicts
+        verdicts = check("engines/oblique", folder / row["file"], tolerance=0.9).verdicts
         errors = {verdict.quantity: verdict.max for verdict in verdicts}
         assert errors["attitude"] == pytest.approx(row["errors"]["attitude"], rel=1e-3)
         written = folder / "one.json"
