@@ -10,7 +10,7 @@ SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
 .PHONY: help verify verify-all test test-all docs site test-site dist bench reports paper
-.PHONY: release-data tradeoff engines causes check-reports lint clean
+.PHONY: release-data tradeoff engines satellite underwater causes check-reports lint clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -89,7 +89,10 @@ tradeoff: $(INSTALLED)  ## Measure the published speed against accuracy anew, ou
 
 # Each engine runs in an environment of its own, which is made when it is first asked for.
 engines: $(INSTALLED)  ## Measure the engine board: what is not stored, or all of ENGINE=mujoco anew
-	@$(BIN)/taylor-verify publish engines $(if $(ENGINE),--anew --only $(ENGINE)) > /dev/null
+satellite: $(INSTALLED)  ## Measure the satellite board likewise
+underwater: $(INSTALLED)  ## Measure the underwater board likewise
+engines satellite underwater:
+	@$(BIN)/taylor-verify publish $@ $(if $(ENGINE),--anew --only $(ENGINE)) > /dev/null
 
 # The rungs of hardware: they differ most between processors, and the wider ones take longer.
 check-reports: $(SOLVING)  ## Run part of what is published anew: has a number left its rounding class?

@@ -24,6 +24,9 @@ _SENDING: Final = (
     "list (cases/README.md, To add an engine)."
 )
 
+# The command line splits what is called `files` and `scenes` by itself.
+_STORED_AS: Final = {"files": "results", "scene": "only_scenes"}
+
 help = "show the boards of engines, or put an engine of your own on a local copy"
 example = 'board add my-engine --solver "process:python my_engine.py {step}" --steps 0.02,0.01'
 
@@ -93,8 +96,8 @@ def run(options: argparse.Namespace) -> Answer:
     boards = [options.board] if options.board else [*BOARDS]
     if options.words:
         return _added(options, folder, boards)
-    for name in ("solver", "results", "steps", "load", "scenes", "anew"):
-        if getattr(options, name):
+    for name in ("solver", "files", "steps", "load", "scene", "anew"):
+        if getattr(options, _STORED_AS.get(name, name)):
             raise WrongCall(f"expected --{name} with `board add NAME`, got it without @ board")
     if options.row is not None:
         return _trajectory(options, folder)

@@ -78,6 +78,7 @@ def under_loads(
         *take(board, engines, job, scenes, entries.titles),
         *_ways_to_avoid(engines, scenes, entries.titles),
         *_missed_switches(engines, scenes, entries),
+        *_lost_engines(engines, job, scenes, entries.titles),
     ]
     if sentences:
         yield " ".join(sentences)
@@ -165,6 +166,20 @@ def _missed_switches(
             f"{figure(longer.worst)} with a step of {longer.value}, which ends on every switch, and "
             f"{figure(shorter.worst)} with {shorter.value}, which does not."
         )
+
+
+def _lost_engines(
+    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], names: dict[str, str]
+) -> Iterator[str]:
+    """Yield a warning of engines that lose the motion at every step."""
+    lost = []
+    for engine, group in groupby(engines, key=lambda setting: setting.engine):
+        scores = [score for setting in group for score in setting.scores(scenes)]
+        least = min((score.error for score in scores), default=0.0)
+        if least >= LOST:
+            lost.append(f"{bold(prose(names[engine]))} ({error(least)})")
+    if lost:
+        yield f"Not for {job}, with the least error at any step: {'; '.join(lost)}."
 
 
 def _never(

@@ -148,7 +148,9 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
 
 
 def version_of(asked: Asked) -> str:
-    """Return the version of an engine: the one asked for, pinned in its script, or installed."""
+    """Return the version of an engine: that of the list, asked for, pinned in its script, or installed."""
+    if asked.entry.edition:
+        return asked.entry.edition
     if asked.version or not asked.entry.package:
         return asked.version or _pinned(asked.entry.solver)
     try:

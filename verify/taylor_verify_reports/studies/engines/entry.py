@@ -13,6 +13,7 @@ without    optional: scenes that are not run
 shipped    optional: the options that restore the engine's defaults; they are run with the second of the
            values only
 warning    optional: the fault of an engine as shipped, in words
+edition    optional: the version that is shown, for an entrant made of published equations
 load       optional: how the loads of a scene reach the engine, in words
 package    optional: the installed package whose version is shown, for a solver that runs here
 plain      true for a solver of differential equations that is no engine
@@ -82,6 +83,7 @@ class Entry:
     shipped: Mapping[str, str] | None = None
     warning: str = ""
     load: str = ""
+    edition: str = ""
     package: str = ""
     plain: bool = False
 
