@@ -1,50 +1,41 @@
 // Compares a solver with the right answers: c++ -std=c++17 reader.cpp && ./a.out vectors.json 1e-9
 // Put your own simulator in place of `solve`; this one knows free bodies, wheels, constant moments.
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <string>
+#include <regex>
 #include <valarray>
 #include <vector>
 using Vector = std::valarray<double>;
-
-// A question is a line; its numbers stand between what begins and what ends them.
-Vector numbers(const std::string &line, const std::string &begin, const std::string &end) {
-  std::size_t at = line.find(begin) + begin.size();
-  const std::size_t last = line.find(end, at);
+// A question is a line; the numbers of a name are the first list after it.
+Vector numbers(const std::string &line, const std::string &name) {
+  const std::size_t begin = line.find('"' + name + "\":") + name.size() + 3;
+  const std::string list = line.substr(begin, line.find("],\"", begin) - begin);
+  const std::regex number("-?[0-9][-+.e0-9]*");
   std::vector<double> values;
-  while ((at = line.find_first_of("-0123456789", at)) < last) {
-    char *after;
-    values.push_back(std::strtod(&line[at], &after));
-    at = after - line.data();
-  }
+  for (std::sregex_iterator at(list.begin(), list.end(), number), last; at != last; ++at)
+    values.push_back(std::stod(at->str()));
   return Vector(values.data(), values.size());
-}
-Vector given(const std::string &line, const std::string &name) {
-  return numbers(line, '"' + name + "\":{\"text\":", ",\"hex\"");
 }
 Vector cross(const Vector &a, const Vector &b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+}double length(const Vector &v) { return std::sqrt((v * v).sum()); }
 std::vector<Vector> solve(const std::string &line) {
-  const Vector inertia = given(line, "inertia"), times = given(line, "times");
-  const Vector moment = given(line, "moment"), rotor = given(line, "rotor");
-  const Vector a = inertia[std::slice(0, 3, 1)], b = inertia[std::slice(3, 3, 1)], c = inertia[std::slice(6, 3, 1)];
-  const Vector bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
+  const Vector I = numbers(line, "inertia"), times = numbers(line, "times");
+  const Vector moment = numbers(line, "moment"), rotor = numbers(line, "rotor");
+  const Vector a{I[0], I[1], I[2]}, b{I[3], I[4], I[5]}, c{I[6], I[7], I[8]};
+  const double volume = (a * cross(b, c)).sum();
   const auto rate = [&](const Vector &w) -> Vector {
     const Vector H = Vector{(a * w).sum(), (b * w).sum(), (c * w).sum()} + rotor;
-    const Vector M = cross(H, w) + moment;
-    return Vector{(bc * M).sum(), (ca * M).sum(), (ab * M).sum()} / (a * bc).sum();
+    const Vector M = (cross(H, w) + moment) / volume;
+    return M[0] * cross(b, c) + M[1] * cross(c, a) + M[2] * cross(a, b);
   };
-  std::vector<Vector> rows{given(line, "omega")};
+  std::vector<Vector> rows{numbers(line, "omega")};
   for (std::size_t k = 1; k < times.size(); k++) {
-    Vector w = rows.back();
     const double h = (times[k] - times[k - 1]) / 200;
+    Vector w = rows.back();
     for (int step = 0; step < 200; step++) {
-      const Vector k1 = rate(w), k2 = rate(w + h / 2 * k1), k3 = rate(w + h / 2 * k2), k4 = rate(w + h * k3);
-      w += h / 6 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+      const Vector p = rate(w), q = rate(w + h / 2 * p), r = rate(w + h / 2 * q);
+      w += h / 6 * (p + 2.0 * q + 2.0 * r + rate(w + h * r));
     }
     rows.push_back(w);
   }
@@ -52,6 +43,18 @@ std::vector<Vector> solve(const std::string &line) {
 }
 int main(int, char **words) {
   std::ifstream file(words[1]);
-  int right = 0, wrong = 0, others = 0;
+  int right = 0, wrong = 0;
   for (std::string line; std::getline(file, line);) {
-    ...
+    if (!std::regex_search(line.substr(0, 60), std::regex("\"(free|wheels|moment)\""))) continue;
+    const Vector x = numbers(line, "w1"), y = numbers(line, "w2"), z = numbers(line, "w3");
+    const std::vector<Vector> rows = solve(line);
+    bool within = true;
+    for (std::size_t k = 0; k < rows.size(); k++) {
+      const Vector truth{x[k], y[k], z[k]};
+      within &= length(rows[k] - truth) <= std::stod(words[2]) * length(truth);  // a NaN is not
+    }
+    (within ? right : wrong)++;
+  }
+  std::cout << right << " right, " << wrong << " wrong\n";
+  return right > 0 && wrong == 0 ? 0 : 1;
+}

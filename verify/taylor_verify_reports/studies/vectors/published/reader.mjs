@@ -46,16 +46,15 @@ function numbers({ text }) {
 
 const { questions } = JSON.parse(readFileSync(process.argv[2], "utf8"));
 const tolerance = Number(process.argv[3]);
-let right = 0;
-let wrong = 0;
+let [right, wrong] = [0, 0];
 for (const { name, kind, question, truth } of questions) {
   if (!["free", "wheels", "moment"].includes(kind)) continue;
-  const exact = truth.columns.t.map((_, k) => ["w1", "w2", "w3"].map((w) => Number(truth.columns[w][k])));
-  const errors = solve(question).map((w, k) => size(moved(w, exact[k], -1)));
-  const error = Math.max(...errors) / Math.max(...exact.map(size));
-  // A NaN is no number within the tolerance.
-  error <= tolerance ? right++ : wrong++;
-  if (!(error <= tolerance)) console.log(`${name}: off by ${error}`);
+  const exact = (k) => ["w1", "w2", "w3"].map((column) => Number(truth.columns[column][k]));
+  const off = solve(question).map((w, k) => size(moved(w, exact(k), -1)) / size(exact(k)));
+  // A NaN is not within the tolerance.
+  const isRight = off.every((error) => error <= tolerance);
+  isRight ? right++ : wrong++;
+  if (!isRight) console.log(`${name}: off by ${Math.max(...off)}`);
 }
 console.log(`${right} right, ${wrong} wrong, ${questions.length - right - wrong} not tried`);
 process.exit(right > 0 && wrong === 0 ? 0 : 1);
