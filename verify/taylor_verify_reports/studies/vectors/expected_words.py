@@ -50,7 +50,7 @@ _TELLING: Final = {
     "frames": ("degrees", "scalar last", "conjugate", "other sign on axis", "constant offset"),
     "starts": ("another start", "jump", "at rest"),
     "methods": ("explicit Euler", "backward Euler", "Heun", "RK4"),
-    _ELSE: ("gyroscopic", "Coriolis", "Munk", "drag", "damping", "wheel", "I_", "M_"),
+    _ELSE: ("gyroscopic term", "Coriolis", "Munk", "drag", "damping", "wheel", "I_", "M_"),
 }
 # A motion of some bodies, or a fault of two parts, belongs to both families.
 _ALSO: Final = {
