@@ -114,7 +114,7 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     own, states = own_states(top)
     track = _track(top, model, own)
     body, loads = _loaded_body(top, model, states or ()) if model else _unread(top)
-    motion, initial = _begun(top, model, body) if model else (None, None)
+    motion, initial = _motion_and_start(top, model, body) if model else (None, None)
     time = _part(top, "time", clock)
     body = loaded(body, loads, states, top, folder, time)
     if body is not None and motion is not None and time is not None:
@@ -184,7 +184,9 @@ def _unread(top: Table) -> tuple[None, Loads]:
     return None, Loads("euler", ())
 
 
-def _begun(top: Table, model: Model, body: Body | None) -> tuple[Manufactured | None, State | None]:
+def _motion_and_start(
+    top: Table, model: Model, body: Body | None
+) -> tuple[Manufactured | None, State | None]:
     """Return a manufactured motion, if there is one, and the initial state; None after a fault."""
     if top.has("manufactured"):
         motion = _motion(top, model, body)
