@@ -16,7 +16,8 @@ from builders.wrong_dynamics import failure
 
 import taylor_verify
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.answers import explained, material_of_file
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material_of_file
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.numbers.precision import rung
@@ -66,7 +67,7 @@ def changed(sentence: str, text: str) -> str:
     by_turns(
         [
             ("gyro-axis-2-flipped", FREE, ["omega has the other sign on axis 2"]),
-            ("imu-mounted-askew", FREE, ["rotation of 31.59 degrees", "rotation of 31.59 degrees"]),
+            ("imu-mounted-askew", FREE, ["fixed rotation of 31.59 degrees, in omega and attitude"]),
             (
                 "time-in-frames-60",
                 FREE,

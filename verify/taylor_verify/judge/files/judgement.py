@@ -16,7 +16,8 @@ import numpy as np
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, are_known, causes_of_file
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, causes_of_file
+from taylor_verify.judge.causes.material import are_known
 from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
