@@ -213,8 +213,8 @@ def body(factor: float = 1.0) -> tuple[Array, Array]:
         ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
         ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
         ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
-        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms"),
-        ("every", 1.0, 0.0, "added mass left out in the mass matrix, and right in the Coriolis"),
+        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
+        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
         ("every", 0.0, 0.0, "added mass left out"),
     ],
 )
