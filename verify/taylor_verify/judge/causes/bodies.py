@@ -31,7 +31,8 @@ def faults_of_bodies(right: Equations) -> Iterator[Fault]:
         is_body = np.all(np.linalg.eigvalsh(mass) > 0)
         if is_body:
             yield Fault(name, "body", {"mass": mass})
-        if not np.allclose(coriolis_of(mass), 0.0):
+        # Wrong axes are wrong in both.
+        if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield Fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
         if is_body and right.size == 6:
             changes = {"mass": mass, "extra": -extra}

@@ -46,7 +46,7 @@ _DIGITS: Final = 20
 # Rates of attitudes need as many rows.
 _FEWEST_ATTITUDES: Final = 20
 # Work for each component of v.
-_BUDGET: Final = 120_000.0
+_BUDGET: Final = 140_000.0
 _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
 
 
