@@ -177,8 +177,15 @@ def judge_file(
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions, breaks_of(scene))
-    of_causes = {"causes": explained.causes, "missing_load": explained.missing_load}
-    return FileJudgement(verdicts, judged.record, *of_file, **of_causes, notes=notes)
+    missing = explained.missing_load
+    return FileJudgement(
+        verdicts,
+        judged.record,
+        *of_file,
+        causes=explained.causes,
+        notes=notes,
+        missing_load=missing,
+    )
 
 
 def _fits(judged: Judgement) -> bool:
