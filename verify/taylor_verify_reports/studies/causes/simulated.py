@@ -40,6 +40,7 @@ class Law:
     clock: float = 1.0
     damping: float = 0.0
     from_time: float = -np.inf
+    until_time: float = np.inf
     loads_of: Callable[[float, Floats], Floats] | None = None
     turn: Callable[[Floats, Floats], Floats] | None = field(default=None)
 
@@ -81,7 +82,7 @@ def rates(law: Law, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
         extra[i : i + 3] += turn.T @ law.space[i : i + 3]
     if law.loads_of is not None:
         extra = extra + law.loads_of(t, v)
-    if t < law.from_time:
+    if not law.from_time <= t < law.until_time:
         extra = 0 * extra
     return np.asarray(law.clock * (np.linalg.solve(law.mass, force + extra) - law.damping * v))
 
@@ -148,7 +149,11 @@ def _edges(law: Law, begin: float, end: float) -> list[float]:
     """Return the ends of the pieces in which the equations are smooth."""
     every = law.acting.every
     instants = np.arange(begin, end, every) if every else []
-    inside = {t for t in (law.from_time, *law.acting.switches, *instants) if begin < t < end}
+    inside = {
+        t
+        for t in (law.from_time, law.until_time, *law.acting.switches, *instants)
+        if begin < t < end
+    }
     return [begin, *sorted(map(float, inside)), end]
 
 
