@@ -253,7 +253,7 @@ def _length(value: Any) -> int:
     return len(value) if isinstance(value, _LISTS) else 0
 
 
-def _list(value: Any, expected: str, place: str, faults: Faults, count: int) -> Sequence[Any]:
+def _list(value: Any, expected: str, place: str, faults: Faults, count: int) -> Any:
     """Return a list of so many entries; an empty one, and a fault, for anything else."""
     if isinstance(value, _LISTS) and len(value) == count:
         return value

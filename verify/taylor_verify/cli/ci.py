@@ -18,6 +18,7 @@ from taylor_verify.cli.streams import tell_runner
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.regular_file import open_without_waiting
 from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words.annotations import annotation_lines
@@ -129,7 +130,7 @@ def _write_github(
     if not file:
         return [f"no step summary: {_SUMMARY} is not set"]
     # Other commands of the same step have theirs in the same file.
-    with open(file, "a", encoding="utf-8") as summary:
+    with open(file, "a", encoding="utf-8", opener=open_without_waiting) as summary:
         summary.write(
             step_summary(verdicts, remarked, decision or opening(verdicts, results.causes))
         )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.view import Ellipsoid, Numbers, View, pieces
 from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.sheet import Entry, Frame, add_axes, blank, draw_legend
@@ -77,6 +78,8 @@ class Stage:
         axes = add_axes(figure, Frame(0.0, 0.0, width, height))
         axes.axis("off")
         low, high = spots.min(axis=0), spots.max(axis=0)
+        if not np.isfinite([low, high]).all():
+            raise NotDrawn("expected a motion whose numbers doubles hold, got one beyond them")
         room = np.array([width - 2 * _ASIDE, height - 2 * _ABOVE])
         unit = float(((high - low) / room).max())
         half = unit * np.array([width, height]) / 2

@@ -16,6 +16,7 @@ from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.records.doubles import Doubles
+from taylor_verify.records.faults import shown
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -99,7 +100,7 @@ def run_record(run: Run, gates: Iterable[GateRecord]) -> Record:
         track=tuple(sorted(scene.track)),
         equations=problem.form.text(),
         parameters={n: hexadecimal(value) for n, value in problem.parameter.items()},
-        units={n: str(getattr(units, n)) for n in ("time", "momentum", "impulse")},
+        units={n: shown(getattr(units, n)) for n in ("time", "momentum", "impulse")},
         regime=exact.regime,
         route=exact.route,
         truth_digits=truth_digits(problem.rung.bits),

@@ -64,7 +64,7 @@ def _whole(file: BinaryIO, path: Path, most: Limit) -> bytes:
 @contextmanager
 def _opened(path: Path, expected: str, most: Limit) -> Iterator[BinaryIO]:
     _check(_status(path, expected), path, expected, most)
-    with open(path, "rb", opener=_open_without_waiting) as file:
+    with open(path, "rb", opener=open_without_waiting) as file:
         _check(os.fstat(file.fileno()), path, expected, most)
         yield file
 
@@ -76,7 +76,8 @@ def _status(path: Path, expected: str) -> os.stat_result:
         raise Refused([f"expected {expected}, got a name that no file has @ {path}"]) from None
 
 
-def _open_without_waiting(path: str, flags: int) -> int:
+def open_without_waiting(path: str, flags: int) -> int:
+    """Open a file for `open`: a FIFO that nobody reads is an OSError, and holds nobody up."""
     # Windows has no such flag, and no FIFO that a name could lead to.
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 

@@ -20,7 +20,7 @@ _SIZES: Final = (
     *("max", "mean", "final", "bound", "attainable", "roundoff"),
     *("ratio", "tolerance", "residual", "remains", "seconds"),
 )
-_OF_A_PASS: Final = ("max", "mean", "final", "ratio", "bound", "attainable", "roundoff")
+_OF_A_PASS: Final = ("mean", "final", "ratio", "attainable", "roundoff")
 # A mean of equal numbers may be above them by its roundings.
 _ROUNDINGS: Final = 1 + 2.0**-40
 
@@ -58,20 +58,27 @@ def _check_sizes(verdict: Verdict, place: str) -> None:
         if value is not None and not value >= 0:
             expected = "expected a number that is not negative"
             raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
-    for name in ("mean", "final") if verdict.max is not None else ():
-        value = getattr(verdict, name)
-        if value is not None and not value <= verdict.max * _ROUNDINGS:
-            expected = f"expected no more than the largest error {verdict.max!r}"
+    for name in ("mean", "final"):
+        value, most = getattr(verdict, name), verdict.max
+        if value is not None and most is not None and not value <= most * _ROUNDINGS:
+            expected = f"expected no more than the largest error {most!r}"
             raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
 
 
 def _check_pass(verdict: Verdict, place: str) -> None:
+    largest, bound = (_number(verdict, name, place) for name in ("max", "bound"))
     for name in _OF_A_PASS:
-        if getattr(verdict, name) is None:
-            raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
-    if not verdict.max <= verdict.bound:
-        expected = f"expected an error within its bound {verdict.bound!r} of a row that passed"
-        raise ValueError(f"{expected}, got {verdict.max!r} @ {place}.max")
+        _number(verdict, name, place)
+    if not largest <= bound:
+        expected = f"expected an error within its bound {bound!r} of a row that passed"
+        raise ValueError(f"{expected}, got {largest!r} @ {place}.max")
+
+
+def _number(verdict: Verdict, name: str, place: str) -> float:
+    value: float | None = getattr(verdict, name)
+    if value is None:
+        raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
+    return value
 
 
 def _check_run(verdict: Verdict, place: str) -> None:

@@ -31,6 +31,7 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
+from taylor_verify.solvers.files.formats.package import unbroken
 
 _READERS: Final = {
     (1, 0): np.lib.format.read_array_header_1_0,
@@ -94,14 +95,12 @@ def read(file: Content, path: Path, part: str) -> Table:
     refuse_part(part, path)
     if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
         return _of_one(file, path)
-    try:
+    with unbroken("an NPZ archive", path, _BROKEN):
         _check_entries(file, path)
         with zipfile.ZipFile(file.binary) as archive:
             members = [_member(archive, info, path) for info in archive.infolist()]
             _check([member.header for member in members], path)
             return table([member.array(archive) for member in members], "", path)
-    except _BROKEN as error:
-        raise refusal("an NPZ archive", f"a fault in it: {error}", path) from None
 
 
 def _checked_method(info: zipfile.ZipInfo, path: Path) -> zipfile.ZipInfo:

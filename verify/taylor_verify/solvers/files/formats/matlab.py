@@ -16,11 +16,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.records.faults import Refused, cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats import hdf5, version4
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
+from taylor_verify.solvers.files.formats.package import unbroken
 
 _HEADER: Final = 128
 # The last bytes of the header tell the order of all bytes; those before are the version.
@@ -63,12 +64,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     if version != _VERSION:
         got = f"one that begins with {header[:10].decode('latin-1')!r}"
         raise refusal("a MATLAB file of version 4 to 7.3", got, path)
-    try:
+    with unbroken("a MATLAB file", path, _BROKEN):
         arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
-    except Refused:
-        raise
-    except _BROKEN as error:
-        raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     return _checked(arrays, part, path)
 
 

@@ -35,15 +35,18 @@ def needed(place: object) -> Iterator[None]:
 
 
 @contextmanager
-def unbroken(what: str, place: object) -> Iterator[None]:
-    """Refuse the file at ``place`` if the block raises anything but for the lack of a package.
+def unbroken(
+    what: str, place: object, kinds: tuple[type[Exception], ...] = (Exception,)
+) -> Iterator[None]:
+    """Refuse the file at ``place`` if the block raises an exception of some kinds.
 
-    No library documents which exceptions a broken file becomes.
+    By default of any kind, because no library documents what a broken file becomes. A refusal, and the lack
+    of a package, stay what they are.
     """
     try:
         yield
     except (Refused, ModuleNotFoundError):
         raise
-    except Exception as error:
+    except kinds as error:
         reason = cut((str(error).splitlines() or [type(error).__name__])[0])
         raise refusal(what, f"a fault in it: {reason}", place) from None

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.records.faults import Refused, cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
     CHARACTERS,
@@ -21,6 +21,8 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
+from taylor_verify.solvers.files.formats.memory import bounded_memory
+from taylor_verify.solvers.files.formats.package import unbroken
 
 # Sixty characters of a number, and as many bytes more as some remarks have.
 _WIDEST: Final = 64
@@ -33,7 +35,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     refuse_part(part, path)
     from pyarrow import ArrowException, parquet
 
-    try:
+    broken = (ArrowException, OSError, ValueError)
+    with unbroken("a Parquet file", path, broken), bounded_memory(path):
         footer = parquet.ParquetFile(file.binary)
         names, texts, left = _checked(footer, path)
         long = _long_texts(footer, texts)
@@ -42,13 +45,6 @@ def read(file: Content, path: Path, part: str) -> Table:
         table = _flat(_in_parts(reader, wanted, path))
         _check_texts(table, texts, path)
         table = _seconds(_without_lists(table, path))
-    except MemoryError:
-        raise
-    except (ArrowException, OSError, ValueError) as error:
-        if isinstance(error, Refused):
-            raise
-        reason = str(error).splitlines()[0]
-        raise refusal("a Parquet file", f"a fault in it: {reason}", path) from None
     columns = [Column(name, _values(table.column(i))) for i, name in enumerate(table.column_names)]
     notes = [
         f"not read, because it is longer than numbers are: column {cut(name)}" for name in long

@@ -14,9 +14,10 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.records.faults import Refused, cut, refusal
+from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array
 from taylor_verify.solvers.files.formats.column import COLUMNS
+from taylor_verify.solvers.files.formats.package import unbroken
 
 _HEADER: Final = 20
 # The thousands of the type say the order of bytes, the tens the numbers, the ones what the matrix is.
@@ -58,12 +59,8 @@ def _order(start: bytes) -> str | None:
 
 def arrays(content: bytes, path: Path) -> Iterator[Array]:
     """Yield the matrices, or the variables of a result of Modelica."""
-    try:
+    with unbroken("a MATLAB file", path, (ValueError, struct.error)):
         matrices = {matrix.name: matrix for matrix in _matrices(content, path)}
-    except Refused:
-        raise
-    except (ValueError, struct.error) as error:
-        raise refusal("a MATLAB file", f"a fault in it: {error}", path) from None
     if matrices.keys() >= set(_MODELICA):
         yield from _of_modelica(matrices, path)
         return
