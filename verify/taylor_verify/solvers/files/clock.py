@@ -219,7 +219,8 @@ class _Clock:
         """True for times of a calendar, of a program's clock, and since 1970, that are not the scene's."""
         first = self._first * self._unit.factor
         is_since_1970 = _CLOCK[0] <= first < _CLOCK[1] and first > self._last
-        if self._is_calendar or is_since_1970 or not self._habit or self._scene is None:
+        is_elapsed = self._habit is None or self._habit.unit == "s"
+        if self._is_calendar or is_since_1970 or is_elapsed or self._scene is None:
             return self._is_calendar or is_since_1970
         last, span = self._numbers[-1] * self._unit.factor, abs(self._scene.clock.elapsed[-1])
         return first != self._scene.clock.start and last > self._last + _NEAR * span
