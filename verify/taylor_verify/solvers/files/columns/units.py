@@ -58,15 +58,16 @@ DIMENSION: Final[Mapping[str, str]] = {
     **{name: group.dimension for name, group in GROUPS.items()},
     **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
-_GREEK: Final = dict(
-    zip("ωηεμφθψ", ("omega", "eta", "eps", "u", "phi", "theta", "psi"), strict=True)
-) | {"°": "deg", "·": ".", "*": "."}
+_GREEK: Final = str.maketrans(
+    {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "φ": "phi", "θ": "theta", "ψ": "psi"}
+)
+_SIGNS: Final = str.maketrans({"°": "deg", "·": ".", "*": "."})
 
 
 def plain(text: str) -> str:
     """Return a text in small letters, with Greek letters and signs by name, without outer blanks."""
     normal = unicodedata.normalize("NFKC", text.replace("°", "deg")).lower()
-    return normal.translate(str.maketrans(_GREEK)).strip(" \t\r\n\ufeff\"'")
+    return normal.translate(_GREEK | _SIGNS).strip(" \t\r\n\ufeff\"'")
 
 
 def _key(text: str) -> str:
