@@ -18,8 +18,8 @@ from pyarrow import parquet
 import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.formats import content
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, KEYS, LINES, ROWS
+from taylor_verify.solvers.files.formats import content, echo, octave
+from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, ELEMENTS, KEYS, LINES, ROWS
 
 NAMES = ("t", "w1", "w2", "w3")
 LONG = 3 * ROWS.most
@@ -191,6 +191,25 @@ def test_a_line_without_end_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "mine.csv"
     file.write_text("t,w1,w2,w3\n" + "1" * 2**21 + ",0,0,0\n")
     with pytest.raises(Refused, match=r"characters in a line, got more @ .* line 2"):
+        read(file)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("# name: w\n# type: matrix\n" + "1 2 3\n" * 40, "100 elements"),
+        ("header:\n  a: 1\nb:\n" + "- 1\n" * 101, "100 keys and brackets"),
+    ],
+)
+def test_numbers_are_counted_before_a_table_is_made_of_them(
+    text: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A variable of Octave and a message of ROS are held to limits while they are read."""
+    monkeypatch.setattr(octave, "ELEMENTS", ELEMENTS._replace(most=100))
+    monkeypatch.setattr(echo, "KEYS", KEYS._replace(most=100))
+    file = tmp_path / "mine.txt"
+    file.write_text(text)
+    with pytest.raises(Refused, match=f"expected at most {fault}"):
         read(file)
 
 

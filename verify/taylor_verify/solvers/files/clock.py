@@ -53,7 +53,6 @@ def with_times(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
 ) -> Times:
     """Return the columns with times that count from the scene's start, and ask for the one that fits."""
-    columns = [_without_units(c) if _is_called_a_time(Name(c)) else c for c in columns]
     sums = list(_sums_of_seconds(columns, place, faults))
     notes = [each.note for each in sums]
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
@@ -84,17 +83,6 @@ def _clocks(
         times = [column for column in columns if _is_called_a_time(Name(column))]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
     return [_Clock(column, scene, _of_program(column, names)) for column in times]
-
-
-def _without_units(column: Column) -> Column:
-    """Return the times of a timetable of MATLAB, each of which has its unit behind it: 0.5 sec."""
-    texts = [str(value).split() for value in column.values[:1]]
-    if not texts or len(texts[0]) != 2 or not in_brackets(texts[0][1], "time"):
-        return column
-    cells = [str(value).split() for value in column.values]
-    if any(cell[1:] != texts[0][1:] for cell in cells):
-        return column
-    return Column(f"{column.name} [{texts[0][1]}]", [cell[0] for cell in cells])
 
 
 def _of_program(column: Column, names: Candidates) -> Spelling | None:
@@ -183,8 +171,8 @@ class _Clock:
     @cached_property
     def _implied(self) -> str:
         """The unit of a program's habit, or of large whole numbers since 1970; empty for a stated one."""
-        if self._habit:
-            return self._habit.unit
+        if self._habit or self._behind:
+            return self._habit.unit if self._habit else self._behind
         stated = Name(self.column).unit("time")
         if self._is_calendar or (stated and stated.words) or self._first.denominator != 1:
             return ""
@@ -201,9 +189,18 @@ class _Clock:
     def _is_calendar(self) -> bool:
         return bool(len(self.column.values)) and _is_calendar(self.column.values[0])
 
+    @cached_property
+    def _behind(self) -> str:
+        """The unit behind each of the times in a timetable of MATLAB, as in 0.5 sec; mostly empty."""
+        first = self.column.values[0] if len(self.column.values) else ""
+        unit = first.strip().partition(" ")[2] if isinstance(first, str) else ""
+        return unit if unit and in_brackets(unit, "time") else ""
+
     def _number(self, value: Any) -> Any:
         """Return a number as it is written, in seconds where it is of a calendar."""
-        return seconds_in_log(str(value)) if self._is_calendar else exact(value)
+        if self._is_calendar:
+            return seconds_in_log(str(value))
+        return exact(value.strip().removesuffix(f" {self._behind}") if self._behind else value)
 
     @cached_property
     def _numbers(self) -> list[Any]:
@@ -219,7 +216,8 @@ class _Clock:
         """True for times of a calendar, of a program's clock, and since 1970, that are not the scene's."""
         first = self._first * self._unit.factor
         is_since_1970 = _CLOCK[0] <= first < _CLOCK[1] and first > self._last
-        if self._is_calendar or is_since_1970 or not self._habit or self._scene is None:
+        is_elapsed = self._habit is None or self._habit.unit == "s"
+        if self._is_calendar or is_since_1970 or is_elapsed or self._scene is None:
             return self._is_calendar or is_since_1970
         last, span = self._numbers[-1] * self._unit.factor, abs(self._scene.clock.elapsed[-1])
         return first != self._scene.clock.start and last > self._last + _NEAR * span
@@ -270,7 +268,8 @@ class _Clock:
             if unit := self._implied:
                 whose = f", the habit of {self._habit.whose}" if self._habit else ""
                 notes.append(f"`{shown_name}` is in {unit}{whose}")
-                column = column._replace(name=f"{column.name} [{unit}]")
+                values = self._numbers if self._behind else column.values
+                column = Column(f"{column.name} [{unit}]", values)
             if not self.is_of_the_day:
                 return column, notes
             values = [time / self._unit.factor for time in self.times]

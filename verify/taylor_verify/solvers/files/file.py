@@ -28,7 +28,7 @@ from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.formats.reading import parted, read_table
-from taylor_verify.solvers.files.numbered import named
+from taylor_verify.solvers.files.numbered import usual_names
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
 from taylor_verify.solvers.files.parts import Parts
 from taylor_verify.solvers.files.planar import with_zeros
@@ -136,8 +136,9 @@ def from_columns(
         if column.name in by_name:
             faults.add("every column once", f"`{cut(column.name)}` again", place)
         by_name[column.name] = column
-    every, asked = named(list(by_name.values()), wanted, scene, place)
-    every, planar = with_zeros(every, scene)
+    names, asked = usual_names(list(by_name.values()), wanted, scene, place)
+    renamed = [c._replace(name=names.get(name, name)) for name, c in by_name.items()]
+    every, planar = with_zeros(renamed, scene)
     clock = with_times(every, asked, scene, place, faults)
     own, asked = own_columns(scene), clock.wanted
     beside, left, asked = apart(clock.columns, asked, own, place, faults)
@@ -148,13 +149,12 @@ def from_columns(
     times = parts.times(place, faults)
     if faults.lines:
         raise Refused(faults.lines)
-    files, agreed = [], list[str]()
+    files, agreed, known = [], list[str](), {**COLUMNS, **own}
     for part in parts.of_rows(times, place, faults):
         groups, form, settled = one_attitude(part.groups, selection, place, faults)
         agreed += settled
-        instants, names = tuple(times[k] for k in part.places), {**COLUMNS, **own}
-        file = TrajectoryFile(place, instants, groups, part.digits, columns=names, form=form)
-        files.append(file)
+        instants = tuple(times[k] for k in part.places)
+        files.append(TrajectoryFile(place, instants, groups, part.digits, columns=known, form=form))
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files

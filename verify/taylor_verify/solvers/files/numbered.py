@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from taylor_verify.records.faults import refusal
@@ -18,10 +18,10 @@ _TUM: Final = ("t", "c1", "c2", "c3", "q1", "q2", "q3", "q0")
 _UNIT: Final = 0.01
 
 
-def named(
+def usual_names(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str
-) -> tuple[list[Column], Request]:
-    """Return the columns under the usual names that are asked for, and the rest of the request by name.
+) -> tuple[Mapping[str, str], Request]:
+    """Return the usual names that are asked for by those of the file, and the rest of the request by name.
 
     ``yaw=5`` and ``nanosec=2`` are such names. Raises Refused for columns without a name of which none is
     asked for.
@@ -37,8 +37,7 @@ def named(
     by_text = dict(zip(numbers, names, strict=True)) | {name: name for name in names}
     asked = [(ours, by_text.get(theirs, theirs)) for ours, theirs in wanted]
     usual = {theirs: ours for ours, theirs in asked if theirs in names and _is_usual(ours, scene)}
-    renamed = [column._replace(name=usual.get(column.name, column.name)) for column in columns]
-    return renamed, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
+    return usual, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
 
 
 def _is_usual(name: str, scene: Scene | None) -> bool:

@@ -1,4 +1,4 @@
-"""The names that programs write, read from the table `programs.txt`, an entry in a line.
+"""The tables of this folder: the names that programs write, usual names and units, an entry in a line.
 
 What a name does not say and the program's manual does stands there too: a unit, a frame, a convention.
 """
@@ -19,18 +19,19 @@ _USUAL: Final = ("group", "names", "frame", "turn")
 
 def entries() -> Iterator[dict[str, str]]:
     """Yield the entries of the table of programs, each field by its name."""
-    return _entries("programs.txt", _OF_PROGRAMS)
+    return entries_of("programs.txt", _OF_PROGRAMS)
 
 
 def usual() -> Iterator[dict[str, str]]:
     """Yield the entries of usual names, each stem by itself."""
-    for entry in _entries("usual.txt", _USUAL):
+    for entry in entries_of("usual.txt", _USUAL):
         names = entry["names"]
         for each in names.split() if "*" in names else [names]:
             yield entry | {"names": each}
 
 
-def _entries(file: str, fields: Sequence[str]) -> Iterator[dict[str, str]]:
+def entries_of(file: str, fields: Sequence[str]) -> Iterator[dict[str, str]]:
+    """Yield the entries of a table of this folder, one in a line, each field by its name."""
     for line in files(__package__).joinpath(file).read_text(encoding="utf-8").splitlines():
         if line and not line.startswith("#"):
             yield dict(zip(fields, (field.strip() for field in line.split("|")), strict=True))

@@ -12,8 +12,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from importlib.resources import files
-from typing import Final, NamedTuple
+from typing import Final
 
 from mpmath import mp
 
@@ -21,6 +20,7 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
 from taylor_verify.solvers.files.columns.forms import FORMS
+from taylor_verify.solvers.files.columns.programs import entries_of
 
 
 @dataclass(frozen=True)
@@ -44,38 +44,30 @@ def _of_pi(rational: Fraction) -> Fraction:
 DEGREE: Final = _of_pi(Fraction(1, 180))
 
 
-class _Row(NamedTuple):
-    """A unit of the table `units.txt`: its dimension, its factor, its words, and the ways to write it."""
-
-    dimension: str
-    factor: str
-    words: str
-    texts: str
-
-    @property
-    def unit(self) -> Unit:
-        times, pi, over = self.factor.partition("pi")
-        rational = Fraction(f"{times.strip('*') or 1}{over}") if pi else Fraction(self.factor)
-        return Unit(_of_pi(rational) if pi else rational, self.words)
+def _unit(factor: str, words: str) -> Unit:
+    """Return the unit of a factor such as ``1/1000``, ``pi/180`` or ``2*pi``."""
+    times, pi, over = factor.partition("pi")
+    rational = Fraction(f"{times.strip('*') or 1}{over}") if pi else Fraction(factor)
+    return Unit(_of_pi(rational) if pi else rational, words)
 
 
-_LINES: Final = files(__package__).joinpath("units.txt").read_text(encoding="utf-8").splitlines()
-_TABLE: Final = tuple(_Row(*map(str.strip, line.split("|"))) for line in _LINES[1:])
+_TABLE: Final = tuple(entries_of("units.txt", ("dimension", "factor", "words", "texts")))
 # The dimension of each group of columns.
 DIMENSION: Final[Mapping[str, str]] = {
     "time": "time",
     **{name: group.dimension for name, group in GROUPS.items()},
     **{form.name: "angle" if form.angles else "number" for form in FORMS.values()},
 }
-_GREEK: Final = dict(
-    zip("ωηεμφθψ", ("omega", "eta", "eps", "u", "phi", "theta", "psi"), strict=True)
-) | {"°": "deg", "·": ".", "*": "."}
+_GREEK: Final = str.maketrans(
+    {"ω": "omega", "η": "eta", "ε": "eps", "μ": "u", "φ": "phi", "θ": "theta", "ψ": "psi"}
+)
+_SIGNS: Final = str.maketrans({"°": "deg", "·": ".", "*": "."})
 
 
 def plain(text: str) -> str:
     """Return a text in small letters, with Greek letters and signs by name, without outer blanks."""
     normal = unicodedata.normalize("NFKC", text.replace("°", "deg")).lower()
-    return normal.translate(str.maketrans(_GREEK)).strip(" \t\r\n\ufeff\"'")
+    return normal.translate(_GREEK | _SIGNS).strip(" \t\r\n\ufeff\"'")
 
 
 def _key(text: str) -> str:
@@ -87,14 +79,14 @@ def letters(text: str) -> str:
     return re.sub(r"[^a-z0-9]", "", text)
 
 
-_IN_BRACKETS: Final = {
+_IN_BRACKETS: Final[Mapping[str, Mapping[str, Unit]]] = {
     dimension: {
-        _key(text): row.unit
+        _key(text): _unit(row["factor"], row["words"])
         for row in _TABLE
-        for text in row.texts.split()
-        if row.dimension == dimension
+        for text in row["texts"].split()
+        if row["dimension"] == dimension
     }
-    for dimension in {row.dimension for row in _TABLE}
+    for dimension in {row["dimension"] for row in _TABLE}
 }
 _AS_SUFFIX: Final = {
     dimension: {letters(text): unit for text, unit in units.items() if text[0].isalpha()}
@@ -114,5 +106,5 @@ def as_suffix(text: str, group: str) -> Unit | None:
 
 def known_units(group: str) -> str:
     """Return the first spelling of every unit of a group, in one line."""
-    rows = (row for row in _TABLE if row.dimension == DIMENSION[group])
-    return ", ".join(row.texts.split()[0] for row in rows)
+    rows = (row for row in _TABLE if row["dimension"] == DIMENSION[group])
+    return ", ".join(row["texts"].split()[0] for row in rows)

@@ -54,7 +54,7 @@ def table(arrays: Iterable[Array], part: str, place: object) -> Table:
     The sizes that the file declares are checked before any array is read. An array of another length than
     the times, and one of no real numbers, is left out, and a note names it.
     """
-    inner = _without_common_group(_of_signals(_within(list(arrays), part, place)))
+    inner = _without_common_group(_of_signals(_within(list(arrays), part, place), place))
     _refuse_several(inner, place)
     numbers = [array for array in inner if array.kind in _NUMBERS and array.shape]
     rows = _rows_of_one(numbers[0], place) if len(numbers) == 1 else _rows(numbers)
@@ -79,7 +79,7 @@ def _within(arrays: list[Array], part: str, place: object) -> list[Array]:
     return inner
 
 
-def _of_signals(arrays: list[Array]) -> list[Array]:
+def _of_signals(arrays: list[Array], place: object) -> list[Array]:
     """Return the signals that Simulink saves as structs with time, each by the name of its struct.
 
     Their times are read once, if they are equal.
@@ -87,16 +87,17 @@ def _of_signals(arrays: list[Array]) -> list[Array]:
     structs = [a.name.removesuffix(_SIGNALS) for a in arrays if a.name.endswith(_SIGNALS)]
     if len(structs) == 1 and not Name(Column(f"{structs[0]}[0]", ())).readings:
         return arrays
-    clocks = [array for array in arrays if array.name in {f"{name}.time" for name in structs}]
-    if not clocks or len({clock.shape for clock in clocks}) > 1 or not _are_equal(clocks):
+    names = {f"{name}.time" for name in structs}
+    clocks = [array for array in arrays if array.name in names and array.kind in _NUMBERS]
+    BYTES.check(sum(prod(clock.shape) * clock.itemsize for clock in clocks), place)
+    if not clocks or not _are_equal(clocks):
         return arrays
     inner = tuple(f"{name}.{each}" for name in structs for each in ("signals", "time", "blockName"))
-    read = [
-        a._replace(name=a.name.removesuffix(_SIGNALS)) for a in arrays if a.name.endswith(_SIGNALS)
-    ]
+    signals = [array for array in arrays if array.name.endswith(_SIGNALS)]
+    read = [array._replace(name=array.name.removesuffix(_SIGNALS)) for array in signals]
     left = [array for array in arrays if not array.name.startswith(inner)]
-    has_times = any(array.is_time for array in left)
-    return [*left, *read, *([] if has_times else [clocks[0]._replace(name="tout")])]
+    name = "time" if any(array.name == "tout" for array in left) else "tout"
+    return [*left, *read, clocks[0]._replace(name=name)]
 
 
 def _are_equal(arrays: Sequence[Array]) -> bool:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.records.faults import cut, refusal
-from taylor_verify.solvers.files.formats.column import Table, refuse_part
+from taylor_verify.solvers.files.formats.column import KEYS, Table, refuse_part
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.entries import Entries, table
 
@@ -42,6 +42,7 @@ def _messages(file: Content, path: Path) -> Iterator[Entries]:
             message = _Message()
         elif line.strip() and not line.lstrip().startswith("#"):
             message.take(line.rstrip(), f"{path}, line {number}")
+            KEYS.check(len(message.entries.values), path)
     if message.entries.values:
         yield message.entries
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
-from taylor_verify.solvers.files.formats.column import COLUMNS, VALUES, Table
+from taylor_verify.solvers.files.formats.column import COLUMNS, ELEMENTS, Table
 from taylor_verify.solvers.files.formats.content import Content
 
 _NAME: Final = "# name:"
@@ -52,7 +52,7 @@ def _arrays(file: Content, path: Path) -> Iterator[Array]:
             stated["sizes"] = line
             continue
         count += len(words)
-        VALUES.check(count, path)
+        ELEMENTS.check(count, path)
         cells += words
     yield from _array(stated, cells, path)
 
