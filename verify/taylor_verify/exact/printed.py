@@ -239,7 +239,7 @@ def _entry(value: Any, digits: int) -> str:
 
 
 class Moving(Protocol):
-    """What has a motion: a solution, or equations of a user."""
+    """Something with a motion: a solution, or equations of a user."""
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """Return the motion at times since the start."""
