@@ -74,6 +74,15 @@ def test_a_motion_prints_all_digits_that_were_asked_for(results: dict[str, Any])
     assert float(motion.omega[1, 0]) == float(number)
 
 
+def test_own_equations_and_events_print_their_digits() -> None:
+    """Numbers of `enclose` and times of `events` print as those of `exact` do."""
+    motion = taylor_verify.enclose({"x": "-x"}, {"x": 1}, [1], DIGITS)
+    assert str(motion.x[0]) == "0.3678794411714423215955237701614608674458"
+    assert motion.times == (Fraction(1),)
+    first, *_ = taylor_verify.events("euler/tennis-racket", "w2 = 0", 20, DIGITS)
+    assert len(str(first.t)) == DIGITS + 1
+
+
 def test_quantities_are_attributes_and_columns(results: dict[str, Any]) -> None:
     """They are the arrays by name; a table has the columns of a file; an unknown name is answered."""
     motion, trajectory = results["Motion"], results["Trajectory"]

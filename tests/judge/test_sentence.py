@@ -190,7 +190,7 @@ def test_since_is_the_first_sample_above_its_bound() -> None:
     tolerant = row(Status.FAIL, tolerance=2.5e-2)
     verdict = diagnosed(tolerant, times, 7.0, errors, attainable)
     assert verdict.since == 10.0
-    assert "above the tolerance of 0.025 (roundoff of f64 alone would need " in verdict.sentence
+    assert "above the tolerance of 0.025 (rounding in f64 explains " in verdict.sentence
     passed = replace(verdict, verdict=Status.PASS, since=None)
     assert "within the tolerance of 0.025" in passed.sentence
 

@@ -168,7 +168,7 @@ def test_it(verify_solver, tolerance):
     result.stdout.fnmatch_lines(
         [
             "E       fail * omega: 6 digits are right up to t = 100 (largest error 9.5e-07); *above the "
-            "tolerance of 1e-09 (roundoff of f64 alone would need *, where 1.00e-9 is allowed; *",
+            "tolerance of 1e-09 (rounding in f64 explains *, where 1.00e-9 is allowed; *",
         ]
     )
 

@@ -201,6 +201,19 @@ def test_judgement_is_that_of_the_file() -> None:
     assert not taylor_verify.check(SCENE, table, columns=mapping).passed
 
 
+@pytest.mark.parametrize("scene", [SCENE, WHOLE])
+def test_our_own_results_are_answers(scene: str) -> None:
+    """`check` takes the arrays of `exact`, which pass; the groups of a Trajectory are its own."""
+    times = load(scene).times
+    motion = taylor_verify.exact(scene, times, 30)
+    assert taylor_verify.check(scene, {"t": times, **motion.quantities}).passed
+    answer = taylor_verify.solve(scene, "mpmath:odefun?tol=1e-8")
+    groups = made(answer, scene).groups
+    assert set(groups) == set(answer.quantities)
+    for name, rows in groups.items():
+        assert [float(x) for row in rows for x in row] == [float(x) for x in answer[name].flat]
+
+
 def test_floats_are_taken_as_they_are() -> None:
     """A float32 is the number that it is; so are long doubles, integers, fractions and texts."""
     kinds: Mapping[str, Sequence[Any]] = {

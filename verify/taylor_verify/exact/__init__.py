@@ -61,20 +61,13 @@ def exact(
     The equations are Heinbockel (2.2.72) and Encyclopaedia Britannica, hydromechanics 48 (3), (4). The
     formulas of a closed form are named in exact.euler and exact.kirchhoff.
     """
-    from taylor_verify.exact.printed import printable
+    from taylor_verify.exact.printed import motion_at
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
-    from taylor_verify.exact.solution import Unsettled
     from taylor_verify.scenes.reading.reader import as_scene
 
     scene, digits, asked = as_scene(scene), check_digits(digits), exact_times(times)
-    elapsed = [time - scene.clock.start for time in asked]
-    try:
-        return printable(solution(scene, route).motion(elapsed, digits), asked, digits)
-    except Unsettled as doubt:
-        if doubt.motion is not None:
-            doubt.motion = printable(doubt.motion, [asked[k] for k in doubt.places], digits)
-        raise
+    return motion_at(solution(scene, route), asked, scene.clock.start, digits)
 
 
 @in_turn
@@ -124,12 +117,12 @@ def enclose(
     The method is that of exact.enclosure: Taylor series in balls, with a bound of all that they leave out.
     """
     from taylor_verify.exact.field import Field
+    from taylor_verify.exact.printed import motion_at
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.scenes.reading.field import field_of
 
     digits, (first,) = check_digits(digits), exact_times([begin])
-    elapsed = [time - first for time in exact_times(times)]
-    return Field(field_of(rates, start, first)).motion(elapsed, digits)
+    return motion_at(Field(field_of(rates, start, first)), exact_times(times), first, digits)
 
 
 @in_turn

@@ -20,6 +20,7 @@ from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.roots import Zero, zeros
 from taylor_verify.exact.enclosure.stopping import Coarse, Unreached
 from taylor_verify.exact.enclosure.system import System
+from taylor_verify.exact.printed import number_with_digits
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.written import as_written
 from taylor_verify.scenes.loads.loads import Loads
@@ -160,11 +161,12 @@ def _lacking(zero: Zero, target: int, elapsed: Fraction) -> int:
 
 def _events(event: Event, until: Fraction, digits: int, every: list[Zero]) -> Events:
     crossed, others = (
-        tuple(_time(zero.time) for zero in every if zero.is_crossed is kind)
+        tuple(_time(zero.time, digits) for zero in every if zero.is_crossed is kind)
         for kind in (True, False)
     )
     return Events(event.text, until, digits, crossed, others)
 
 
-def _time(time: arb) -> EventTime:
-    return EventTime(midpoint(time), upper(arb(time.rad())))
+def _time(time: arb, digits: int) -> EventTime:
+    t, radius = midpoint(time), upper(arb(time.rad()))
+    return EventTime(number_with_digits(t._mpf_, digits), radius)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_CEILING, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 from mpmath import libmp, mp, mpf
@@ -238,6 +238,13 @@ def _entry(value: Any, digits: int) -> str:
     return decimal_text(exact_value(value), digits)
 
 
+class Moving(Protocol):
+    """Something with a motion: a solution, or equations of a user."""
+
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
+        """Return the motion at times since the start."""
+
+
 class Printed(mpf):  # type: ignore[misc]
     """A number of mpmath that prints with the digits that were asked for."""
 
@@ -252,20 +259,33 @@ class Printed(mpf):  # type: ignore[misc]
         return str(self) if not spec else str(super().__format__(spec))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _printing, (self._mpf_, self.digits)
+        return number_with_digits, (self._mpf_, self.digits)
 
 
-def _printing(number: Any, digits: int) -> Printed:
+def number_with_digits(number: Any, digits: int) -> Printed:
     """Return the number of a tuple of mpmath's, which no precision in force rounds."""
     printed = Printed.__new__(Printed)
     printed._mpf_, printed.digits = number, digits
     return printed
 
 
+def motion_at(moving: Moving, times: Sequence[Fraction], start: Fraction, digits: int) -> Motion:
+    """Return the motion at times of the clock, whose numbers print with so many digits.
+
+    Raises Unsettled with the rows that there are, which print likewise.
+    """
+    try:
+        return printable(moving.motion([t - start for t in times], digits), times, digits)
+    except Unsettled as doubt:
+        if doubt.motion is not None:
+            doubt.motion = printable(doubt.motion, [times[k] for k in doubt.places], digits)
+        raise
+
+
 def printable(motion: Motion, times: Sequence[Fraction], digits: int) -> Motion:
     """Return the motion with its times, each of its numbers printing with so many digits."""
     quantities = {}
     for name, values in motion.quantities.items():
-        numbers = [_printing(value._mpf_, digits) for value in values.flat]
+        numbers = [number_with_digits(value._mpf_, digits) for value in values.flat]
         quantities[name] = np.array([*numbers, None], dtype=object)[:-1].reshape(values.shape)
     return replace(motion, quantities=quantities, times=tuple(times), digits=digits)

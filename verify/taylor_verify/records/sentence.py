@@ -147,4 +147,4 @@ def _since(verdict: Verdict) -> str:
 def _allowed_by_arithmetic(verdict: Verdict) -> str:
     if verdict.attainable is None or verdict.error_kind is ErrorKind.ROUNDOFF:
         return ""
-    return f" (roundoff of {verdict.rung} alone would need {GATE_FACTOR * verdict.attainable:.2g})"
+    return f" (rounding in {verdict.rung} explains {GATE_FACTOR * verdict.attainable:.2g})"

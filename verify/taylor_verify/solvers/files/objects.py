@@ -2,7 +2,7 @@
 
 An object is recognised by its attributes, so that no library is imported for it. Arrays of vectors become a
 column for each component: ``omega`` (n, 3) is ``w1 w2 w3``, another name ``gyro`` is ``gyro[0] gyro[1]
-gyro[2]``. Numbers are taken exactly, as the doubles, floats or long doubles that they are.
+gyro[2]``. Numbers are taken exactly, as the doubles, floats, long doubles or mpfs that they are.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
+from mpmath import isfinite, mpf
 
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.scene import Scene
@@ -21,6 +23,7 @@ from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column, check_size
 from taylor_verify.solvers.files.own_states import own_columns
 from taylor_verify.solvers.files.rotations import bare, groups_of, is_rotation
+from taylor_verify.solvers.trajectory import Trajectory
 
 # A form of the attitude, in radians or with a unit behind its name: zyx_deg.
 FORM_COLUMNS: Final = {
@@ -29,8 +32,8 @@ FORM_COLUMNS: Final = {
     for unit in ("", *(("_deg", "_rad") if form.angles else ()))
 }
 _ACCEPTED: Final = (
-    "a callable solve(problem), a trajectory file, a DataFrame, an xarray Dataset, a dict of arrays or "
-    "SciPy's OdeResult"
+    "a callable solve(problem), a trajectory file, a Trajectory, a DataFrame, an xarray Dataset, a dict of "
+    "arrays or SciPy's OdeResult"
 )
 
 
@@ -40,7 +43,7 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
     Parameters
     ----------
     answer
-        A DataFrame, a Dataset, a record array, arrays by name, or SciPy's OdeResult.
+        A Trajectory, DataFrame, Dataset, record array, arrays by name, or SciPy's OdeResult.
     scene
         The scene that it answers: it has the order of the states of an OdeResult.
     columns
@@ -59,6 +62,8 @@ def trajectory(answer: Any, scene: Scene, columns: Request = ()) -> TrajectoryFi
         For an object of another kind.
     """
     place = f"the {type(answer).__name__}"
+    if isinstance(answer, Trajectory):
+        answer = {"t": answer.times, **answer.quantities}
     gathered = _Gathered(place, own_columns(scene))
     if hasattr(answer, "data_vars") and hasattr(answer, "dims"):
         gathered.take_data_set(answer)
@@ -178,7 +183,7 @@ class _Gathered:
         if array is None:
             if name in self._groups:
                 self._refuse("an array", "rows of different lengths", name)
-            self.columns.append(Column(name, list(values)))
+            self.columns.append(Column(name, [_exact(value) for value in values]))
             return
         array = self._by_rows(array)
         if array.ndim == 1:
@@ -225,10 +230,15 @@ class _Gathered:
     def _add(self, name: str, values: Any) -> None:
         if values.dtype.kind == "m":
             name, values = f"{name} [ns]", values.astype("timedelta64[ns]").astype(np.int64)
-        self.columns.append(Column(name, list(values)))
+        self.columns.append(Column(name, [_exact(value) for value in values]))
 
     def _refuse(self, expected: str, got: str, name: str) -> None:
         self.faults.add(expected, got, f"{self.place}, column {cut(name)}")
+
+
+def _exact(value: Any) -> Any:
+    """Return a number of mpmath as the rational that it is; any other value as it stands."""
+    return exact_value(value) if isinstance(value, mpf) and isfinite(value) else value
 
 
 def _array(values: Any) -> Any:
