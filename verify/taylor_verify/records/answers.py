@@ -48,6 +48,19 @@ class LikelyCause:
 
 
 @dataclass(frozen=True)
+class MissingLoad:
+    """A constant load, body axes, with which the scene's motion leads from a row to the next.
+
+    ``load`` is a moment, or a force and a couple; it acts from the time ``t`` to ``until`` and says what a
+    file's rows do, where no cause is proven.
+    """
+
+    t: float
+    until: float
+    load: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class FileRead:
     """A trajectory file as it was read; ``notes`` say what was not compared, and why."""
 
@@ -169,6 +182,7 @@ class Answer:
     baseline: AgainstBaseline | None = None
     conventions: tuple[Convention, ...] = ()
     causes: tuple[LikelyCause, ...] = ()
+    missing_load: tuple[MissingLoad, ...] = ()
     notes: Annotated[Sentences, about("Facts about the answers of a run that failed.")] = ()
     file: FileRead | None = None
     step: Annotated[Size | None, about("The step that the integrator of the file took.")] = None

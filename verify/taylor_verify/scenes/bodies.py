@@ -185,7 +185,8 @@ class ImmersedBody(Body):
     A (``linear``) and C (``angular``) are symmetric, the row of B (``coupling``) is the index of x,
     and [[A, B], [B^T, C]] is positive definite. ``force`` (X, Y, Z) and ``couple`` (L, M, N) are
     constant in body axes. ``ellipsoid`` is the shape of a body that was given by it; its coefficients are
-    irrational. Where there is a ``manufactured`` motion of (x, y), the loads are those
+    irrational. ``added`` is the part of the mass matrix that a scene calls added mass, where it does.
+    Where there is a ``manufactured`` motion of (x, y), the loads are those
     that make it a motion of this body.
     """
 
@@ -195,6 +196,7 @@ class ImmersedBody(Body):
     force: Vector = ZERO_VECTOR
     couple: Vector = ZERO_VECTOR
     ellipsoid: Ellipsoid | None = None
+    added: Matrix | None = None
     manufactured: Manufactured | None = None
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
@@ -340,6 +342,9 @@ class Ellipsoid:
             coupling=ZERO_MATRIX,
             angular=tensors.diagonal(angular),
             ellipsoid=self,
+            added=tensors.diagonal(
+                tuple(map(stand_in, (*self.inertias.added_mass, *self.inertias.added_inertia)))
+            ),
         )
 
 

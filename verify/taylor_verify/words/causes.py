@@ -6,10 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import ceil, log10
 from typing import Any, Final
 
+from taylor_verify.records.answers import MissingLoad
+
 _NOTHING: Final = 1e-7
 # A change below this part of the largest one is none: the entry agrees.
 _AGREES: Final = 1e-4
 _MOST_DIGITS: Final = 15
+# Of a load between rows as many times are listed.
+_TIMES: Final = 5
+# An entry below this part of the largest one is 0, rounded.
+_ROUNDED: Final = 1e-13
 # A factor so near to a whole number is one.
 _WHOLE: Final = 1e-6
 
@@ -65,6 +71,7 @@ def _pace(clock: float) -> str:
 def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> str:
     """Return the entries that changed, each with its relative change, and how well the others agree."""
     largest = max(map(abs, right)) or 1.0
+    right = [0.0 if abs(old) < _ROUNDED * largest else old for old in right]
     parts = [
         abs(value - old) / (abs(old) or largest) for old, value in zip(right, values, strict=True)
     ]
@@ -85,3 +92,19 @@ def _change(label: str, old: float, value: float) -> str:
     if abs(value) < _NOTHING * abs(old):
         return f"{label} = 0 for {old:.6g}"
     return f"{label} = {value:.{digits}g} for {old:.{digits}g} ({100 * part:+.3g} %)"
+
+
+def missing_load_line(loads: Sequence[MissingLoad]) -> str:
+    """Return the load between rows as a sentence, at a few of its times."""
+    noun = "moment" if len(loads[0].load) == 3 else "force and couple"
+    few = [loads[k * (len(loads) - 1) // (_TIMES - 1)] for k in range(_TIMES)]
+    some = list(dict.fromkeys(few))
+    listed = "; ".join(f"t = {each.t:.6g}: {_vector(each.load)}" for each in some)
+    return (
+        f"no cause is proven; the rows follow if from t = {loads[0].t:.6g} to {loads[-1].until:.6g} a "
+        f"{noun} acts (body axes) that the scene does not have: {listed}"
+    )
+
+
+def _vector(values: Sequence[float]) -> str:
+    return f"({', '.join(f'{value:.3g}' for value in values)})"

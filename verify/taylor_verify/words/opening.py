@@ -4,27 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
+from typing import Final
 
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.status import GRAVITY, Status, gravest
 from taylor_verify.records.verdict import Verdict
 
+# A longer title is cut here in the sentence.
+_LONGEST: Final = 120
+
 
 def opening(verdicts: Sequence[Verdict], causes: Sequence[LikelyCause] = ()) -> str:
-    """Return one sentence: the gravest status, the names of likely causes, and the worst row.
+    """Return one sentence: the gravest status, the likely causes, and the worst row.
 
     The row of one of several runs begins with its scene and rung.
     """
     if not verdicts:
         return "nothing was judged"
     status = gravest(verdict.verdict for verdict in verdicts)
-    names = " or ".join(dict.fromkeys(cause.name for cause in causes))
+    names = " and ".join(dict.fromkeys(map(_title, causes)))
     cause = f", likely cause: {names}" if names else ""
     where = "nearest to its bound" if status is Status.PASS else "worst"
     row = worst(verdicts)
     is_one_run = len({(verdict.scene, verdict.rung) for verdict in verdicts}) == 1
     place = "" if is_one_run else f"{row.scene} {row.rung} "
     return f"{status.value}{cause}; {where}: {place}{row.sentence}"
+
+
+def _title(cause: LikelyCause) -> str:
+    """Return the cause without what it leaves, and without the end of a long list of numbers."""
+    title = cause.sentence.partition("; leaves")[0].partition("; not told")[0]
+    if len(title) <= _LONGEST:
+        return title
+    return f"{title[:_LONGEST].rpartition(' ')[0].rstrip(',')} ..."
 
 
 def worst(verdicts: Sequence[Verdict]) -> Verdict:

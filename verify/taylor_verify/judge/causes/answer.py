@@ -42,6 +42,16 @@ class Motion:
         q, c = (None if part is None else part[rows] for part in (self.q, self.c))
         return Motion(self.v[rows], q, c)
 
+    @property
+    def first_attitude(self) -> Floats | None:
+        return None if self.q is None else np.asarray(self.q[0])
+
+    def signed_as(self, first: Floats | None) -> Motion:
+        """Return the motion with the signs of the attitudes such that the first is near to this one."""
+        if self.q is None or first is None or self.q[0] @ first >= 0:
+            return self
+        return replace(self, q=-self.q)
+
     def before(self, other: Motion) -> Motion:
         """Return the rows with those of another motion behind them, and its quantities."""
         v, q, c = (
@@ -60,6 +70,7 @@ class Answer:
     the last digit of each component of v, of the attitude and of the centre.
     ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
     ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
+    Without ``has_rates`` omega is that of the file's own attitudes, and is no quantity of the file.
     """
 
     right: Equations
@@ -75,6 +86,7 @@ class Answer:
     own_attitudes: Floats | None = None
     begins: float = 0.0
     scene: Scene | None = None
+    has_rates: bool = True
 
     @property
     def off(self) -> float:
@@ -283,7 +295,7 @@ class Answer:
             one[0] = 1.0
             begin = np.concatenate([self.file.v[rows].T, one])[None]
             (ends,) = flow(free.rates, begin, self.times[rows], sign * spans, 4)
-            turns.append(sign * _vectors(ends[self.n :].T))
+            turns.append(sign * rotation_vectors(ends[self.n :].T))
         steps = _quaternions((turns[0] + turns[1]) / 2)
         rows_ = [self.truth.q[0]]
         for step in steps:
@@ -312,7 +324,7 @@ def matrices(q: Floats) -> Floats:
     return np.array(rotation(list(q.T))).transpose(2, 0, 1)
 
 
-def _vectors(q: Floats) -> Floats:
+def rotation_vectors(q: Floats) -> Floats:
     """Return the rotation vectors of rows of quaternions."""
     sine = np.linalg.norm(q[:, 1:], axis=1, keepdims=True)
     angle = 2 * np.arctan2(sine, np.abs(q[:, :1]))

@@ -21,9 +21,10 @@ from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.missing_load import missing_load
+from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
 from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.printed import half_units
-from taylor_verify.judge.causes.proof import LEAVES
+from taylor_verify.judge.causes.proof import LEAVES, may_leave
 from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.axes import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
@@ -33,16 +34,16 @@ from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR
-from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.answers import LikelyCause, MissingLoad
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
-from taylor_verify.words.causes import sentence
+from taylor_verify.words.causes import missing_load_line, sentence
 
 if TYPE_CHECKING:
     from taylor_verify.solvers.files.file import TrajectoryFile
@@ -66,6 +67,8 @@ _NO_ROTATION: Final = 1e-5
 _MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
+# Rates of attitudes need as many rows.
+_FEWEST_ATTITUDES: Final = 20
 # Work for each component of v.
 _BUDGET: Final = 120_000.0
 _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
@@ -82,7 +85,13 @@ class Explained:
 
     causes: tuple[LikelyCause, ...] = ()
     is_motion: bool = False
-    notes: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
+    missing_load: tuple[MissingLoad, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The facts, and the load that is missing, as sentences."""
+        return (*self.facts, *map(missing_load_line, filter(None, [self.missing_load])))
 
 
 def causes_of_file(
@@ -101,8 +110,8 @@ def causes_of_file(
             known = explained(answer)
             # A convention reaches the rounding of what it reads: no load is missing there.
             is_read = not _MOVING.isdisjoint(conventions.readings)
-            return replace(known, notes=facts if is_read else (*facts, *known.notes))
-    return Explained(notes=facts)
+            return replace(known, facts=facts, missing_load=() if is_read else known.missing_load)
+    return Explained(facts=facts)
 
 
 def _no_rotation(file: TrajectoryFile) -> tuple[str, ...]:
@@ -145,13 +154,21 @@ def explained(answer: Answer) -> Explained:
         causes = causes_of(answer)
     except _SILENT:
         return Explained()
-    causes += plugged_causes(answer)
+    causes = [*causes, *plugged_causes(answer)] if answer.has_rates else _of_frame(answer, causes)
     is_motion = bool(causes) and not any(map(_is_convention, causes))
-    notes: tuple[str, ...] = ()
-    if not causes:
+    missing: tuple[MissingLoad, ...] = ()
+    if not causes and answer.has_rates:
         with suppress(*_SILENT):
-            notes = tuple(filter(None, (missing_load(answer),)))
-    return Explained(tuple(_likely(cause, answer) for cause in causes), is_motion, notes)
+            missing = missing_load(answer)
+    likely = tuple(_likely(cause, answer) for cause in causes)
+    return Explained(likely, is_motion, missing_load=missing)
+
+
+def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
+    """Return the causes that explain the attitude, of a file that has no omega."""
+    explains = may_leave(answer, ["attitude"], 1) if "attitude" in answer.failed else 0.0
+    left = [(cause, cause.leaves.get("attitude", np.inf)) for cause in causes]
+    return [replace(cause, leaves={"attitude": part}) for cause, part in left if part <= explains]
 
 
 def _is_convention(cause: Cause) -> bool:
@@ -177,12 +194,14 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     mass = energy if given.model == "euler" else np.linalg.inv(energy)
     n, loads = len(mass), given.body.loads
     constant = [entry for name in body.load_names() for entry in parts[name]]
+    added = body.added if isinstance(body, ImmersedBody) else None
     equations = replace(
         Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
         load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
         has_momenta=has_momenta,
         start=float(given.clock.start),
         damping=float(body.damping),
+        added=None if added is None else np.array(added, dtype=float),
     )
     if loads is None:
         return equations
@@ -227,9 +246,11 @@ def material(
         return None
     exact = ExactMotion(given, file.c is not None or right.reads > 4)
     instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
-    truth = exact.at(instants, has_momenta).at(np.s_[1:])
-    start = exact.at(instants[:1], has_momenta=False)
-    compared = file.at(rows)
+    # Texts may read q1 q2 q3, whose signs are those of the scene's start.
+    first = np.array(given.initial.attitude, dtype=float)
+    truth = exact.at(instants, has_momenta).signed_as(first).at(np.s_[1:])
+    start = exact.at(instants[:1], has_momenta=False).signed_as(first)
+    compared = file.at(rows).signed_as(truth.first_attitude)
     return Answer(
         right,
         start,
@@ -280,7 +301,7 @@ def material_of_file(
         return None
     names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
     if not names:
-        return None
+        return _of_attitudes(file, given, conventions, verdicts, every)
     read = [
         _read_by(file, given, conventions, names[0], attitudes, verdicts, every)
         for attitudes in _attitudes(file, given, conventions)
@@ -290,6 +311,40 @@ def material_of_file(
         return None
     # Where the file's own attitude is wrong, the exact one is that of its space axes if it explains them.
     return next((each for each in known[1:] if each.off <= LEAVES * known[0].off), known[0])
+
+
+def _of_attitudes(
+    file: TrajectoryFile,
+    given: Scene,
+    conventions: Conventions,
+    verdicts: Iterable[Verdict],
+    every: int,
+) -> Answer | None:
+    """Return the attitudes of a rigid body, with their own rates, as material."""
+    group, times = _frame_of(file), np.array([float(t) for t in file.times])
+    if given.model != "euler" or not group or len(times) < _FEWEST_ATTITUDES:
+        return None
+    q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
+    omega, noise = rates_of_attitudes(times, q, unit)
+    inner = range(ASIDE, len(times) - ASIDE)
+    instants = tuple(given.clock.instants[k] for k in inner)
+    scene = replace(given, clock=replace(given.clock, instants=instants))
+    failed = [replace(v, quantity="omega") for v in verdicts if v.verdict is Status.FAIL]
+    motion = Motion(omega, q[inner])
+    noises = (np.full(3, noise), unit, 0.0)
+    answer = material(
+        scene,
+        motion,
+        has_momenta=False,
+        noise=noises,
+        verdicts=[*verdicts, *failed[:1]],
+        every=every,
+    )
+    return answer and replace(answer, has_rates=False)
+
+
+def _quaternions(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:
+    return steady_signs(quaternion_columns(_own_attitudes(file, group, conventions)))
 
 
 def _read_by(
@@ -310,7 +365,7 @@ def _read_by(
         noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
     frame, q, c = _frame_of(file), None, None
     if frame:
-        q = steady_signs(quaternion_columns(_own_attitudes(file, frame, conventions)))
+        q = _quaternions(file, frame, conventions)
     if "centre" in file.groups:
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)

@@ -28,6 +28,9 @@ def faults_of_bodies(right: Equations) -> Iterator[Fault]:
     for name, mass in misread:
         if np.all(np.linalg.eigvalsh(mass) > 0):
             yield Fault(name, "body", {"mass": mass})
+        if not np.allclose(coriolis_of(mass), 0.0):
+            extra = right.basis.factors(products=coriolis_of(mass - right.mass))
+            yield Fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
     if right.size == 6:
         yield from _coupling_in_one(right)
 
@@ -177,9 +180,12 @@ class _Number(NamedTuple):
 
 def _each(right: Equations, name: str, numbers: list[_Number]) -> Iterator[Family]:
     """Yield the family of another body, and that of other Coriolis terms alone."""
-    term = "gyroscopic term" if right.size == 3 else "Coriolis terms"
     yield _of_body(right, name, numbers)
-    yield _of_coriolis(right, f"{name} in the {term} alone", numbers)
+    yield _of_coriolis(right, f"{name} in the {_term(right)} alone", numbers)
+
+
+def _term(right: Equations) -> str:
+    return "gyroscopic term" if right.size == 3 else "Coriolis terms"
 
 
 def _of_body(right: Equations, name: str, numbers: list[_Number]) -> Family:

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import telling_arcs
 from taylor_verify.judge.causes.bodies import (
@@ -137,7 +138,7 @@ class _Dynamics:
 
     def _faults(self) -> Iterator[Candidate]:
         right = self.answer.right
-        faults = [*faults_of_terms(right), *faults_of_bodies(right)]
+        faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
         every = self.arcs.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))

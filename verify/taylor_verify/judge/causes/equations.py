@@ -40,6 +40,7 @@ class Equations:
     omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
     takes v for components in space axes, into which the loads are turned. ``texts`` are the entries of
     the loads in the scene, beside a weight if ``is_hung``; they may name the inertia or the momenta.
+    ``added`` is the part of ``mass`` that the scene calls added mass.
     """
 
     mass: Floats
@@ -62,6 +63,7 @@ class Equations:
     texts: tuple[str, ...] = ()
     is_hung: bool = False
     names_mass: bool = False
+    added: Floats | None = None
 
     @classmethod
     def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:

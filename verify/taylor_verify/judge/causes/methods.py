@@ -6,8 +6,9 @@ each arc. An attitude's update takes q, the angular velocities at both ends of t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -219,3 +220,37 @@ UPDATES: Final[Mapping[str, tuple[int, _Update]]] = {
         _turned_in_place,
     ),
 }
+
+# The first-order updates of the attitude by which loads that read it differ.
+_WITH_EULER: Final = (
+    "turned by the rate at the begin of the step",
+    "turned by the rate at the end of the step",
+    "q + h q omega / 2 with the rate at the end",
+)
+
+
+def with_updates(n: int) -> Iterator[tuple[str, Method]]:
+    """Yield explicit Euler with other updates of the attitude, for states of n velocities and q."""
+    euler = METHODS["explicit Euler"]
+    for name in _WITH_EULER:
+        step = partial(_updated, euler.step, UPDATES[name][1], n)
+        yield f"explicit Euler, attitude {name}", Method(1, step)
+
+
+def _updated(
+    step: _Step, update: _Update, n: int, equations: Equations, time: Floats, z: Floats, h: Floats
+) -> Floats:
+    after = step(equations, time, z, h)
+    before, then = (
+        (equations.inverse @ each if equations.has_momenta else each)
+        for each in (z[:, :n], after[:, :n])
+    )
+    after[:, n : n + 4] = update(z[:, n : n + 4], before[:, -3:], then[:, -3:], h)
+    return after
+
+
+def with_unit_attitude(z: Floats, n: int) -> Floats:
+    """Return states of n velocities, q and more with q of unit length."""
+    z = z.copy()
+    z[:, n : n + 4] /= np.linalg.norm(z[:, n : n + 4], axis=1, keepdims=True)
+    return z

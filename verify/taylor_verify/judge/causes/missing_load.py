@@ -9,10 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Places
+from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.arcs import Arcs, row_to_row
 from taylor_verify.judge.causes.fault import Sizes
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.records.answers import MissingLoad
 
 _ROUNDS: Final = 3
 _SHIFT: Final = 1e-3
@@ -20,20 +21,20 @@ _SHIFT: Final = 1e-3
 _STANDS_OUT: Final = 30.0
 # The rows must follow to this part of their defects.
 _LEAVES: Final = 1e-3
-_TIMES: Final = 5
 
 
-def missing_load(answer: Answer) -> str:
-    """Return the load in words; empty where rows are too far apart to tell it, or where it is rounding."""
+def missing_load(answer: Answer) -> tuple[MissingLoad, ...]:
+    """Return the load between rows; empty where rows are too far apart to tell it, or it is rounding."""
     if answer.count < 4 or not answer.moving or answer.has_states:
-        return ""
+        return ()
     arcs = row_to_row(answer)
     load, slopes, left = _fitted(answer, arcs)
     if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
-        return ""
+        return ()
     unit = np.abs(np.linalg.inv(slopes)) @ answer.rounding
     clear = np.flatnonzero(np.any(np.abs(load) > _STANDS_OUT * unit, axis=1))
-    return _words(answer, load, clear) if len(clear) else ""
+    times = (answer.times + answer.right.start).tolist()
+    return tuple(MissingLoad(times[k], times[k + 1], tuple(load[k].tolist())) for k in clear)
 
 
 def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
@@ -50,19 +51,3 @@ def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
         defects = (arcs.end / answer.sizes[:, None] - ends[0]).T
         load = load + np.linalg.solve(slopes, defects[..., None])[..., 0]
     return load, slopes, float(np.linalg.norm(defects))
-
-
-def _words(answer: Answer, load: Floats, clear: Places) -> str:
-    times = answer.times + answer.right.start
-    noun = "moment" if answer.n == 3 else "force and couple"
-    some = clear[np.unique(np.linspace(0, len(clear) - 1, _TIMES).astype(int))]
-    listed = "; ".join(f"t = {times[k]:.6g}: {_vector(load[k])}" for k in some)
-    begin, end = times[clear[0]], times[clear[-1] + 1]
-    return (
-        f"no cause is proven; the rows follow if from t = {begin:.6g} to {end:.6g} a {noun} acts (body "
-        f"axes) that the scene does not have: {listed}"
-    )
-
-
-def _vector(values: Floats) -> str:
-    return "(" + ", ".join(f"{value:.3g}" for value in values) + ")"

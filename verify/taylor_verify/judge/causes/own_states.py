@@ -135,11 +135,13 @@ def _with(loads: Loads, old: State, *new: State) -> Loads:
 
 
 def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[tuple[str, Loads]]:
-    for factor in _RATES:
+    has_offsets = any(state.offset for state in held)
+    for factor, keeps_offset in product(_RATES, (False, True)[: 1 + has_offsets]):
         every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
         names = " and ".join(state.name for state in held)
-        states = tuple(_slower(state, factor) for state in loads.states)
+        states = tuple(_slower(state, factor, keeps_offset) for state in loads.states)
         name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
+        name += ", with the scene's offsets" if keeps_offset else ""
         yield name, replace(loads, states=states)
 
 
@@ -147,10 +149,11 @@ def _ratio(factor: Fraction) -> str:
     return f"{factor} times" if factor.denominator == 1 else f"{factor} of"
 
 
-def _slower(state: State, factor: Fraction) -> State:
+def _slower(state: State, factor: Fraction, keeps_offset: bool) -> State:
     if not isinstance(state, Held):
         return state
-    return replace(state, every=factor * state.every, offset=factor * state.offset)
+    offset = state.offset if keeps_offset else factor * state.offset
+    return replace(state, every=factor * state.every, offset=offset)
 
 
 def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:

@@ -91,7 +91,31 @@ def readings(answer: Answer) -> dict[str, Cause]:
     if omega is not None and is_alone and "turned by a fixed" in omega.name:
         # An axisymmetric body of the other sign looks like a turn.
         del causes["omega"]
-    return causes
+    return _one_turn(answer, causes) or causes
+
+
+def _one_turn(answer: Answer, causes: dict[str, Cause]) -> dict[str, Cause]:
+    """Return one cause for omega and attitude if the same turn of the body's axes explains both."""
+    if not {"omega", "attitude"} <= causes.keys() or answer.n == 6:
+        return {}
+    q, truth = answer.file.q, answer.truth.q
+    assert q is not None
+    assert truth is not None
+    turn = _mean(times(conjugate(truth), q))
+    left = {
+        "omega": _left(answer, "omega", answer.truth.v @ matrices(turn)[0]),
+        "attitude": _left(answer, "attitude", times(truth, turn)),
+    }
+    names, roundings = (causes["omega"].name, causes["attitude"].name), answer.roundings
+    if not all("turned by a fixed rotation" in name for name in names) or any(
+        part > max(_ROUNDINGS * roundings[name], _PART * answer.worst[name])
+        for name, part in left.items()
+    ):
+        return {}
+    leaves = {name: part / answer.worst[name] for name, part in left.items()}
+    words = f"the body's axes are turned by a fixed rotation of {_degrees(turn[0]):.4g} degrees"
+    cause = Cause(f"{words}, in omega and attitude alike", "convention", leaves)
+    return {**dict.fromkeys(leaves, cause)}
 
 
 def _left(answer: Answer, name: str, rows: Floats) -> float:
@@ -226,13 +250,23 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
             ("space", times(q, conjugate(rows))),
             ("body", times(conjugate(rows), q)),
         ):
-            mean = np.linalg.eigh(turn.T @ turn)[1][:, -1]
-            angle = np.degrees(2 * np.arccos(min(1.0, abs(float(mean[0])))))
+            mean = _mean(turn)
+            angle = _degrees(mean[0])
             name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
-            turned = (mean[None], rows) if side == "space" else (rows, mean[None])
+            turned = (mean, rows) if side == "space" else (rows, mean)
             yield Reading(name, 3, times(*turned))
     yield from _both_frames(q, truth)
     yield _frame_that_turns(answer, q, truth)
+
+
+def _mean(turns: Floats) -> Floats:
+    """Return the mean of quaternions whose signs are free, (1, 4)."""
+    return np.asarray(np.linalg.eigh(turns.T @ turns)[1][:, -1][None])
+
+
+def _degrees(q: Floats) -> float:
+    """Return the angle of the turn of a quaternion."""
+    return float(np.degrees(2 * np.arccos(min(1.0, abs(float(q[0]))))))
 
 
 def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:

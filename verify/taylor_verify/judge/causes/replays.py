@@ -13,7 +13,13 @@ from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.methods import METHODS, OF_MOMENTUM, Method
+from taylor_verify.judge.causes.methods import (
+    METHODS,
+    OF_MOMENTUM,
+    Method,
+    with_unit_attitude,
+    with_updates,
+)
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.scenes.instants import evenly
 
@@ -52,6 +58,8 @@ def replay(
     answer.budget.spend(steps * evaluations * v.shape[1] * (7 + 0.011 * v.size / v.shape[1]))
     for k in range(steps):
         v = method.step(equations, since + k * h, v, h)
+        if v.shape[1] > answer.n:
+            v = with_unit_attitude(v, answer.n)
     return v
 
 
@@ -59,9 +67,11 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield the methods whose steps lead from row to row."""
     rows = np.array(evenly(answer.count - stride, _ARCS))
     arcs = Arcs(answer, rows, rows + stride)
-    if arcs.floor * _CLEAR > 1 or answer.right.coupled > answer.n:
+    if arcs.floor * _CLEAR > 1:
         return
     known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
+    if answer.right.coupled > answer.n:
+        known = {**METHODS, **dict(with_updates(answer.n))}
     for name, method in known.items():
         steps, left = _steps_of(arcs, method, stride)
         if steps and left < max(_LEAVES, _CLEAR * arcs.floor):
@@ -97,10 +107,10 @@ def _steps_of(arcs: Arcs, method: Method, stride: int) -> tuple[int, float]:
     exact = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
 
     def ends(steps: int) -> Floats:
-        begin = arcs.begin(answer.n)
+        begin = arcs.begin(max(answer.n, answer.right.coupled))
         count = steps * stride
         (rows,) = replay(answer, method, answer.right, begin, arcs.since, arcs.spans, count)
-        return np.asarray(rows)
+        return np.asarray(rows[: answer.n])
 
     steps, error = 1, (ends(1) - exact) / scale
     limit = _MOST_IMPLICIT if method.is_implicit else _MOST

@@ -32,6 +32,7 @@ _CONTRADICTED: Final = 1e-3
 _PROVEN: Final = 0.1
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
+_SHORTEST: Final = 12
 # The truth has left the start if it is so many roundings of the file away.
 _LEFT: Final = 30.0
 
@@ -48,12 +49,12 @@ def causes_of(answer: Answer) -> list[Cause]:
         return undone
     by_group = readings(answer)
     if answer.has_states:
-        return list(by_group.values()) or cause_in_states(answer)
+        return _each_once(by_group) or cause_in_states(answer)
     undone = _undone(answer, by_group)
     if undone:
         return undone
     left = [name for name in answer.failed if name not in by_group]
-    causes = list(by_group.values())
+    causes = _each_once(by_group)
     if not left:
         return causes
     moving = [name for name in left if name in answer.groups]
@@ -66,6 +67,11 @@ def causes_of(answer: Answer) -> list[Cause]:
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
+
+
+def _each_once(by_group: dict[str, Cause]) -> list[Cause]:
+    """Return the causes of groups; one of several groups is one object."""
+    return list({id(cause): cause for cause in by_group.values()}.values())
 
 
 def _is_attitude_right(answer: Answer, by_group: dict[str, Cause]) -> bool:
@@ -129,19 +135,57 @@ def _pieces(answer: Answer) -> list[Cause] | None:
     cause = starts.exact_in_pieces(answer, defects)
     if cause is not None:
         return [cause]
-    row = starts.last_right_row(answer, defects)
-    if row is None:
-        return None
-    stopped = starts.stopped(answer, row)
-    if stopped is not None:
-        return [stopped]
-    later = starts.from_row(answer, row)
-    # No scene has a fault in a part of its run.
-    time = answer.times[row] + answer.right.start
-    return [
-        replace(cause, where=f"right up to t = {time:.6g}, then", changes={})
-        for cause in causes_of(later)
-    ]
+    causes, last = list[Cause](), answer.count - 1
+    for begin, end in starts.wrong_spans(answer, defects):
+        stopped = starts.stopped(answer, begin) if end == last else None
+        if stopped is not None:
+            return [stopped]
+        with suppress(Spent):
+            causes += _within(answer, begin, end)
+    return causes or None
+
+
+def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) -> list[Cause]:
+    """Return the causes of the rows between two, which the motion before and after them does not have.
+
+    What acts in a part of them is said of that part, and the rest is asked again.
+    """
+    # A load may begin or end between two rows: the arcs at both ends are left out.
+    first, last = begin + bool(begin), end - (end < answer.count - 1)
+    part = starts.piece(answer, first, last) if last - first >= _FEWEST else None
+    if part is None:
+        return []
+    if causes := causes_of(part):
+        where = _times(answer, begin, end, is_right_before)
+        return [_of_part(answer, part, cause, where) for cause in causes]
+    half = part.at(np.s_[: part.count // 2])
+    cause = dynamics(half) if half.count >= _SHORTEST and half.moving else None
+    if cause is None or cause.method is not None:
+        return []
+    other = replace(part, right=part.right.changed(cause.changes))
+    wrong = np.flatnonzero(starts.roundings(other) > _LEFT)
+    if not len(wrong):
+        return []
+    change = first + int(wrong[0])
+    where = _times(answer, begin, change, is_right_before)
+    rest = _within(answer, change, end, is_right_before=False)
+    return [_of_part(answer, half, cause, where), *rest]
+
+
+def _of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:
+    """Return the cause of a part of the rows; no scene has a fault in a part of its run."""
+    leaves = {
+        name: left * part.worst[name] / answer.worst[name] for name, left in cause.leaves.items()
+    }
+    return replace(cause, leaves=leaves, where=where, changes={})
+
+
+def _times(answer: Answer, begin: int, end: int, is_right_before: bool) -> str:
+    """Return in words the part of the run between two rows."""
+    first, last = (f"t = {answer.times[row] + answer.right.start:.6g}" for row in (begin, end))
+    if end == answer.count - 1:
+        return f"right up to {first}, then" if is_right_before else f"from {first} on"
+    return f"from {first} to {last.removeprefix('t = ')}" if begin else f"up to {last}"
 
 
 def _clock_undone(answer: Answer) -> list[Cause]:

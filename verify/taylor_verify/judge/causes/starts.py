@@ -23,6 +23,8 @@ _FEW: Final = 2
 _ONE_IN: Final = 50
 _OFF: Final = 10.0
 _FEWEST: Final = 12
+_RIGHT: Final = 4
+_MOST_SPANS: Final = 3
 _EARLY: Final = 20
 _STANDS_OUT: Final = 30.0
 _AT_REST: Final = 4.0
@@ -127,18 +129,40 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
     return leaves
 
 
-def last_right_row(answer: Answer, defects: Floats) -> int | None:
-    """Return the row up to which the motion is right, if it is wrong from there on."""
+def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
+    """Return the rows between which the motion is wrong, if it is right in the rest of the run.
+
+    A span begins at the last right row, and ends at the first row from which the motion is right again.
+    """
     bad = np.flatnonzero(defects > max(_JUMP, _NOISE * float(np.max(defects))))
-    if not len(bad) or not bad[0] > max(3, answer.count // _EARLY):
-        return None
-    rest = answer.count - 1 - bad[0]
-    if rest < _FEWEST:
-        return None
+    right = max(_RIGHT, answer.count // _EARLY)
+    if not len(bad) or len(bad) > len(defects) - right:
+        return []
+    parts = np.split(bad, np.flatnonzero(np.diff(bad) > right) + 1)
+    spans = [(int(part[0]), int(part[-1]) + 1) for part in parts]
+    is_inside = np.zeros(len(defects), dtype=bool)
+    for begin, end in spans:
+        is_inside[begin:end] = True
+    if np.count_nonzero(~is_inside) < right or len(spans) > _MOST_SPANS:
+        return []
     # The row at which a fault begins may have a little of it.
-    after = min(defects[bad[0] + 1], np.median(defects[bad[0] :]))
-    is_clear = after > _STANDS_OUT * np.max(defects[: bad[0]])
-    return int(bad[0]) if is_clear and len(bad) > rest / 2 else None
+    after = min(float(np.median(defects[begin + 1 : end])) for begin, end in spans)
+    is_clear = after > _STANDS_OUT * float(np.max(defects[~is_inside]))
+    is_long = all(end - begin >= _FEWEST for begin, end in spans)
+    return spans if is_clear and is_long else []
+
+
+def piece(answer: Answer, first: int, last: int) -> Answer | None:
+    """Return some of the rows, begun at the first of them, with the right motion from there as the truth.
+
+    None if that motion is not reached.
+    """
+    part = answer.begun_at(first).at(np.s_[: last - first + 1])
+    truth = whole(part, part.right)
+    if truth is None:
+        return None
+    q, c = (part.truth.q if truth.q is None else truth.q), truth.c
+    return replace(part, truth=Motion(truth.v, q, part.truth.c if c is None else c))
 
 
 def stopped(answer: Answer, row: int) -> Cause | None:
@@ -151,12 +175,3 @@ def stopped(answer: Answer, row: int) -> Cause | None:
     what = "all velocities are 0" if is_at_rest else "all rows have the same numbers"
     leaves = dict.fromkeys(answer.failed, 0.0)
     return Cause(f"right before t = {time:.6g}, and {what} from there on", "at rest", leaves)
-
-
-def from_row(answer: Answer, row: int) -> Answer:
-    """Return the rows from one on, with the truth there as the start."""
-    part = answer.at(np.s_[row:])
-    truth = part.truth.at(np.s_[:1])
-    nu = truth.v @ answer.right.inverse.T if answer.right.has_momenta else truth.v
-    start = replace(truth, v=nu)
-    return replace(part, start=start, begins=float(answer.times[row]))

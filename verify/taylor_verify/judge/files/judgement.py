@@ -45,7 +45,7 @@ from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.answers import Convention, FileRead
+from taylor_verify.records.answers import Convention, FileRead, MissingLoad
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import is_state, with_needs
 from taylor_verify.records.reason import Carried, Cause
@@ -69,12 +69,14 @@ class FileJudgement(Judgement):
 
     ``conventions`` are those that differ from the scene's, ``accepted`` is True if they were corrected.
     ``breaks`` says where the equations of the scene are not smooth in time; empty where they are.
+    ``missing_load`` is what explains the rows where no cause is proven.
     """
 
     file: TrajectoryFile
     conventions: tuple[Finding, ...] = ()
     accepted: bool = False
     breaks: str = ""
+    missing_load: tuple[MissingLoad, ...] = ()
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -103,6 +105,7 @@ class FileJudgement(Judgement):
             "summary": summary(self.verdicts),
             "conventions": complete(conventions),
             "causes": complete(self.causes),
+            "missing_load": complete(self.missing_load),
             "file": complete(file),
         }
 
@@ -173,7 +176,8 @@ def judge_file(
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions, breaks_of(scene))
-    return FileJudgement(verdicts, judged.record, *of_file, causes=explained.causes, notes=notes)
+    of_causes = {"causes": explained.causes, "missing_load": explained.missing_load}
+    return FileJudgement(verdicts, judged.record, *of_file, **of_causes, notes=notes)
 
 
 def _fits(judged: Judgement) -> bool:

@@ -333,14 +333,17 @@ def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
     loads = orbit.scene.body.loads
     if loads is None or not loads.held_states:
         return rounded
-    result, times = rounded.copy(), [abs(float(t)) for t in orbit.elapsed]
+    result, times = rounded.copy(), np.array([abs(float(t)) for t in orbit.elapsed])
     counts = {state.name: np.zeros(len(times)) for state in loads.held_states}
     for instant in loads.instants(orbit.elapsed[-1]):
-        place = min(int(np.searchsorted(times, float(instant.time))), len(times) - 1)
+        # Two times that are one in float64 have no step between them.
+        later = np.flatnonzero((times >= float(instant.time)) & (steps_at > 0))
+        place = int(later[0]) if len(later) else int(np.flatnonzero(steps_at)[-1])
         for name in instant.names:
             counts[name][place] += 1
     for name, count in counts.items():
-        result[:, orbit.span(name)] *= np.sqrt(count / steps_at)[:, None]
+        in_step = count / np.where(steps_at > 0, steps_at, 1.0)
+        result[:, orbit.span(name)] *= np.sqrt(in_step)[:, None]
     return result
 
 

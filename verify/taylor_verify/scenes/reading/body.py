@@ -176,11 +176,9 @@ def _assembled(table: Table) -> ImmersedBody | None:
     matrix = tuple(map(tensors.plus, rigid, added))
     expected = "a mass and an added mass that make a positive definite mass matrix"
     mend = "an added mass is minus a naval derivative: X_udot = -0.93 adds 0.93"
-    return (
-        _of_mass_matrix(table, matrix)
-        if _is_positive(table, expected, matrix, "mass", mend)
-        else None
-    )
+    if not _is_positive(table, expected, matrix, "mass", mend):
+        return None
+    return replace(_of_mass_matrix(table, matrix), added=added)
 
 
 def _added_mass(table: Table) -> Matrix | None:
