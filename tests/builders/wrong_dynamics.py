@@ -13,7 +13,8 @@ from builders import integrators
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.answer import Motion, steady_signs
-from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.reason import Cause, stated

@@ -11,7 +11,8 @@ from builders.wrong_dynamics import failure
 
 from taylor_verify import exact
 from taylor_verify.judge.causes.answer import Motion
-from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import read

@@ -16,7 +16,8 @@ from builders.wrong_dynamics import failure
 
 import taylor_verify
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.answers import explained, material_of_file
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material_of_file
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.numbers.precision import rung
@@ -66,7 +67,7 @@ def changed(sentence: str, text: str) -> str:
     by_turns(
         [
             ("gyro-axis-2-flipped", FREE, ["omega has the other sign on axis 2"]),
-            ("imu-mounted-askew", FREE, ["rotation of 31.59 degrees", "rotation of 31.59 degrees"]),
+            ("imu-mounted-askew", FREE, ["fixed rotation of 31.59 degrees, in omega and attitude"]),
             (
                 "time-in-frames-60",
                 FREE,
@@ -96,7 +97,7 @@ def changed(sentence: str, text: str) -> str:
             (
                 "jsbsim-1034-rotating-earth",
                 "jsbsim-1034",
-                ["a frame that turns, in space axes, at (6.27179e-05, -2.96413e-05, 2.24761e-05)"],
+                ["all of the error arises between the first two rows, from t = 0 to 1"],
             ),
             ("gf_0.2_2_no_ca", "gf_0.2_2", ["lack the added mass (a rigid body of mass 31.0294)"]),
             ("gf_1.0_2_lower", "gf_1.0_2", ["three masses in the Munk moment alone"]),

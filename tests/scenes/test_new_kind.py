@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 import taylor_verify
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, are_known, with_causes
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, with_causes
+from taylor_verify.judge.causes.material import are_known
 from taylor_verify.numbers.tensors import Vector, diagonal
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat

@@ -1,4 +1,4 @@
-"""Faults of the added mass, which a scene's body may have apart: left out, twice, or in one place alone.
+"""Entries of the Coriolis matrix of an added mass that are 0, or of the other sign.
 
 C_A is the Coriolis matrix of Fossen (Handbook of Marine Craft Hydrodynamics, 2nd ed., 6.3.1): the Coriolis
 terms of A are -C_A(nu) nu, with the blocks [[0, -S(p)], [-S(p), -S(l)]] of (p, l) = A nu.
@@ -12,12 +12,11 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.basis import EPSILON, coriolis_of
+from taylor_verify.judge.causes.basis import EPSILON
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.flow import Floats
 
-_FACTORS: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
 _KIND: Final = "Coriolis matrix"
 _Places = tuple[tuple[int, int], ...]
 _LOWER: Final = ((5, 1), (5, 3), (6, 1), (6, 2))
@@ -34,18 +33,9 @@ _TOGETHER: Final[dict[str, _Places]] = {
 
 
 def faults_of_added_mass(right: Equations) -> Iterator[Fault]:
-    """Yield the faults of an added mass that the scene names."""
+    """Yield the faults of the entries of an added mass that the scene names."""
     if right.added is None or not np.any(right.added):
         return
-    added = right.added
-    for words, factor in _FACTORS:
-        products = right.basis.factors(products=(factor - 1) * coriolis_of(added))
-        other = right.mass + (factor - 1) * added
-        yield Fault(f"added mass {words} in the Coriolis terms", _KIND, {"extra": products})
-        if np.all(np.linalg.eigvalsh(other) > 0):
-            yield Fault(f"added mass {words}", "body", {"mass": other})
-            name = f"added mass {words} in the mass matrix, and right in the Coriolis terms"
-            yield Fault(name, _KIND, {"mass": other, "extra": -products})
     for words, places in _TOGETHER.items():
         listed = " ".join(f"C_{i}{k}" for i, k in places)
         name = f"entries {listed} of the added mass are 0 ({words})"

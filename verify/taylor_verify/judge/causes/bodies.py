@@ -20,19 +20,23 @@ _SAME: Final = 1e-9
 # Entries whose ratios differ by less than this are unchanged together.
 _UNCHANGED: Final = 1e-3
 _NEAR: Final = 1e-6
+_ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
 
 
 def faults_of_bodies(right: Equations) -> Iterator[Fault]:
-    """Yield bodies that result from misreading the scene's."""
+    """Yield bodies that result from misreading the scene's, whole and in one of the two matrices alone."""
     misread = _misread_tensors(right) if right.size == 3 else _misread_masses(right)
     for name, mass in misread:
-        if np.all(np.linalg.eigvalsh(mass) > 0):
+        extra = right.basis.factors(products=coriolis_of(mass - right.mass))
+        is_body = np.all(np.linalg.eigvalsh(mass) > 0)
+        if is_body:
             yield Fault(name, "body", {"mass": mass})
-        if not np.allclose(coriolis_of(mass), 0.0):
-            extra = right.basis.factors(products=coriolis_of(mass - right.mass))
+        # Wrong axes are wrong in both.
+        if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield Fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
-    if right.size == 6:
-        yield from _coupling_in_one(right)
+        if is_body and right.size == 6:
+            changes = {"mass": mass, "extra": -extra}
+            yield Fault(f"{name} in the mass matrix alone", "Coriolis matrix", changes)
 
 
 def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
@@ -66,6 +70,8 @@ def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
 
 def _misread_masses(right: Equations) -> Iterator[tuple[str, Any]]:
     mass, energy = right.mass, right.inverse
+    if right.added is not None:
+        yield from _misread_parts(mass, right.added)
     for words, factor in (("left out", 0.0), ("with the other sign", -1.0)):
         yield f"coupling B of the energy {words}", np.linalg.inv(_coupled(energy, factor))
     swapped = energy.copy()
@@ -77,20 +83,24 @@ def _misread_masses(right: Equations) -> Iterator[tuple[str, Any]]:
     yield "inverse masses cut to their diagonal", np.diag(1 / np.diag(right.inverse))
 
 
+def _misread_parts(mass: Floats, added: Floats) -> Iterator[tuple[str, Any]]:
+    """Yield misread mass matrices of a rigid body and the added mass that the scene has apart."""
+    for words, factor in _ADDED:
+        yield f"added mass {words}", mass + (factor - 1) * added
+    yield "rigid body left out", added
+    rigid = mass - added
+    arm, central = rigid[3:, :3] / rigid[0, 0], rigid.copy()
+    central[3:, 3:] += rigid[0, 0] * arm @ arm
+    yield "centre of mass at the origin", _coupled(central, 0.0) + added
+    yield "centre of mass on the other side", _coupled(rigid, -1.0) + added
+    yield "inertia about the centre of mass taken for that about the origin", central + added
+
+
 def _coupled(mass: Floats, factor: float) -> Floats:
     other = mass.copy()
     other[:3, 3:] *= factor
     other[3:, :3] *= factor
     return other
-
-
-def _coupling_in_one(right: Equations) -> Iterator[Fault]:
-    uncoupled = _coupled(right.mass, 0.0)
-    factors = right.basis.factors(products=coriolis_of(uncoupled - right.mass))
-    name = "coupling (centre of mass) in the mass matrix and not in the Coriolis terms"
-    yield Fault(name, "Coriolis matrix", {"extra": factors})
-    name = "coupling (centre of mass) in the Coriolis terms and not in the mass matrix"
-    yield Fault(name, "Coriolis matrix", {"mass": uncoupled, "extra": -factors})
 
 
 # Families.

@@ -163,13 +163,15 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
     if cause is None or cause.method is not None:
         return []
     other = replace(part, right=part.right.changed(cause.changes))
-    wrong = np.flatnonzero(starts.roundings(other) > _LEFT)
+    wrong = starts.wrong_arcs(starts.roundings(other))
     if not len(wrong):
         return []
     change = first + int(wrong[0])
     where = _times(answer, begin, change, is_right_before)
-    rest = _within(answer, change, end, is_right_before=False)
-    return [_of_part(answer, half, cause, where), *rest]
+    causes = [_of_part(answer, half, cause, where)]
+    with suppress(Spent):
+        causes += _within(answer, change, end, is_right_before=False)
+    return causes
 
 
 def _of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:

@@ -7,8 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
+from taylor_verify.judge.causes.answer import Answer, Motion, Places
 from taylor_verify.judge.causes.arcs import row_to_row
+from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import CAPS, may_leave, whole
@@ -129,12 +130,17 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
     return leaves
 
 
+def wrong_arcs(defects: Floats) -> Places:
+    """Return the arcs whose defects are more than those of a simulator with errors of its own."""
+    return np.flatnonzero(defects > max(_JUMP, _NOISE * float(np.max(defects))))
+
+
 def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
     """Return the rows between which the motion is wrong, if it is right in the rest of the run.
 
     A span begins at the last right row, and ends at the first row from which the motion is right again.
     """
-    bad = np.flatnonzero(defects > max(_JUMP, _NOISE * float(np.max(defects))))
+    bad = wrong_arcs(defects)
     right = max(_RIGHT, answer.count // _EARLY)
     if not len(bad) or len(bad) > len(defects) - right:
         return []
@@ -155,9 +161,10 @@ def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
 def piece(answer: Answer, first: int, last: int) -> Answer | None:
     """Return some of the rows, begun at the first of them, with the right motion from there as the truth.
 
-    None if that motion is not reached.
+    A piece has a budget of its own. None if that motion is not reached.
     """
     part = answer.begun_at(first).at(np.s_[: last - first + 1])
+    part = replace(part, budget=Budget(max(Budget().left, answer.budget.left)))
     truth = whole(part, part.right)
     if truth is None:
         return None

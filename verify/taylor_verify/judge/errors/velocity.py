@@ -43,6 +43,8 @@ _MORE_DIGITS: Final = 12
 _EVALUATIONS: Final = 8
 # The iteration ends when a step moves Omega by less than this part of the remaining error.
 _NEGLIGIBLE: Final = 1e-3
+# So do steps that gain less than a tenth: no constant explains such an error.
+_GAIN: Final = 0.9
 
 
 class VelocityErrors:
@@ -137,10 +139,13 @@ class _Compared:
         for _ in range(_EVALUATIONS):
             step = fit.step()
             further = self.fit(fit.shift + exact_value(step), rows)
-            if not further.left < fit.left:
-                break
-            fit = further
-            if abs(step) * mp.sqrt(np.sum(fit.velocity**2)) <= _NEGLIGIBLE * fit.left:
+            is_better = further.left < fit.left
+            is_hopeless = not further.left < _GAIN * fit.left
+            fit = further if is_better else fit
+            if (
+                is_hopeless
+                or abs(step) * mp.sqrt(np.sum(fit.velocity**2)) <= _NEGLIGIBLE * fit.left
+            ):
                 break
         # An answer without motion shows no time.
         reach = largest(norms(first.answer - first.answer[:1]))

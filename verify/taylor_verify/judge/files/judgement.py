@@ -16,7 +16,8 @@ import numpy as np
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, are_known, causes_of_file
+from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, causes_of_file
+from taylor_verify.judge.causes.material import are_known
 from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
@@ -176,8 +177,15 @@ def judge_file(
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions, breaks_of(scene))
-    of_causes = {"causes": explained.causes, "missing_load": explained.missing_load}
-    return FileJudgement(verdicts, judged.record, *of_file, **of_causes, notes=notes)
+    missing = explained.missing_load
+    return FileJudgement(
+        verdicts,
+        judged.record,
+        *of_file,
+        causes=explained.causes,
+        notes=notes,
+        missing_load=missing,
+    )
 
 
 def _fits(judged: Judgement) -> bool:

@@ -135,6 +135,11 @@ def _from_time(own: Law, s: Sample, d: Draw, size: float) -> None:
     own.from_time = float(s.times[len(s.times) // 3])
 
 
+def _for_a_while(own: Law, s: Sample, d: Draw, size: float) -> None:
+    own.load, count = _three(s, d, max(size, 0.06)), len(s.times)
+    own.from_time, own.until_time = float(s.times[count // 4]), float(s.times[3 * count // 4])
+
+
 def _cubic(own: Law, s: Sample, d: Draw, size: float) -> None:
     scale = size * _load_scale(s) / np.maximum(np.abs(s.v0), 0.1) ** 3
     own.loads_of = lambda t, v: -scale * v**3
@@ -317,6 +322,7 @@ KINDS: Final = (
     Kind("moment more", _LOADS, _set("load", lambda s, d, e: _three(s, d, e) + law(s).load)),
     Kind("moment in space", ("space axes",), _set("space", _three)),
     Kind("load from some time on", ("right up to", "force", "couple", "moment"), _of(_from_time)),
+    Kind("load for a while", ("from t =",), _of(_for_a_while), ("free", "wheels", *FLUID)),
     Kind("drag on one axis", ("drag",), _set("linear", _one)),
     Kind("drag on all rates", ("drag",), _set("linear", _three)),
     Kind("quadratic drag", ("quadratic drag",), _set("quadratic", _three)),

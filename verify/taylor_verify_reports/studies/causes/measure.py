@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Motion, steady_signs
-from taylor_verify.judge.causes.answers import explained, material
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material
 from taylor_verify.judge.judgement import unjudged
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung

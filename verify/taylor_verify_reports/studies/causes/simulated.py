@@ -39,6 +39,7 @@ class Law:
     clock: float = 1.0
     damping: float = 0.0
     from_time: float = -np.inf
+    until_time: float = np.inf
     loads_of: Callable[[float, Floats], Floats] | None = None
     turn: Callable[[Floats, Floats], Floats] | None = field(default=None)
 
@@ -74,7 +75,7 @@ def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
         extra[i : i + 3] += turn.T @ law.space[i : i + 3]
     if law.loads_of is not None:
         extra = extra + law.loads_of(t, v)
-    if t < law.from_time:
+    if not law.from_time <= t < law.until_time:
         extra = 0 * extra
     return np.asarray(law.clock * (np.linalg.solve(law.mass, force + extra) - law.damping * v))
 
@@ -119,8 +120,8 @@ def integrated(
 
     z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0)])
     parts, edges = [], [sample.times[0], times[-1]]
-    if edges[0] < law.from_time < times[-1]:
-        edges.insert(1, law.from_time)
+    edges += [t for t in (law.from_time, law.until_time) if edges[0] < t < times[-1]]
+    edges.sort()
     for k, (begin, end) in enumerate(pairwise(edges)):
         inside = times[(times > begin) & (times <= end)] if k else times[times <= end]
         ask = np.union1d(inside, [end])

@@ -1,0 +1,265 @@
+"""Causes of attitudes alone, of parts of a run, of an added mass, under loads that read the attitude."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.trajectories import QUATERNION, Columns, file_judgement, named, write_csv
+from builders.wrong_dynamics import failure, turned
+from scipy.integrate import solve_ivp
+
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import material_of_file
+from taylor_verify.judge.conventions.fits import Conventions
+from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.answers import LikelyCause
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.solvers.files.file import read as read_file
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+# The rates of v at a time, from v and q.
+Law = Callable[[float, Array, Array], Array]
+
+TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
+Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
+TIMES = np.round(np.arange(0, 81) * 0.1, 6)
+SPRING = 'moment = ["-0.4*q1 - 0.1*w1", "-0.4*q2 - 0.1*w2", "-0.4*q3 - 0.1*w3"]'
+RIGID = """
+title = "Body"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
+{load}
+[initial]
+omega = [0.8, -0.5, 1.1]
+attitude = [-0.5, 0.3, -0.7, 0.2]
+[time]
+end = 8
+samples = 81
+"""
+VEHICLE = """
+title = "Vehicle"
+model = "kirchhoff"
+track = ["attitude"]
+[body]
+mass = 31.9
+inertia = [0.12, 4.2, 4.2]
+centre_of_mass = [0, 0, 0.02]
+added_mass = [0.86, 30.3, 28.3, 0.035, 3.6, 3.5]
+[initial]
+linear_velocity = [1.5, 0.1, -0.05]
+angular_velocity = [0.05, 0.1, 0.15]
+[time]
+end = 3
+samples = 61
+"""
+
+
+def rows(law: Law, v0: Sequence[float], q0: Array, times: Array, edges: Sequence[float]) -> Array:
+    """The states at the times by SciPy, begun anew at each of the edges."""
+    n, z, parts = len(v0), np.array([*v0, *q0]), []
+    for begin, end in pairwise([times[0], *edges, times[-1]]):
+        inside = times[(times > begin) & (times <= end)]
+        solved = solve_ivp(
+            lambda t, z: np.concatenate([law(t, z[:n], z[n:]), turned(z[n:], z[n - 3 : n])]),
+            (begin, end - 1e-13),
+            z,
+            "DOP853",
+            t_eval=np.minimum(inside, end - 1e-13),
+            rtol=3e-14,
+            atol=1e-16,
+        )
+        z = solved.y[:, -1]
+        parts.append(solved.y.T)
+    return np.vstack([[*v0, *q0], *parts])
+
+
+def rigid(
+    tensor: Array = TENSOR,
+    moment: Law = lambda t, w, q: np.zeros(3),
+    gyro: float = 1.0,
+    edges: Sequence[float] = (),
+) -> Columns:
+    """The columns of a rigid body's omega and attitude."""
+    made = rows(
+        lambda t, w, q: np.linalg.solve(tensor, gyro * np.cross(tensor @ w, w) + moment(t, w, q)),
+        [0.8, -0.5, 1.1],
+        Q,
+        TIMES,
+        edges,
+    )
+    return columns(TIMES, made, ("w1", "w2", "w3"))
+
+
+def columns(times: Array, made: Array, names: Sequence[str]) -> Columns:
+    q = made[:, len(names) :]
+    unit = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return named(("t",), times[:, None]) | named(names, made[:, :-4]) | named(QUATERNION, unit)
+
+
+def titles(path: Path, scene: str, made: Columns) -> list[str]:
+    """The causes of a file whose states failed, without what they leave."""
+    return [cause.sentence.partition("; leaves")[0] for cause in causes(path, scene, made)]
+
+
+def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
+    asked, known = read(scene, "scene"), ("omega", "impulse", "attitude")
+    file = read_file(str(write_csv(path / "mine.csv", made)))
+    plain = Conventions((), World(asked), {})
+    failures = [failure(asked, quantity) for quantity in known]
+    with np.errstate(all="ignore"):
+        answer = material_of_file(file, rung("f64"), plain, failures)
+        assert answer is not None
+        return explained(answer).causes
+
+
+def window(begin: float, end: float, moment: Sequence[float]) -> Law:
+    return lambda t, w, q: np.array(moment) if begin <= t < end else np.zeros(3)
+
+
+HEAVIER = TENSOR + np.diag([0.0, 0.0, 0.15])
+DAMPED: Law = lambda t, w, q: -0.07 * TENSOR @ w  # noqa: E731 (a law of one line)
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda: rigid(HEAVIER), "I_33 = 3.25 for 3.1"),
+        (lambda: rigid(gyro=0.0), "no gyroscopic term"),
+        (lambda: rigid(moment=DAMPED), "damping = 0.07"),
+    ],
+)
+def test_attitudes_alone_name_the_cause(
+    made: Callable[[], Columns], words: str, tmp_path: Path
+) -> None:
+    """Rows without omega have the cause of their motion, and leave parts of the attitude alone."""
+    own = {name: column for name, column in made().items() if not name.startswith("w")}
+    (cause,) = causes(tmp_path, RIGID.format(load=""), own)
+    assert cause.sentence.startswith(words)
+    assert cause.quantity == "attitude"
+    assert "of omega" not in cause.sentence
+
+
+@pytest.mark.parametrize(
+    ("load", "moment", "edges", "words"),
+    [
+        ("", window(3, 6, [0.05, 0.02, -0.04]), (3, 6), ["from t = 3 to 6: moment in body axes"]),
+        ("", window(0, 4, [0.05, 0.02, -0.04]), (4,), ["up to t = 4: moment in body axes"]),
+        ("", window(3.05, 9, [0.05, 0, 0.04]), (3.05,), ["right up to t = 3, then: moment in"]),
+        (
+            "moment = [0.1, -0.05, 0.08]",
+            window(0, 5, [0.1, -0.05, 0.08]),
+            (5,),
+            ["right up to t = 5, then: moment left out"],
+        ),
+        (
+            "",
+            lambda t, w, q: DAMPED(t, w, q) * (3 <= t < 6) + np.array([0.04, 0, 0.03]) * (t >= 6),
+            (3, 6),
+            ["from t = 3 to 6: damping = 0.07", "from t = 6 on: moment in body axes"],
+        ),
+    ],
+)
+def test_a_part_of_the_run_has_its_cause(
+    load: str, moment: Law, edges: Sequence[float], words: Sequence[str], tmp_path: Path
+) -> None:
+    """A fault that begins or ends within the run is said with the times of its ends."""
+    found = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
+    assert len(found) == len(words)
+    assert all(title.startswith(own) for title, own in zip(found, words, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("moment", "words"),
+    [
+        (lambda t, w, q: -0.4 * q[1:], "one drag on all rates of turn = -0.1"),
+        (lambda t, w, q: (-0.4 * q[1:] - 0.1 * w) * [1, -1, 1], "moment 2 with the other sign"),
+    ],
+)
+def test_a_text_reads_the_quaternion_with_its_sign(moment: Law, words: str, tmp_path: Path) -> None:
+    """A load of q1 q2 q3 has the sign of the scene's start, of which the scalar is negative here."""
+    assert titles(tmp_path, RIGID.format(load=SPRING), rigid(moment=moment))[0].startswith(words)
+
+
+def test_steps_under_a_load_that_reads_the_attitude_are_replayed(tmp_path: Path) -> None:
+    """Explicit Euler of a moment by the attitude has its name and step, and explains the attitude."""
+    h, z, made = 0.02, np.array([0.8, -0.5, 1.1, *Q]), [np.array([0.8, -0.5, 1.1, *Q])]
+    for _ in TIMES[1:]:
+        for _ in range(5):
+            w, q = z[:3], z[3:]
+            pull = np.cross(TENSOR @ w, w) - 0.4 * q[1:] - 0.1 * w
+            z = z + h * np.concatenate([np.linalg.solve(TENSOR, pull), turned(q, w)])
+            z[3:] /= np.linalg.norm(z[3:])
+        made.append(z)
+    own = columns(TIMES, np.array(made), ("w1", "w2", "w3"))
+    (title,) = titles(tmp_path, RIGID.format(load=SPRING), own)
+    assert title == "explicit gyroscopic step: explicit Euler, h = 0.02"
+
+
+def crossed(v: Array) -> Array:
+    return np.cross(np.eye(3), v)
+
+
+def coriolis(matrix: Array, nu: Array) -> Array:
+    """Fossen's C(nu) of a mass matrix."""
+    linear, angular = crossed(matrix[:3] @ nu), crossed(matrix[3:] @ nu)
+    return np.block([[np.zeros((3, 3)), -linear], [-linear, -angular]])
+
+
+def body(factor: float = 1.0) -> tuple[Array, Array]:
+    """The rigid body of the vehicle, and its added mass times a factor."""
+    arm = crossed(np.array([0, 0, 0.02]))
+    lower = np.diag([0.12, 4.2, 4.2]) - 31.9 * arm @ arm
+    own = np.block([[31.9 * np.eye(3), -31.9 * arm], [31.9 * arm, lower]])
+    return own, factor * np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
+
+
+@pytest.mark.parametrize(
+    ("entries", "factor", "of_mass", "words"),
+    [
+        ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
+        ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
+        ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
+        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
+        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
+        ("every", 0.0, 0.0, "added mass left out"),
+    ],
+)
+def test_an_added_mass_that_a_scene_names_is_named(
+    entries: Any, factor: float, of_mass: float, words: str, tmp_path: Path
+) -> None:
+    """Entries of C_A, and the whole of it in one place or in both, have their names."""
+    own, added = body()
+    factors = np.ones((6, 6))
+    for i, k in np.ndindex(6, 6) if entries == "every" else [(i - 1, k - 1) for i, k in entries]:
+        factors[i, k] = factor
+    mass = own + of_mass * added
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        matrix = coriolis(own, nu) + factors * coriolis(added, nu)
+        return np.linalg.solve(mass, -matrix @ nu)
+
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
+    names = ("u1", "u2", "u3", "w1", "w2", "w3")
+    assert titles(tmp_path, VEHICLE, columns(times, made, names))[0].startswith(words)
+
+
+@pytest.mark.slow
+def test_the_load_between_rows_is_in_the_document(tmp_path: Path) -> None:
+    """A moment that no family has is listed row by row, as what it was in the middle of each row."""
+    wave: Law = lambda t, w, q: np.array([0.05, 0.02, -0.04]) * np.sin(t)  # noqa: E731 (as above)
+    path = write_csv(tmp_path / "mine.csv", rigid(moment=wave))
+    document = file_judgement(path, read(RIGID.format(load=""), "scene")).document()
+    assert not document["causes"]
+    for each in document["missing_load"]:
+        middle = (each["t"] + each["until"]) / 2
+        assert each["load"] == pytest.approx(wave(middle, Q, Q), abs=1e-4)
+    assert len(document["missing_load"]) == len(TIMES) - 1

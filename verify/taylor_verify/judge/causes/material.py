@@ -1,0 +1,305 @@
+"""Answers from files and trajectories as material for the search for causes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from fractions import Fraction
+from itertools import chain
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from taylor_verify.exact.route import solution
+from taylor_verify.judge.causes.answer import Answer, Motion, matrices, steady_signs
+from taylor_verify.judge.causes.budget import Budget
+from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.exact_motion import ExactMotion
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
+from taylor_verify.judge.causes.printed import half_units
+from taylor_verify.judge.causes.proof import LEAVES
+from taylor_verify.judge.conventions.axes import quaternion_columns
+from taylor_verify.judge.conventions.fits import Conventions
+from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.models.acting import Acting
+from taylor_verify.models.problem import Problem, adopt
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.records.quantities import MOMENTA, VELOCITIES
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict
+from taylor_verify.scenes.bodies import Body, ImmersedBody
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from taylor_verify.solvers.files.file import TrajectoryFile
+
+_WITH_TERMS: Final = frozenset({"rotor"})
+MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
+# Names in the texts of loads whose values are those of another body if the mass changes.
+_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
+_DIGITS: Final = 20
+# Rates of attitudes need as many rows.
+_FEWEST_ATTITUDES: Final = 20
+# Work for each component of v.
+_BUDGET: Final = 140_000.0
+_BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
+
+
+def are_known(body: Body) -> bool:
+    """Return True if every part of the body has its terms in the search."""
+    return body.others <= _WITH_TERMS and body.manufactured is None
+
+
+def equations_of(given: Scene, has_momenta: bool) -> Equations:
+    """Return the right equations of a scene."""
+    body, parts = given.body, given.body.parts()
+    energy = np.array(body.energy_matrix, dtype=float)
+    mass = energy if given.model == "euler" else np.linalg.inv(energy)
+    n, loads = len(mass), given.body.loads
+    constant = [entry for name in body.load_names() for entry in parts[name]]
+    added = body.added if isinstance(body, ImmersedBody) else None
+    equations = replace(
+        Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
+        load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
+        has_momenta=has_momenta,
+        start=float(given.clock.start),
+        damping=float(body.damping),
+        added=None if added is None else np.array(added, dtype=float),
+    )
+    if loads is None:
+        return equations
+    return replace(
+        equations,
+        acting=Acting(given, loads),
+        texts=_texts(loads),
+        is_hung=bool(loads.hung),
+        names_mass=not loads.inputs.isdisjoint(_OF_MASS),
+        reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
+        switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
+        current=np.array(loads.current, dtype=float) if any(loads.current) else None,
+    )
+
+
+def _texts(loads: Loads) -> tuple[str, ...]:
+    """Return the entries of the loads as texts."""
+    entries = dict(loads.vectors)
+    return tuple(
+        str(entry) for name in VECTORS[loads.model] for entry in entries.get(name, ZERO_VECTOR)
+    )
+
+
+def material(
+    given: Scene,
+    file: Motion,
+    has_momenta: bool,
+    noise: tuple[Floats, float, float],
+    verdicts: Iterable[Verdict],
+    decimals: int | None = None,
+    every: int = 1,
+) -> Answer | None:
+    """Return an answer to a rounded scene as material; None if nothing failed, or is comparable.
+
+    ``every`` counts the rows of a file from one given row to the next.
+    """
+    failed = tuple(v.quantity for v in verdicts if v.verdict is Status.FAIL)
+    right = equations_of(given, has_momenta)
+    elapsed = np.array([float(t) for t in given.clock.elapsed])
+    rows = _rows(elapsed, file)
+    if len(rows) < 2 or not failed:
+        return None
+    exact = ExactMotion(given, file.c is not None or right.reads > 4)
+    instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
+    # Texts may read q1 q2 q3, whose signs are those of the scene's start.
+    first = np.array(given.initial.attitude, dtype=float)
+    truth = exact.at(instants, has_momenta).signed_as(first).at(np.s_[1:])
+    start = exact.at(instants[:1], has_momenta=False).signed_as(first)
+    compared = file.at(rows).signed_as(truth.first_attitude)
+    return Answer(
+        right,
+        start,
+        elapsed[rows],
+        compared,
+        truth,
+        (_noise(noise[0], compared.v, truth.v), *noise[1:]),
+        failed,
+        Budget(_BUDGET * right.size if exact.has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
+        every * np.array(rows),
+        decimals,
+        scene=given,
+    )
+
+
+def _noise(noise: Floats, v: Floats, truth: Floats) -> Floats:
+    """Return the noise of v; numbers that stand still while the truth moves by a unit were not rounded."""
+    is_exact = (np.ptp(v, axis=0) == 0) & (np.ptp(truth, axis=0) > 2 * noise)
+    return np.where(is_exact, 0.0, noise)
+
+
+def _rows(elapsed: Floats, file: Motion) -> list[int]:
+    """Return the rows of the longer side of the start, in the order away from it, up to the first flaw."""
+    later, earlier = np.flatnonzero(elapsed >= 0), np.flatnonzero(elapsed <= 0)
+    side = later if len(later) >= len(earlier) else earlier
+    side = side[np.argsort(np.abs(elapsed[side]), kind="stable")]
+    flawed = np.zeros(len(elapsed), dtype=bool)
+    for part in (file.v, file.q, file.c):
+        if part is not None:
+            flawed |= ~np.all(np.isfinite(part) & (np.abs(part) < 1e100), axis=1)
+    bad = np.flatnonzero(flawed[side])
+    return [int(k) for k in (side[: bad[0]] if len(bad) else side)]
+
+
+def material_of_file(
+    file: TrajectoryFile,
+    rung: Rung,
+    conventions: Conventions,
+    verdicts: Iterable[Verdict],
+    every: int = 1,
+) -> Answer | None:
+    """Return a file as material; None if its body is unknown or its moving part is not whole.
+
+    ``every`` counts the rows of the whole file from one row to the next.
+    """
+    given = adopt(conventions.world.scene, rung, conventions.world.times(file.times)).given
+    if not are_known(given.body):
+        return None
+    names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
+    if not names:
+        return _of_attitudes(file, given, conventions, verdicts, every)
+    frame = _frame_of(file)
+    own = _own_attitudes(file, frame, conventions) if frame else None
+    in_space = not MOVING.isdisjoint(conventions.readings)
+    if own is None and in_space:
+        exact = solution(replace(given, track=frozenset({"attitude"})))
+        own = exact.evaluate(given.clock.elapsed, _DIGITS)["attitude"].astype(float)
+    answer = _read_by(file, given, conventions, names[0], own, verdicts, every)
+    if answer is None or not (frame and in_space):
+        return answer
+    # Where the file's own attitude is wrong, the exact one is that of its space axes if it explains them.
+    assert answer.truth.q is not None
+    exact_ones = np.full((len(file.times), 3, 3), np.nan)
+    places = answer.places // every
+    exact_ones[places] = matrices(answer.truth.q)
+    v = np.hstack([_read(file, name, conventions, exact_ones) for name in names[0]])[places]
+    other = replace(answer, file=replace(answer.file, v=v))
+    return other if other.off <= LEAVES * answer.off else answer
+
+
+def _of_attitudes(
+    file: TrajectoryFile,
+    given: Scene,
+    conventions: Conventions,
+    verdicts: Iterable[Verdict],
+    every: int,
+) -> Answer | None:
+    """Return the attitudes of a rigid body, with their own rates, as material."""
+    group, times = _frame_of(file), np.array([float(t) for t in file.times])
+    if given.model != "euler" or not group or len(times) < _FEWEST_ATTITUDES:
+        return None
+    q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
+    omega, noise = rates_of_attitudes(times, q, unit)
+    inner = range(ASIDE, len(times) - ASIDE)
+    instants = tuple(given.clock.instants[k] for k in inner)
+    scene = replace(given, clock=replace(given.clock, instants=instants))
+    failed = [replace(v, quantity="omega") for v in verdicts if v.verdict is Status.FAIL]
+    motion = Motion(omega, q[inner])
+    noises = (np.full(3, noise), unit, 0.0)
+    answer = material(
+        scene,
+        motion,
+        has_momenta=False,
+        noise=noises,
+        verdicts=[*verdicts, *failed[:1]],
+        every=every,
+    )
+    return answer and replace(answer, has_rates=False)
+
+
+def _quaternions(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:
+    return steady_signs(quaternion_columns(_own_attitudes(file, group, conventions)))
+
+
+def _read_by(
+    file: TrajectoryFile,
+    given: Scene,
+    conventions: Conventions,
+    names: tuple[str, ...],
+    attitudes: Floats | None,
+    verdicts: Iterable[Verdict],
+    every: int,
+) -> Answer | None:
+    """Return a file as material, its space axes taken to body axes by these attitudes."""
+    has_momenta = given.model == "kirchhoff" and names == MOMENTA[given.model]
+    v, noise, units = [], [], half_units(file)
+    for name in names:
+        rows = _read(file, name, conventions, attitudes)
+        v.append(rows)
+        noise.append(np.full(3, units[name] * _ratio(rows, file.groups[name].doubles())))
+    frame, q, c = _frame_of(file), None, None
+    if frame:
+        q = _quaternions(file, frame, conventions)
+    if "centre" in file.groups:
+        c = _read(file, "centre", conventions, attitudes)
+    of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
+    motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
+    return material(given, motion, has_momenta, noises, verdicts, _decimals(file.times), every)
+
+
+def _frame_of(file: TrajectoryFile) -> str:
+    """Return the group that has the file's attitudes; empty if none has."""
+    return next((name for name in ("quaternion", "attitude") if name in file.groups), "")
+
+
+def _ratio(rows: Floats, columns: Floats) -> float:
+    """Return the factor of a reading, by the sizes of the rows."""
+    before, after = float(np.nanmax(np.abs(columns))), float(np.nanmax(np.abs(rows)))
+    return after / before if before > 0 else 1.0
+
+
+def _decimals(times: Iterable[Fraction]) -> int | None:
+    """Return the number of decimals that the times need; None if they need more than six."""
+    for digits in range(7):
+        if all((time * 10**digits).denominator == 1 for time in times):
+            return digits
+    return None
+
+
+def material_of_trajectory(
+    problem: Problem, trajectory: Trajectory, verdicts: Iterable[Verdict]
+) -> Answer | None:
+    """Return a trajectory as material."""
+    given, rows = problem.given, trajectory.quantities
+    names = MOMENTA[given.model]
+    if not rows or not set(names) <= set(rows):
+        return None
+    v = np.hstack([rows[name].astype(float) for name in names])
+    q = steady_signs(rows["quaternion"].astype(float)) if "quaternion" in rows else None
+    c = rows["centre"].astype(float) if "centre" in rows else None
+    unit = 8 * float(problem.rung.unit_roundoff)
+    noise = (
+        unit * np.max(np.abs(v), axis=0),
+        unit,
+        unit if c is None else unit * float(np.max(np.abs(c))),
+    )
+    return material(given, Motion(v, q, c), given.model == "kirchhoff", noise, verdicts)
+
+
+def _read(
+    file: TrajectoryFile, name: str, conventions: Conventions, attitudes: Floats | None
+) -> Floats:
+    """Return a group of vectors in body axes; space axes are converted by the file's own attitude."""
+    rows, reading = file.groups[name].doubles(), conventions.readings.get(name)
+    if reading is None:
+        return rows
+    R = attitudes if attitudes is not None else np.full((len(rows), 3, 3), np.nan)
+    return reading.read(rows, R)
+
+
+def _own_attitudes(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:
+    reading = conventions.readings.get(group, readings(group)[0])
+    read = reading.read(file.groups[group].doubles(), np.empty(0))
+    return rotations(read) if group == "quaternion" else read
