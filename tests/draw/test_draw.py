@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from taylor_verify.cli import main
+from taylor_verify.draw import missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.components import series
 from taylor_verify.draw.course import lengthened, motion, turns
@@ -23,6 +24,7 @@ from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import KINDS, pictures
 from taylor_verify.exact.rows import quaternions
 from taylor_verify.plotting.picture import plotting
+from taylor_verify.records.answers import MissingLoad
 from taylor_verify.scenes.reading.reader import load, read
 
 # One of each kind of body, and what it has.
@@ -283,13 +285,31 @@ def test_errors_of_a_file_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "roundoff floor" in out.read_text(encoding="utf-8")
 
 
+def test_a_missing_load_is_kept_from_row_to_row() -> None:
+    """Each load lasts until its end, and none acts between two that do not meet."""
+    loads = [
+        MissingLoad(1, 2, (5, 0, 0)),
+        MissingLoad(2, 3, (6, 0, 0)),
+        MissingLoad(7, 8, (4, 0, 0)),
+    ]
+    drawn = missing_load.series(loads)
+    (panel,) = drawn.panels
+    assert drawn.times.tolist() == [1, 2, 3, 7, 8]
+    assert panel.rows[:, 0].tolist() == [5, 6, 0, 4, 0]
+    assert panel.is_held
+    impulse = float(np.diff(drawn.times) @ panel.rows[:-1, 0])
+    assert impulse == sum((load.until - load.t) * load.load[0] for load in loads)
+    vehicle = missing_load.series([MissingLoad(0, 1, (1, 2, 3, 4, 5, 6))])
+    assert [panel.rows[0].tolist() for panel in vehicle.panels] == [[1, 2, 3], [4, 5, 6]]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["euler/generic", "--out", "a.gif"], r"expected \.svg, \.pdf, \.png"),
         (["euler/generic", "--animate", "--out", "a.svg"], r"expected \.html"),
         (["euler/generic", "--only", "path,spheres,x"], "(?s)a solid in a fluid.*got 'x'"),
-        (["euler/generic", "--only", "errors"], "expected trajectory files"),
+        (["euler/generic", "--only", "errors,load"], "expected trajectory files.*errors,load"),
         (["euler/generic", "bad.csv"], "expected a column `t`"),
         (["euler/rest", "--animate"], "got a body at rest"),
         (["euler/rest", "--animate", "--only", "time"], "expected a scene alone with --animate"),

@@ -6,7 +6,7 @@ import pytest
 
 from taylor_verify import explain
 from taylor_verify.explain import explanation as explaining
-from taylor_verify.explain.patience import Patience
+from taylor_verify.numbers.patience import Patience
 
 
 def endless() -> str:

@@ -199,7 +199,7 @@ scene {_SCENE}
 files* FILE  trajectory files, read as `check` reads them: their errors are drawn against time
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
 --only NAME,...  draw only these: polhode, momentum, time, herpolhode, axis, spheres, path,
-  errors; a single picture is written to the file of --out itself
+  errors, load; a single picture is written to the file of --out itself
 --animate  draw one moving picture: a page that turns and needs no network (--out NAME.html)
 {_RUNG_OF_FILES}
 --columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, as in `check`

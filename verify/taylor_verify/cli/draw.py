@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
@@ -13,14 +13,14 @@ from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.folders import unwritable, writable_file
 from taylor_verify.cli.inputs import known_rungs, read_scene, require_matplotlib
 from taylor_verify.cli.progress import working
-from taylor_verify.draw import file_errors
+from taylor_verify.draw import file_errors, missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import lengthened, motion
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.files.judgement import judge_file
+from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import ENDINGS as STILLS
 from taylor_verify.plotting.picture import Picture, content
@@ -32,6 +32,8 @@ from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 
 ERRORS: Final = "errors"
+LOAD: Final = "load"
+OF_FILES: Final = (ERRORS, LOAD)
 _STILL: Final = ".svg"
 _PAGE: Final = ".html"
 
@@ -50,7 +52,7 @@ def answer(options: argparse.Namespace) -> Answer:
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
-            drawings = _pictures(document, names, files, partial(_record, options, scene))
+            drawings = _pictures(document, names, files, partial(_judged, options, scene))
             shown = _write(drawings, place, is_alone=len(names) == 1)
     facts = {name: document[name] for name in ("scene", "regime", "route", "evidence")}
     content = {**facts, "files": shown}
@@ -97,28 +99,42 @@ def _pictures(
     document: Mapping[str, Any],
     names: Sequence[str],
     files: Sequence[TrajectoryFile],
-    record: Callable[[TrajectoryFile], Record],
+    judge: Callable[[TrajectoryFile], FileJudgement],
 ) -> dict[str, Picture]:
-    """Return the pictures of the motion, and that of the errors if files are given, by their names."""
-    others = [name for name in names if name != ERRORS]
+    """Return the pictures of the motion, and those of the files if there are any, by their names."""
+    others = [name for name in names if name not in OF_FILES]
     drawings = pictures(document, others) if others or not names else {}
-    if files and (not names or ERRORS in names):
-        drawings[ERRORS] = file_errors.picture(
-            document, {file.name: record(file).document() for file in files}
-        )
-    elif ERRORS in names:
+    if not files and (asked := [name for name in names if name in OF_FILES]):
         raise WrongCall(
-            f"expected trajectory files behind the scene (draw SCENE mine.csv), got none @ --only {ERRORS}"
+            "expected trajectory files behind the scene (draw SCENE mine.csv), got none @ --only "
+            f"{','.join(asked)}"
         )
-    return drawings
+    judged = {file.name: judge(file) for file in files}
+    if judged and (not names or ERRORS in names):
+        drawings[ERRORS] = file_errors.picture(document, _records(judged))
+    return {**drawings, **dict(_loads(document, names, judged))}
 
 
-def _record(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> Record:
-    """Return the errors of a file. Raises WrongCall if it cannot be compared."""
+def _records(judged: Mapping[str, FileJudgement]) -> dict[str, Record]:
+    return {name: each.record for name, each in judged.items() if each.record}
+
+
+def _loads(
+    document: Mapping[str, Any], names: Sequence[str], judged: Mapping[str, FileJudgement]
+) -> Iterator[tuple[str, Picture]]:
+    """Yield the load that each file asks for, where no cause is proven, or where --only names it."""
+    for number, (name, each) in enumerate(judged.items(), start=1):
+        if LOAD in names or (not names and each.missing_load):
+            suffix = f"-{number}" if len(judged) > 1 else ""
+            yield f"{LOAD}{suffix}", missing_load.picture(document, name, each.missing_load)
+
+
+def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:
+    """Return the judgement of a file. Raises WrongCall if it cannot be compared."""
     judged = judge_file(file, scene, rung(options.rung), options.accept_conventions, partial=True)
     if judged.record is None:
         raise WrongCall(f"{judged.verdicts[0].because} @ {file.name}")
-    return judged.record
+    return judged
 
 
 def _write(drawings: Mapping[str, Picture], place: Path, is_alone: bool) -> list[dict[str, str]]:

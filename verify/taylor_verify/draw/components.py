@@ -126,20 +126,21 @@ def picture(document: Document) -> Picture:
         alt += f" The middle component is zero, a flip, at t = {flips}."
     if components.flip_time is not None:
         alt += f" The flip time is {components.flip_time:.9g}."
-    return captioned(document, "time", "Motion in time", alt, partial(_figure, components))
+    return captioned(document, "time", "Motion in time", alt, partial(figure, components))
 
 
-def _figure(components: Series, words: str) -> Figure:
+def figure(components: Series, words: str) -> Figure:
+    """Return the picture of all panels; ``words`` stand below the legend."""
     entries: list[Entry] = [
         (dict(look), ", ".join(_components_named(components, k))) for k, look in enumerate(LINES)
     ]
     if components.flips:
         pace = "" if components.flip_time is None else f", every {components.flip_time:.5g}"
         entries.append((_FLIP, f"flip: the middle component is 0{pace}"))
-    figure, places = sheet(len(components.panels), entries, words, _HEIGHT)
+    drawn, places = sheet(len(components.panels), entries, words, _HEIGHT)
     for axes, panel in zip(places, components.panels, strict=True):
         _draw(axes, components, panel)
-    return figure
+    return drawn
 
 
 def _components_named(components: Series, k: int) -> Iterator[str]:

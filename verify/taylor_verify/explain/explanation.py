@@ -18,7 +18,6 @@ from taylor_verify.exact.elements import Element, Elements, elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.explain.loads import loads_document
-from taylor_verify.explain.patience import Patience
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.attainable import orbit_of_run
 from taylor_verify.judge.floor.carrying import Carrying, carrying
@@ -26,6 +25,7 @@ from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
+from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.quantities import TRACKED

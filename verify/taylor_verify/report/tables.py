@@ -87,7 +87,7 @@ def accuracy(verdicts: Sequence[Verdict]) -> str:
     units = {verdict.quantity: verdict.unit for verdict in shown if verdict.unit}
     legend = [
         "*max* and *mean* are over all samples, *at t* is the time of the maximum.",
-        *(f"{code(quantity)} is in {prose(unit)}." for quantity, unit in units.items()),
+        f"Units: {', '.join(f'{code(name)} in {prose(unit)}' for name, unit in units.items())}.",
         roundoffs(shown),
         f"{_RATIO}. It decides the verdict; *bound* is the bound at the time of the maximum, and "
         "`gates.md` has the reason of each.",

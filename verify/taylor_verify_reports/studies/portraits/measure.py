@@ -12,7 +12,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Final
 
-from taylor_verify.draw.course import DIGITS, lengthened, motion, span
+from taylor_verify.draw.course import DIGITS, motion, span
 from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
@@ -32,7 +32,7 @@ def portrait(scene: Scene) -> Document:
     """Return the document of one shipped scene. Raises Unsettled if a number does not reach its digits."""
     text = find(scene.name).read_text(encoding="utf-8")
     values = document(scene, solution(scene), _times(scene), DIGITS)
-    explained, moved = explanation(scene, _RUNG), lengthened(scene, motion(scene))
+    explained, moved = explanation(scene, _RUNG), motion(scene)
     return {
         **moved,
         "source": scene.source or None,

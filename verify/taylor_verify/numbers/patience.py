@@ -1,4 +1,4 @@
-"""The processor time that an explanation may take; what takes longer is left out.
+"""A limit of processor time for what is made beside; what takes longer is left out.
 
 It is measured by a signal, which Python gives to its main thread alone: elsewhere there is no limit.
 """
