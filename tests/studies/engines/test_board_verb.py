@@ -70,7 +70,7 @@ def test_an_engine_of_ones_own_stands_on_a_copy(added: tuple[Path, Any]) -> None
     (page,) = answer.document["pages"]
     assert Path(page) == folder / own.LOCAL / "engines.md"
     text = Path(page).read_text(encoding="utf-8")
-    assert "take **mine** with geometric:lie-rk4?step=h and a step of 0.25" in text
+    assert "take **mine** with geometric:lie-rk4?step=h and a step of 0.25: omega" in text
     assert (folder / own.LOCAL / "engines.csv").read_text(encoding="utf-8").count("\nmine,") == 2
     assert "To send it" in answer.messages[0]
     assert not (folder / "data").exists()

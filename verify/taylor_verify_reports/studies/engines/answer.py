@@ -141,7 +141,7 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
         standing=standing,
         made_of=made_of(asked.scene, asked.entry.solver),
         shipped=asked.shipped,
-        load=asked.entry.load,
+        load=asked.entry.load if load(asked.scene).body.loads else "",
         **numbers,
     )
 
