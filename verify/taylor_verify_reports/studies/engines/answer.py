@@ -75,7 +75,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class _Stored:
-    """What an answer has besides its columns, whose names are ``order``.
+    """The stored form of an answer, without its columns, whose names are ``order``.
 
     ``kind`` is NumPy's name of the float type, empty without states.
     """

@@ -41,7 +41,7 @@ STEP: Final = "{step}"
 
 @dataclass(frozen=True)
 class About:
-    """What a board is about: the title of its page, what it measures, remarks, and scripts of findings."""
+    """Words of a board: the title of its page, what it measures, remarks, and scripts of findings."""
 
     title: str = "The engine board"
     what: str = ""
