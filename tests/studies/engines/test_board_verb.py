@@ -70,7 +70,7 @@ def test_an_engine_of_ones_own_stands_on_a_copy(added: tuple[Path, Any]) -> None
     (page,) = answer.document["pages"]
     assert Path(page) == folder / own.LOCAL / "engines.md"
     text = Path(page).read_text(encoding="utf-8")
-    assert "take **mine** with geometric:lie-rk4?step=h and a step of 0.25" in text
+    assert "take **mine** with geometric:lie-rk4?step=h and a step of 0.25: omega" in text
     assert (folder / own.LOCAL / "engines.csv").read_text(encoding="utf-8").count("\nmine,") == 2
     assert "To send it" in answer.messages[0]
     assert not (folder / "data").exists()
@@ -90,12 +90,12 @@ def test_each_row_leads_to_a_file_that_check_judges(folder: Path) -> None:
 
 def test_what_is_stored_is_not_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A second call runs nothing; with another step it runs that one."""
-    said: list[str] = []
-    monkeypatch.setattr(board, "say", said.append)
+    messages: list[str] = []
+    monkeypatch.setattr(board, "say", messages.append)
     called(folder, *ADD, *SOLVER)
-    assert said == []
+    assert messages == []
     called(folder, *ADD, *SOLVER[:-1], "0.25,0.125")
-    assert [words.partition(" ")[0] for words in said] == ["1/1"]
+    assert [words.partition(" ")[0] for words in messages] == ["1/1"]
     assert len(rows_of(folder)) == 3
 
 
@@ -128,7 +128,7 @@ def test_all_faults_of_a_call_are_named() -> None:
     ]
     with pytest.raises(WrongCall) as error:
         called(Path(), *words)
-    said = "\n".join(error.value.faults)
+    messages = "\n".join(error.value.faults)
     for part in (
         "expected a name of small letters, digits, - and _, got 'MuJoCo'",
         "expected {step} in the solver of several steps",
@@ -137,7 +137,7 @@ def test_all_faults_of_a_call_are_named() -> None:
         "expected a solver",
         "expected a scene of the board, got 'a'",
     ):
-        assert part in said
+        assert part in messages
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,5 @@
 # /// script
-# requires-python = ">=3.11,<3.12"
+# requires-python = ">=3.11,<3.14"
 # dependencies = ["opensim==4.6", "numpy==2.4.6"]
 # [tool.taylor-verify]
 # title = "Simbody, by OpenSim"
@@ -17,7 +17,7 @@
 
 The coordinates of the joint are angles about the axes x, y, z of the body, so that a motion near a turn
 of 90 degrees about y loses digits. Omega and the attitude are read in space axes. There is no damping,
-no sleep and no cap to switch off.
+no sleep and no cap to switch off. There is no wheel beyond Python 3.13.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, groupby, pairwise
+from itertools import chain, groupby, pairwise, product
 from math import inf, isfinite
 from typing import Final
 
@@ -45,7 +45,7 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
     return [
         *chain.from_iterable(
-            under_loads(board, engines, job, scenes, entries)
+            _under_loads(board, engines, job, scenes, entries)
             if any(setting.load for setting in engines)
             else _of_free_bodies(board, engines, job, scenes, names)
             for job, scenes in advised(board, entries).items()
@@ -62,11 +62,11 @@ def _of_free_bodies(
     scenes: Sequence[str],
     names: dict[str, str],
 ) -> Iterator[str]:
-    yield from take(board, engines, job, scenes, names)
+    yield from _take(board, engines, job, scenes, names)
     yield from _never(engines, job, scenes, names)
 
 
-def under_loads(
+def _under_loads(
     board: Board,
     engines: Sequence[EngineSetting],
     job: str,
@@ -75,7 +75,7 @@ def under_loads(
 ) -> Iterator[str]:
     """Yield a paragraph for a job under loads: what to take, and which way of giving a load to avoid."""
     sentences = [
-        *take(board, engines, job, scenes, entries.titles),
+        *_take(board, engines, job, scenes, entries.titles),
         *_ways_to_avoid(engines, scenes, entries.titles),
         *_missed_switches(engines, scenes, entries),
         *_lost_engines(engines, job, scenes, entries.titles),
@@ -102,7 +102,7 @@ def named(setting: EngineSetting, names: dict[str, str]) -> str:
     return f"{bold(prose(f'{names[setting.engine]} {setting.version}'.strip()))}{words}"
 
 
-def take(
+def _take(
     board: Board,
     engines: Sequence[EngineSetting],
     job: str,
@@ -153,12 +153,12 @@ def _missed_switches(
 ) -> Iterator[str]:
     """Yield a warning of a step that goes over a switch: its error is larger than that of a longer step."""
     switched = [scene.name for scene in entries.scene if scene.switches and scene.name in scenes]
-    losses = []
-    for scene in switched:
-        for setting in engines:
-            for longer, shorter in pairwise(setting.on(scene)):
-                if FAR_WORSE * longer.worst < shorter.worst < inf:
-                    losses.append((shorter.worst / longer.worst, setting, longer, shorter))
+    losses = [
+        (shorter.worst / longer.worst, setting, longer, shorter)
+        for scene, setting in product(switched, engines)
+        for longer, shorter in pairwise(setting.on(scene))
+        if FAR_WORSE * longer.worst < shorter.worst < inf
+    ]
     if losses:
         _, setting, longer, shorter = max(losses, key=lambda loss: loss[0])
         yield (

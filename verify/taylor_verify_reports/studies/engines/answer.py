@@ -76,7 +76,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class _Stored:
-    """What an answer has besides its columns, whose names are ``order``.
+    """The stored form of an answer, without its columns, whose names are ``order``.
 
     ``kind`` is NumPy's name of the float type, empty without states.
     """
@@ -142,7 +142,7 @@ def row_of(asked: Asked, standing: Standing, **numbers: Any) -> EngineRow:
         standing=standing,
         made_of=made_of(asked.scene, asked.entry.solver),
         shipped=asked.shipped,
-        load=asked.entry.load,
+        load=asked.entry.load if load(asked.scene).body.loads else "",
         **numbers,
     )
 

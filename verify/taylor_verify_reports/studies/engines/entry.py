@@ -41,7 +41,7 @@ STEP: Final = "{step}"
 
 @dataclass(frozen=True)
 class About:
-    """What a board is about: the title of its page, what it measures, remarks, and scripts of findings."""
+    """Words of a board: the title of its page, what it measures, remarks, and scripts of findings."""
 
     title: str = "The engine board"
     what: str = ""
@@ -192,6 +192,11 @@ class EntryList:
             if scene.job:
                 jobs.setdefault(scene.job, []).append(scene.name)
         return jobs
+
+    @property
+    def stored(self) -> list[str]:
+        """The scenes whose trajectories are stored: the first one of each job."""
+        return [scenes[0] for scenes in self.jobs.values()]
 
     @property
     def titles(self) -> dict[str, str]:

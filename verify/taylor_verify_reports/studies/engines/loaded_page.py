@@ -66,7 +66,7 @@ def _table(board: Board, own: Sequence[EngineSetting], scene: str, titles: dict[
         group = [setting for setting in own if setting.knob == knob]
         values = {row.value for setting in group for row in setting.on(scene)}
         steps = sorted(values, key=_size)[::-1]
-        head = [f"{knob} {steps[0]}:", *(f"{step}:" for step in steps[1:])]
+        head = [f"{knob} {steps[0]}:", *(f"{step or NOTHING}:" for step in steps[1:])]
         rows = [_cells(board, setting, scene, steps, titles) for setting in group]
         tables.append(table(["engine", "setting", "load", *head, "order:", "time:"], rows))
     return "\n\n".join(tables)

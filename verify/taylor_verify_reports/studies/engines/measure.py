@@ -161,7 +161,7 @@ def board_of(
     answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]
 ) -> tuple[Board, bytes]:
     """Return the document of the board made from answers, and the file of their trajectories."""
-    rows, file = trajectories.packed(answers, entry_list(name).advised)
+    rows, file = trajectories.packed(answers, entry_list(name).stored)
     seconds = {
         answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
     }

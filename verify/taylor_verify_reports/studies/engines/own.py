@@ -1,4 +1,4 @@
-"""One's own engine on a board: its rows below reports/local, and a copy of the board's page with them.
+"""Engines of users on a board: their rows below reports/local, and a copy of the board's page with them.
 
 Each run is stored in a file of its own as it ends, with its row and the columns that `check` reads. A run
 of another program, scene or setting is made; all others are kept.
@@ -46,7 +46,7 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True)
 class OwnEngine:
-    """One's own engine: its name, the name of its solver or a folder of its files, and its steps.
+    """Engine of a user: its name, the name of its solver or a folder of its files, and its steps.
 
     ``solver`` has STEP in it if there are ``steps``; ``files`` is empty where a solver is given. ``load``
     says how the loads of a scene reach the engine.
@@ -99,7 +99,7 @@ def faults_of(engine: OwnEngine) -> Iterator[str]:
 def add(
     folder: Path, engine: OwnEngine, name: str, scenes: Sequence[str], say: Say, anew: bool
 ) -> list[Answer]:
-    """Measure one's own engine on a board, or on some of its ``scenes``; return its rows.
+    """Measure a user's engine on a board, or on some of its ``scenes``; return its rows.
 
     What is stored from an earlier call is kept, unless everything is asked for ``anew`` or it failed.
     Raises OSError.

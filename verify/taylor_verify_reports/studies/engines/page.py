@@ -275,7 +275,7 @@ def remake(board: Board) -> list[str]:
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
         "page. Errors are the same on every machine. That file has the newest version of each engine on "
-        "the scenes of the advice; all others are made by a measurement.",
+        "the first scene of each job; all others are made by a measurement.",
         f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
         f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "

@@ -34,7 +34,7 @@ class EngineSetting:
     @property
     def load(self) -> str:
         """The way in which the loads of a scene reach the engine, in words; empty where none acts."""
-        return self.rows[0].load
+        return next((row.load for row in self.rows if row.load), "")
 
     @property
     def words(self) -> str:
