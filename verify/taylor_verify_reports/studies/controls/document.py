@@ -128,6 +128,7 @@ class ControlsStudy:
 
 # The document as data/controls.json has it.
 
+
 def _fields(study: ControlsStudy) -> dict[str, Any]:
     """Return the stored keys and values; of a verdict only the fields that are the same in every run."""
     rows = [store.row(verdict, apart=("scene",)) for verdict in study.verdicts]
