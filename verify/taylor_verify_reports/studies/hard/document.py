@@ -150,7 +150,7 @@ class HardStudy:
 
 def _fields(study: HardStudy) -> dict[str, Any]:
     """Return the stored keys and values without the seconds of runs, which differ between machines."""
-    rows = [store.row(verdict, apart=("scene",)) for verdict in study.verdicts]
+    rows = [store.row(verdict) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 

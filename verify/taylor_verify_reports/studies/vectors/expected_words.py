@@ -46,11 +46,11 @@ FAMILIES: Final = {
 }
 _ELSE: Final = "terms"
 _TELLING: Final = {
-    "times": ("row k", "repeat", "interpolation"),
-    "frames": ("degrees", "scalar last", "conjugate", "other sign on axis", "constant offset"),
-    "starts": ("another start", "jump", "at rest"),
-    "methods": ("explicit Euler", "backward Euler", "Heun", "RK4"),
-    _ELSE: ("gyroscopic term", "Coriolis", "Munk", "drag", "damping", "wheel", "I_", "M_"),
+    "times": ("row k", "interpolation"),
+    "frames": ("degrees", "scalar last", "conjugate"),
+    "starts": ("another start", "jump"),
+    "methods": ("explicit Euler", "RK4"),
+    _ELSE: ("gyroscopic term", "Munk", "drag", "wheel"),
 }
 # A motion of some bodies, or a fault of two parts, belongs to both families.
 _ALSO: Final = {

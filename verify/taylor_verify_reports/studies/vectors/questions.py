@@ -29,7 +29,7 @@ from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     plain,
 )
 
-DIGITS: Final = 18
+DIGITS: Final = 17
 _ZEROS: Final = re.compile(r"\.?0*p")
 _LOADED: Final[dict[str, Loaded]] = {**WRITTEN, **OWN_STATES, "driven": driven}
 _SORTS: Final = {"free": "free", "wheels": "wheels", "moment": "moment", "fluid": "fluid"}

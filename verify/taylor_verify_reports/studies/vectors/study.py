@@ -6,26 +6,20 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.records.replacement import replace_files
-from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
+from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 FOLDER: Final = "vectors"
 _SEED: Final = 48
-_BESIDE: Final = Path(__file__).with_name("published")
+BESIDE: Final = Path(__file__).with_name("published")
 
 
-def _measure(folder: Path, progress: Progress, seed: int = _SEED) -> Measured:
+def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify_reports.studies.vectors.vectors_document import written
 
-    texts, messages = written(seed, progress)
-    beside = {file.name: file.read_text(encoding="utf-8") for file in sorted(_BESIDE.iterdir())}
+    texts, messages = written(_SEED, progress)
+    beside = {file.name: file.read_text(encoding="utf-8") for file in sorted(BESIDE.iterdir())}
     named = {f"{FOLDER}/{name}": text for name, text in (texts | beside).items()}
     return Measured(replace_files(folder, named), messages)
-
-
-def _whole(text: str) -> int:
-    if not text.isdecimal():
-        raise ValueError(f"expected a whole number, got {text!r}")
-    return int(text)
 
 
 STUDY: Final[Study[None]] = Study(
@@ -33,6 +27,6 @@ STUDY: Final[Study[None]] = Study(
     title="questions with right and wrong answers, to test simulators and judges with",
     duration="half an hour",
     measure=_measure,
+    place=f"{FOLDER}/schema.json",
     needs_heyoka=False,
-    options=(Option("seed", f"draw other questions and answers; default: {_SEED}", _whole),),
 )
