@@ -70,9 +70,13 @@ class Choice:
 
     @property
     def _remark(self) -> str:
-        """What is said of the names; a program's quaternion has its scalar where the manual says so."""
-        is_told = self.group == "quaternion" and (self.spelling.whose or self.rank is Rank.ASKED)
-        return f"{shown_names(self.names[:1])} is the scalar" if is_told else self.spelling.remark
+        """The remark on the names; the scalar of a quaternion stands where the manual says so."""
+        is_of_manual = self.group == "quaternion" and (
+            self.spelling.whose or self.rank is Rank.ASKED
+        )
+        return (
+            f"{shown_names(self.names[:1])} is the scalar" if is_of_manual else self.spelling.remark
+        )
 
 
 def shown_names(names: Sequence[Name]) -> str:

@@ -163,8 +163,8 @@ class _Chooser:
         sure = [choice for choice in every if not choice.doubt]
         is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
         best = min((choice.rank for choice in sure), default=Rank.BEHIND_A_WORD)
-        kept = range(Rank.BEHIND_A_WORD) if is_usual else ()
-        strongest = self._of_best_frame([c for c in sure if c.rank == best or c.rank in kept])
+        beside = range(Rank.BEHIND_A_WORD) if is_usual else ()
+        strongest = self._of_best_frame([c for c in sure if c.rank == best or c.rank in beside])
         for choice in every:
             if choice.doubt and not sure:
                 del self.chosen[choice.group]
