@@ -171,9 +171,9 @@ def test_a_part_of_the_run_has_its_cause(
     load: str, moment: Law, edges: Sequence[float], words: Sequence[str], tmp_path: Path
 ) -> None:
     """A fault that begins or ends within the run is said with the times of its ends."""
-    found = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
-    assert len(found) == len(words)
-    assert all(title.startswith(own) for title, own in zip(found, words, strict=True))
+    named_ones = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
+    assert len(named_ones) == len(words)
+    assert all(title.startswith(own) for title, own in zip(named_ones, words, strict=True))
 
 
 @pytest.mark.parametrize(

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.trajectories import named, write_csv
 from builders.turns import by_turns
 from builders.wrong_dynamics import failure
 
-from taylor_verify import exact
+from taylor_verify import check, exact
 from taylor_verify.judge.causes.answer import Motion
 from taylor_verify.judge.causes.answers import explained
 from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
@@ -88,3 +91,14 @@ def names(changed: str) -> list[str]:
 def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
     """Another rate, a sample more or no delay has its name; another instant or gain has none."""
     assert names(changed) == ([] if name is None else [name])
+
+
+def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None:
+    """Rows at tenths, which are rounded, lie beside the instants, which are not: both are one point."""
+    rows = exact(scene(), times=list(scene().clock.instants), digits=15)["omega"]
+    v = np.array([[float(x) for x in row] for row in rows])
+    times = np.array([float(t) for t in scene().clock.instants])
+    path = write_csv(tmp_path / "mine.csv", named(("t", "w1", "w2", "w3"), np.c_[times, v]))
+    judged = check(scene(), str(path), tolerance=1e-6)
+    assert {verdict.verdict for verdict in judged.verdicts} == {Status.PASS}
+    assert all(np.isfinite(verdict.attainable or np.nan) for verdict in judged.verdicts)

@@ -96,7 +96,8 @@ def readings(answer: Answer) -> dict[str, Cause]:
 
 def _one_turn(answer: Answer, causes: dict[str, Cause]) -> dict[str, Cause]:
     """Return one cause for omega and attitude if the same turn of the body's axes explains both."""
-    if not {"omega", "attitude"} <= causes.keys() or answer.n == 6:
+    has_both = answer.has_rates and {"omega", "attitude"} <= causes.keys()
+    if answer.n == 6 or not has_both:
         return {}
     q, truth = answer.file.q, answer.truth.q
     assert q is not None
@@ -115,7 +116,7 @@ def _one_turn(answer: Answer, causes: dict[str, Cause]) -> dict[str, Cause]:
     leaves = {name: part / answer.worst[name] for name, part in left.items()}
     words = f"the body's axes are turned by a fixed rotation of {_degrees(turn[0]):.4g} degrees"
     cause = Cause(f"{words}, in omega and attitude alike", "convention", leaves)
-    return {**dict.fromkeys(leaves, cause)}
+    return dict.fromkeys(leaves, cause)
 
 
 def _left(answer: Answer, name: str, rows: Floats) -> float:

@@ -152,9 +152,9 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
     """
     # A load may begin or end between two rows: the arcs at both ends are left out.
     first, last = begin + bool(begin), end - (end < answer.count - 1)
-    part = starts.piece(answer, first, last) if last - first >= _FEWEST else None
-    if part is None:
+    if last - first < _FEWEST:
         return []
+    part = starts.piece(answer, first, last)
     if causes := causes_of(part):
         where = _times(answer, begin, end, is_right_before)
         return [_of_part(answer, part, cause, where) for cause in causes]

@@ -158,16 +158,17 @@ def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
     return spans if is_clear and is_long else []
 
 
-def piece(answer: Answer, first: int, last: int) -> Answer | None:
-    """Return some of the rows, begun at the first of them, with the right motion from there as the truth.
+def piece(answer: Answer, first: int, last: int) -> Answer:
+    """Return some of the rows, begun at the first of them, with a budget of their own.
 
-    A piece has a budget of its own. None if that motion is not reached.
+    The truth is the right motion from there; where the rows are too far from it to reach it, it is the
+    scene's own.
     """
     part = answer.begun_at(first).at(np.s_[: last - first + 1])
     part = replace(part, budget=Budget(max(Budget().left, answer.budget.left)))
     truth = whole(part, part.right)
     if truth is None:
-        return None
+        return part
     q, c = (part.truth.q if truth.q is None else truth.q), truth.c
     return replace(part, truth=Motion(truth.v, q, part.truth.c if c is None else c))
 

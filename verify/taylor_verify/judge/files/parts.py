@@ -38,6 +38,7 @@ def in_parts(file: TrajectoryFile, judge: Judge) -> FileJudgement:
         conventions=tuple(conventions.values()),
         causes=tuple(causes.values()),
         notes=tuple(dict.fromkeys(note for one in judged for note in one.notes)),
+        missing_load=next((one.missing_load for one in judged if one.missing_load), ()),
     )
 
 

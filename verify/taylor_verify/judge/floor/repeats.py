@@ -118,9 +118,13 @@ def _differences(path: Path, x: Floats) -> Course:
     if len(x) < _FEWEST:
         return Course(x, np.zeros_like(x), np.zeros_like(x))
     times = np.array([float(t / path.flow.time) for t in path.elapsed])
+    # Instants and samples that are one in float64 are one point of the course.
+    is_new = np.r_[True, np.diff(times) != 0]
+    place = np.cumsum(is_new) - 1
     with np.errstate(all="ignore"):
-        rate = np.gradient(x, times, axis=0)
-        bend = np.gradient(rate, times, axis=0)
+        rate = np.gradient(x[is_new], times[is_new], axis=0)
+        bend = np.gradient(rate, times[is_new], axis=0)[place]
+    rate = rate[place]
     fastest = np.max(abs(rate), axis=0, initial=0.0)
     return Course(x, rate, _resolved(bend, fastest / abs(times[-1]) * _ROUGH))
 
