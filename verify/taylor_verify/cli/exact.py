@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold
@@ -17,6 +17,9 @@ from taylor_verify.exact.printed_events import events_document
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+
+# Ten seconds for a body in closed form.
+_MOST_IN_ALL: Final = 10_000_000
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -61,6 +64,9 @@ def _text_of_events(content: Mapping[str, Any]) -> str:
 
 def _of_times(options: argparse.Namespace) -> Answer:
     words = [text for times in options.at for text in times.split(",")]
+    if len(words) * options.digits > _MOST_IN_ALL:
+        asked = f"{len(words)} times of {options.digits} digits"
+        raise WrongCall(f"expected at most {_MOST_IN_ALL} digits in all times, got {asked} @ --digits")
     times = [(text.strip(), read_number(text, "--at")) for text in words]
     scene = read_scene(options.scene)
     try:
