@@ -66,7 +66,9 @@ def _of_times(options: argparse.Namespace) -> Answer:
     words = [text for times in options.at for text in times.split(",")]
     if len(words) * options.digits > _MOST_IN_ALL:
         asked = f"{len(words)} times of {options.digits} digits"
-        raise WrongCall(f"expected at most {_MOST_IN_ALL} digits in all times, got {asked} @ --digits")
+        raise WrongCall(
+            f"expected at most {_MOST_IN_ALL} digits in all times, got {asked} @ --digits"
+        )
     times = [(text.strip(), read_number(text, "--at")) for text in words]
     scene = read_scene(options.scene)
     try:
