@@ -11,7 +11,9 @@ import sys
 import zipfile
 import zlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from unittest.mock import patch
 
 import h5py
 import numpy as np
@@ -33,14 +35,14 @@ from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES
 ROWS = 8
 
 
-def struct_of_many_fields(file: Path) -> None:
-    """A packed array of 1 x 1001 structs with a million names of one letter, and no content."""
+def structs(file: Path, count: int, names: bytes) -> None:
+    """A packed array of so many structs with names of one letter, and no content."""
 
     def element(kind: int, data: bytes) -> bytes:
         return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
 
-    flags, shape = struct.pack("<II", 2, 0), struct.pack("<ii", 1, 1001)
-    parts = ((6, flags), (5, shape), (1, b"s"), (5, struct.pack("<i", 1)), (1, b"a" * 10**6))
+    flags, shape = struct.pack("<II", 2, 0), struct.pack("<ii", 1, count)
+    parts = ((6, flags), (5, shape), (1, b"s"), (5, struct.pack("<i", 1)), (1, names))
     packed = zlib.compress(element(14, b"".join(element(*part) for part in parts)))
     header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
     file.write_bytes(header + struct.pack("<II", 15, len(packed)) + packed)
@@ -112,7 +114,14 @@ def one_message(definition: str, data: bytes) -> Callable[[Path], None]:
 
 # Each file with the fault that is said of it.
 BOMBS: dict[str, tuple[str, Callable[[Path], None]]] = {
-    "fields.mat": ("at most 1000 columns, got 1001000000", struct_of_many_fields),
+    "fields.mat": (
+        "at most 1000 columns, got 1001000000",
+        partial(structs, count=1001, names=b"a" * 10**6),
+    ),
+    "nameless.mat": (
+        "at most 1000 columns, got 2147483647",
+        partial(structs, count=2**31 - 1, names=b""),
+    ),
     "zeros.mat": ("^expected at most 1000 columns, got 1001 @ [^ ]* .a traj", packed_zeros),
     "members.npz": ("^expected at most 1000 columns, got more @ [^ ]* .a traj", many_members),
     "chunk.h5": ("bytes in a packed part, got 67108872", large_chunk),
@@ -167,30 +176,31 @@ def liar(file: Path) -> None:
     file.write_bytes(content)
 
 
+def refused_by_memory(file: Path) -> None:
+    """Read the file where 64 MB more than now are allowed, and look at the limits afterwards."""
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    limit = Limit(2**26, "bytes of memory", "a reason")
+    with (
+        patch.object(memory, "MEMORY", limit),
+        pytest.raises(Refused, match="expected at most 67108864 bytes of memory, got more @"),
+    ):
+        read(file)
+    assert resource.getrlimit(resource.RLIMIT_DATA) == before
+
+
 @pytest.mark.skipif(
     sys.platform != "linux", reason="elsewhere the memory of a process has no bound"
 )
-def test_a_page_that_is_larger_than_the_footer_says_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_page_that_is_larger_than_the_footer_says_is_refused(tmp_path: Path) -> None:
     """The memory of the reader has a bound, and that of the process none afterwards."""
-    # In a process of its own: what writing took would serve for reading.
-    file, call = (
-        tmp_path / "liar.parquet",
-        "import sys, pathlib, test_bombs as t; t.liar(pathlib.Path",
-    )
+    # In processes of their own: what others took, and have no more use for, would serve for reading.
     paths = os.pathsep.join([str(Path(__file__).parent), *sys.path])
-    subprocess.run(
-        [sys.executable, "-c", f"{call}(sys.argv[1]))", str(file)],
-        env={**os.environ, "PYTHONPATH": paths},
-        check=True,
-    )
-    assert file.stat().st_size < 5000
-    monkeypatch.setattr(memory, "MEMORY", Limit(2**26, "bytes of memory", "a reason"))
-    before = resource.getrlimit(resource.RLIMIT_DATA)
-    with pytest.raises(Refused, match="expected at most 67108864 bytes of memory, got more @"):
-        read(file)
-    assert resource.getrlimit(resource.RLIMIT_DATA) == before
+    file = str(tmp_path / "liar.parquet")
+    for name in ("liar", "refused_by_memory"):
+        call = f"import sys, pathlib, test_bombs; test_bombs.{name}(pathlib.Path(sys.argv[1]))"
+        environment = {**os.environ, "PYTHONPATH": paths}
+        subprocess.run([sys.executable, "-c", call, file], env=environment, check=True)
+    assert Path(file).stat().st_size < 5000
 
 
 def number(value: int, length: int = 0) -> bytes:
