@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -76,6 +77,10 @@ def test_nobody_takes_our_verbs(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])
     assert "the verb run of plugged is left out" in capsys.readouterr().err
+    assert main(["list", "--json"]) == 0
+    out, error = capsys.readouterr()
+    assert "the verb run of plugged is left out" in error
+    assert "run" not in json.loads(out)["plugins"]["verbs"]
 
 
 def test_our_second_package_adds_its_verbs_as_others_do() -> None:

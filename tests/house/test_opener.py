@@ -33,6 +33,7 @@ OTHERS = {
     "scenes/expected.py": "expectations of this package",
     "solvers/engines/node.py": "scripts and locks of engines",
     "solvers/engines/script.py": "scripts of engines",
+    "solvers/files/formats/memory.py": "the memory of its own process, by Linux",
     "solvers/files/formats/binary.py": "members of an archive that is open",
     "solvers/files/columns/programs.py": "a table of this package",
     "solvers/fmu/runner.py": "a pipe of its own process",

@@ -503,6 +503,16 @@ def test_without_a_runner_there_is_no_summary(
     assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
 
 
+def test_a_pipe_for_the_summary_holds_nobody_up(
+    short: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A FIFO that nobody reads is a file that cannot be written."""
+    os.mkfifo("pipe")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", "pipe")
+    assert main(["run", str(short), "--github"]) == 2
+    assert "@ pipe (--github)" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("place", ["", ".", "short.toml/r.xml"])
 def test_a_junit_file_that_cannot_be_written_is_a_wrong_call(
     short: Path, capsys: Captured, place: str

@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from os import PathLike
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from taylor_verify import types
+from taylor_verify.judge.causes.answers import with_causes
+from taylor_verify.judge.costs import SOLVING, Costs, total
+from taylor_verify.judge.files.judgement import judge_file
+from taylor_verify.judge.files.stored import with_note_of_answer
+from taylor_verify.judge.judgement import Judgement, judgement, unjudged
+from taylor_verify.judge.tolerances import Tolerances, tolerances
+from taylor_verify.models.problem import NotRepresentable, Problem
+from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.numbers.working_precision import in_turn
-
-if TYPE_CHECKING:
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.judge.tolerances import Tolerances
-    from taylor_verify.models.problem import Problem
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.scenes.scene import Scene
-    from taylor_verify.solvers.files.file import TrajectoryFile
-    from taylor_verify.solvers.solver import Solver
-    from taylor_verify.solvers.trajectory import Trajectory
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.reason import Cause
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.reading.reader import as_scene
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.callback import Callback
+from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.registry import as_solver
+from taylor_verify.solvers.solver import Lack, Solver, raised
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 
 @in_turn
@@ -31,21 +41,6 @@ def judge_scene(
     causes: bool = True,
 ) -> types.Judgement:
     """Solve one scene on one rung and judge the answer, as the public `run` describes it."""
-    from dataclasses import replace
-
-    from taylor_verify.judge.causes.answers import with_causes
-    from taylor_verify.judge.costs import SOLVING, Costs, total
-    from taylor_verify.judge.files.stored import with_note_of_answer
-    from taylor_verify.judge.judgement import judgement, unjudged
-    from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.numbers.precision import rung as rung_named
-    from taylor_verify.records.faults import Refused
-    from taylor_verify.records.reason import Cause
-    from taylor_verify.records.status import Status
-    from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.solvers.registry import as_solver
-    from taylor_verify.solvers.trajectory import Outcome, Trajectory
-
     scene, solver, rung = as_scene(scene), as_solver(solver), rung_named(rung)
     asked = tolerances(tolerance, [scene])
     problem = posed(scene, solver, rung)
@@ -76,10 +71,6 @@ def _judged_as_file(
     scene: Scene, solver: Solver, rung: Rung, file: TrajectoryFile, asked: Tolerances
 ) -> Judgement:
     """Judge the rows of a user's function at their own times, under the name of the function."""
-    from dataclasses import replace
-
-    from taylor_verify.judge.files.judgement import judge_file
-
     judged = judge_file(file, scene, rung, tolerances=asked)
     verdicts = (replace(v, solver=solver.name, setting=solver.setting) for v in judged.verdicts)
     record = judged.record and replace(judged.record, solver=solver.name)
@@ -93,13 +84,6 @@ def solve_scene(
     rung: types.Rung | str = "f64",
 ) -> types.Trajectory:
     """Return the trajectory of a solver, as the public `solve` describes it."""
-    from dataclasses import replace
-
-    from taylor_verify.numbers.precision import rung as rung_named
-    from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.solvers.registry import as_solver
-    from taylor_verify.solvers.trajectory import Trajectory
-
     solver = as_solver(solver)
     problem = posed(as_scene(scene), solver, rung_named(rung))
     if isinstance(problem, Trajectory):
@@ -111,10 +95,6 @@ def solve_scene(
 
 def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
     """Return the problem, or a trajectory whose outcome is the reason why there is none."""
-    from taylor_verify.models.problem import NotRepresentable
-    from taylor_verify.solvers.solver import Lack
-    from taylor_verify.solvers.trajectory import Outcome, Trajectory
-
     if missing := solver.unavailable(rung):
         lack = missing.outcome if isinstance(missing, Lack) else Outcome.UNSUITED
         return Trajectory(lack, detail=str(missing))
@@ -129,9 +109,6 @@ def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
 
 def _answer(solver: Solver, problem: Problem) -> Trajectory:
     """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on."""
-    from taylor_verify.solvers.callback import Callback
-    from taylor_verify.solvers.solver import raised
-
     try:
         return solver.answered(problem) if isinstance(solver, Callback) else solver.solve(problem)
     except SystemExit as end:

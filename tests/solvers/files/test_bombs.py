@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import bz2
+import os
+import resource
 import struct
+import subprocess
+import sys
 import zipfile
 import zlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from unittest.mock import patch
 
 import h5py
 import numpy as np
@@ -19,25 +25,40 @@ from mcap.writer import Writer as McapWriter
 from pyarrow import parquet
 
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.file import read
+from taylor_verify.solvers.files.formats import memory
 from taylor_verify.solvers.files.formats import parquet as reader
-from taylor_verify.solvers.files.formats.column import CHUNK_BYTES
+from taylor_verify.solvers.files.formats.column import CHUNK_BYTES, COLUMNS
 from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES
 
 ROWS = 8
 
 
-def struct_of_many_fields(file: Path) -> None:
-    """A packed array of 1 x 1001 structs with a million names of one letter, and no content."""
+def structs(file: Path, count: int, names: bytes) -> None:
+    """A packed array of so many structs with names of one letter, and no content."""
 
     def element(kind: int, data: bytes) -> bytes:
         return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
 
-    flags, shape = struct.pack("<II", 2, 0), struct.pack("<ii", 1, 1001)
-    parts = ((6, flags), (5, shape), (1, b"s"), (5, struct.pack("<i", 1)), (1, b"a" * 10**6))
+    flags, shape = struct.pack("<II", 2, 0), struct.pack("<ii", 1, count)
+    parts = ((6, flags), (5, shape), (1, b"s"), (5, struct.pack("<i", 1)), (1, names))
     packed = zlib.compress(element(14, b"".join(element(*part) for part in parts)))
     header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
     file.write_bytes(header + struct.pack("<II", 15, len(packed)) + packed)
+
+
+def packed_zeros(file: Path) -> None:
+    """Ten megabytes of zeros, each eight of which are an element without data."""
+    packed = zlib.compress(bytes(10**7))
+    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
+    file.write_bytes(header + struct.pack("<II", 15, len(packed)) + packed)
+
+
+def many_members(file: Path) -> None:
+    with zipfile.ZipFile(file, "w") as archive:
+        for k in range(COLUMNS.most + 1):
+            archive.writestr(f"m{k}.npy", b"")
 
 
 def large_chunk(file: Path) -> None:
@@ -93,7 +114,16 @@ def one_message(definition: str, data: bytes) -> Callable[[Path], None]:
 
 # Each file with the fault that is said of it.
 BOMBS: dict[str, tuple[str, Callable[[Path], None]]] = {
-    "fields.mat": ("at most 1000 columns, got 1001000000", struct_of_many_fields),
+    "fields.mat": (
+        "at most 1000 columns, got 1001000000",
+        partial(structs, count=1001, names=b"a" * 10**6),
+    ),
+    "nameless.mat": (
+        "at most 1000 columns, got 2147483647",
+        partial(structs, count=2**31 - 1, names=b""),
+    ),
+    "zeros.mat": ("^expected at most 1000 columns, got 1001 @ [^ ]* .a traj", packed_zeros),
+    "members.npz": ("^expected at most 1000 columns, got more @ [^ ]* .a traj", many_members),
     "chunk.h5": ("bytes in a packed part, got 67108872", large_chunk),
     "twice.h5": (r"numbers that are packed once, got the filters \[1, 32000\]", packed_twice),
     "member.npz": ("a member that is stored or deflated, got method 12", member_in_bzip2),
@@ -131,3 +161,66 @@ def test_text_that_nobody_asked_for_is_not_read(
     table = read(file)
     assert table.times == tuple(range(ROWS))
     assert "not read, because it is longer than numbers are: column notes" in table.notes
+
+
+def liar(file: Path) -> None:
+    """A text of 128 MB, of which the footer says that it has a hundred bytes."""
+    texts = pa.array(["0", "1", "0" * 2**27])
+    numbers = dict.fromkeys(("w1", "w2", "w3"), pa.array([1.0, 1.0, 1.0]))
+    plain = {"use_dictionary": False, "write_statistics": False}
+    parquet.write_table(pa.table({"t": texts, **numbers}), file, compression="brotli", **plain)
+    group = parquet.ParquetFile(file).metadata.row_group(0)
+    content = file.read_bytes()
+    for said in (group.total_byte_size, group.column(0).total_uncompressed_size):
+        content = content.replace(number(said), number(100, len(number(said))))
+    file.write_bytes(content)
+
+
+def refused_by_memory(file: Path) -> None:
+    """Read the file where 64 MB more than now are allowed, and look at the limits afterwards."""
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    limit = Limit(2**26, "bytes of memory", "a reason")
+    with (
+        patch.object(memory, "MEMORY", limit),
+        pytest.raises(Refused, match="expected at most 67108864 bytes of memory, got more @"),
+    ):
+        read(file)
+    assert resource.getrlimit(resource.RLIMIT_DATA) == before
+
+
+@pytest.mark.skipif(
+    sys.platform != "linux", reason="elsewhere the memory of a process has no bound"
+)
+def test_a_page_that_is_larger_than_the_footer_says_is_refused(tmp_path: Path) -> None:
+    """The memory of the reader has a bound, and that of the process none afterwards."""
+    # In processes of their own: what others took, and have no more use for, would serve for reading.
+    paths = os.pathsep.join([str(Path(__file__).parent), *sys.path])
+    file = str(tmp_path / "liar.parquet")
+    for name in ("liar", "refused_by_memory"):
+        call = f"import sys, pathlib, test_bombs; test_bombs.{name}(pathlib.Path(sys.argv[1]))"
+        environment = {**os.environ, "PYTHONPATH": paths}
+        subprocess.run([sys.executable, "-c", call, file], env=environment, check=True)
+    assert Path(file).stat().st_size < 5000
+
+
+def number(value: int, length: int = 0) -> bytes:
+    """A number in Thrift's compact form, with as many bytes of no value as make this length."""
+    doubled, digits = 2 * value, []
+    while doubled or len(digits) < length or not digits:
+        digits.append(doubled & 0x7F)
+        doubled >>= 7
+    return bytes([*(digit | 0x80 for digit in digits[:-1]), digits[-1]])
+
+
+def test_texts_and_numbers_in_dictionaries_are_read(tmp_path: Path) -> None:
+    """Arrow's own dictionaries, which pandas makes of categories, hold what any column does."""
+    file = tmp_path / "mine.parquet"
+    columns = {
+        "t": pa.array(["0", "1", "1e1"]).dictionary_encode(),
+        "w1": pa.array([1.0, 1.0, 2.0]).dictionary_encode(),
+        **dict.fromkeys(("w2", "w3"), pa.array([0.5, 0.5, 0.5])),
+    }
+    parquet.write_table(pa.table(columns), file)
+    table = read(file)
+    assert table.times == (0, 1, 10)
+    assert [row[0] for row in table.groups["omega"]] == [1, 1, 2]

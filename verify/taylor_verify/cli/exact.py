@@ -20,6 +20,8 @@ from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 
 # Characters of a line of 80 beside the name of a quantity. Entries of a wider matrix get a line each.
 _ROOM: Final = 62
+# Ten seconds for a body in closed form.
+_MOST_IN_ALL: Final = 10_000_000
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -64,6 +66,11 @@ def _text_of_events(content: Mapping[str, Any]) -> str:
 
 def _of_times(options: argparse.Namespace) -> Answer:
     words = [text for times in options.at for text in times.split(",")]
+    if len(words) * options.digits > _MOST_IN_ALL:
+        asked = f"{len(words)} times of {options.digits} digits"
+        raise WrongCall(
+            f"expected at most {_MOST_IN_ALL} digits in all times, got {asked} @ --digits"
+        )
     times = [(text.strip(), read_number(text, "--at")) for text in words]
     scene = read_scene(options.scene)
     try:

@@ -181,7 +181,8 @@ class _Reader:
             raise ValueError(f"structs nested more than {_DEEPEST} deep")
         (length,) = struct.unpack_from(f"{self.order}i", _next(parts).data)
         names = _text(_next(parts))
-        COLUMNS.check(prod(shape) * (len(names) // max(length, 1)), self.path)
+        # Of no fields too, there may be no more structs.
+        COLUMNS.check(prod(shape) * max(len(names) // max(length, 1), 1), self.path)
         fields = [names[i : i + length].partition("\0")[0] for i in range(0, len(names), length)]
         for row in range(prod(shape)):
             group = f"{name}." if prod(shape) == 1 else f"{name}[{row}]."
