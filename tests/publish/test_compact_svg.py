@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from io import StringIO
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from builders.studies.hard import study
 from hypothesis import given
@@ -45,9 +46,16 @@ def marks(svg: str) -> Iterator[tuple[str, dict[str, str], str]]:
 
 
 def points(path: str) -> list[tuple[str, list[float]]]:
-    """The commands of a path, each with its letter and numbers."""
-    parts = re.findall(r"([A-Za-z]?)([^A-Za-z]*)", re.sub(r"([MLz])", r" \1 ", path))
-    return [(letter, [float(n) for n in numbers.split()]) for letter, numbers in parts if letter]
+    """The commands of a path, each with its letter and numbers; steps are added up to points."""
+    commands: list[tuple[str, list[float]]] = []
+    for letter, text in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
+        numbers = [float(n) for n in re.findall(r"-?\d*\.?\d+(?:e[+-]?\d+)?", text)]
+        if letter == "l":
+            x, y = commands[-1][1][-2:]
+            steps = np.cumsum(np.reshape(numbers, (-1, 2)), axis=0) + np.array([x, y])
+            numbers = steps.ravel().tolist()
+        commands.append((letter, numbers))
+    return commands
 
 
 def flat(path: str) -> list[float]:
@@ -58,14 +66,23 @@ def test_every_mark_is_there_with_its_style_and_words(drawn: str) -> None:
     """Marks come in the same order, in the same style, at the same places to a hundredth of a point."""
     before, after = list(marks(drawn)), list(marks(compact(drawn)))
     assert len(before) > 50
+    references: dict[str, str] = {}
     for (tag, old, words), (tag_now, new, words_now) in zip(before, after, strict=True):
-        assert (tag, words, old["style"]) == (tag_now, words_now, new["style"])
-        for name in ("clip-path", f"{'{http://www.w3.org/1999/xlink}'}href", "width"):
-            assert old.get(name) == new.get(name)
+        style = re.sub(r"font-family:[^;]*; ?", "", old["style"])
+        assert (tag, words, style) == (tag_now, words_now, new["style"])
+        assert old.get("width") == new.get("width")
+        for name in ("clip-path", f"{'{http://www.w3.org/1999/xlink}'}href"):
+            assert references.setdefault(old.get(name, ""), new.get(name, "")) == new.get(name, "")
         for name in ("x", "y"):
             assert abs(float(old.get(name, 0)) - float(new.get(name, 0))) <= HUNDREDTH
         pairs = zip(flat(old.get("d", "")), flat(new.get("d", "")), strict=True)
         assert all(abs(a - b) <= HUNDREDTH for a, b in pairs)
+
+
+def test_the_font_of_all_words_stands_once(drawn: str) -> None:
+    """The family that every text of the drawing had is that of all texts."""
+    families = set(re.findall(r"font-family: ([^;\"]*)", drawn))
+    assert re.findall(r"font-family: ([^}]*)", compact(drawn)) == [*families]
 
 
 def test_it_is_two_thirds_at_most_and_stays_as_it_is(drawn: str) -> None:

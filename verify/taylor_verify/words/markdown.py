@@ -9,17 +9,20 @@ from collections.abc import Iterable, Sequence
 _BAR = r"\|"
 # Characters with a meaning in Markdown; an underscore has none inside a word.
 _MEANT = re.compile(r"[\\`*\[\]<>|~&$]|(?<!\w)_|_(?!\w)")
+# Blanks would be half of a longer table, and nobody reads its text as it stands.
+_ALIGNED = 40
 _MARK = re.compile(r"\\(.)|[*`]")
 
 
 def table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table with aligned columns, except the last one, which may be long.
+    """Return a table with aligned columns, except the last one, which may be long, and all of a long table.
 
     A heading that ends with a colon marks a column of numbers, which are aligned to the right.
     """
     is_number = [heading.endswith(":") for heading in headings]
     first, *body = [[heading.removesuffix(":") for heading in headings], *rows]
-    widths = [max(3, *map(len, column)) for column in zip(first, *body, strict=True)]
+    aligned = [first, *body] if len(body) < _ALIGNED else [[""] * len(first)]
+    widths = [max([3, *map(len, column)]) for column in zip(*aligned, strict=True)]
     rule = ["-" * (width - 1) + "-:"[right] for width, right in zip(widths, is_number, strict=True)]
     rule[-1], widths[-1] = rule[-1][-3:], 0
     return "\n".join(_line(row, widths, is_number) for row in [first, rule, *body])

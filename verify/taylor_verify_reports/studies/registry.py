@@ -22,6 +22,7 @@ from taylor_verify_reports.studies.prices.study import STUDY as PRICES
 from taylor_verify_reports.studies.reference.study import STUDY as REFERENCE
 from taylor_verify_reports.studies.study import Study
 from taylor_verify_reports.studies.tradeoff.study import STUDY as TRADEOFF
+from taylor_verify_reports.studies.vectors.study import STUDY as VECTORS
 
 STUDIES: Final[list[Study[Any]]] = [
     ACCURACY,
@@ -36,6 +37,7 @@ STUDIES: Final[list[Study[Any]]] = [
     PORTRAITS,
     REFERENCE,
     CAUSES,
+    VECTORS,
     GALLERY,
 ]
 

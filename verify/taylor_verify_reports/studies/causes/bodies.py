@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -14,9 +15,31 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 SORTS: Final = ("free", "moment", "wheels", "fluid", "momenta")
 
 
+def _no_load(t: float, v: Floats, q: Floats, own: Floats) -> Floats:
+    return np.zeros_like(v)
+
+
+@dataclass(frozen=True)
+class Acting:
+    """What acts on a body besides its numbers: a load of t, v, q and own states, which are not tracked.
+
+    Own states have a ``rate``, or are ``taken`` every so often. The load jumps at ``switches`` alone.
+    """
+
+    load: Callable[[float, Floats, Floats, Floats], Floats] = _no_load
+    start: Floats = field(default_factory=lambda: np.zeros(0))
+    rate: Callable[[float, Floats, Floats, Floats], Floats] = lambda t, v, q, own: 0 * own
+    taken: Callable[[float, Floats, Floats, Floats], Floats] = lambda t, v, q, own: own
+    every: float = 0.0
+    switches: tuple[float, ...] = ()
+
+
 @dataclass(frozen=True)
 class Sample:
-    """A body with its start and sampling; v is omega, or U and Omega; ``digits`` are printed."""
+    """A body with its start and sampling; v is omega, or U and Omega; ``digits`` are printed.
+
+    ``lines`` belong to [body] of its scene and ``tables`` follow; ``acting`` says the same in numbers.
+    """
 
     sort: str
     mass: Floats
@@ -26,6 +49,9 @@ class Sample:
     q0: Floats
     times: Floats
     digits: int
+    lines: tuple[str, ...] = ()
+    tables: tuple[str, ...] = ()
+    acting: Acting = Acting()
 
     @property
     def n(self) -> int:
@@ -34,6 +60,11 @@ class Sample:
     @property
     def scene(self) -> Scene:
         """The scene of this sample."""
+        return read(self.text, "sample")
+
+    @property
+    def text(self) -> str:
+        """The text of the scene."""
         n, rows = self.n, [[f"{x:.17g}" for x in row] for row in self.mass]
         body = [f"{'inertia' if n == 3 else 'mass_matrix'} = {rows}".replace("'", '"')]
         if np.any(self.load):
@@ -48,11 +79,12 @@ class Sample:
             'title = "Sample"',
             f'model = "{"euler" if n == 3 else "kirchhoff"}"',
             'track = ["attitude"]',
-            *("[body]", *body),
+            *("[body]", *body, *self.lines),
             *("[initial]", *start, f"attitude = {_texts(self.q0)}"),
-            *("[time]", f"end = {float(self.times[-1])!r}", "samples = 2"),
+            *("[time]", f"end = {float(self.times[-1])!r}", f"samples = {len(self.times)}"),
+            *self.tables,
         ]
-        return read("\n".join(lines), "sample")
+        return "\n".join(lines) + "\n"
 
 
 def _texts(vector: Floats) -> str:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
 
 
 class Rows(NamedTuple):
@@ -36,6 +36,7 @@ class Law:
     space: Floats
     linear: Floats
     quadratic: Floats
+    acting: Acting
     clock: float = 1.0
     damping: float = 0.0
     from_time: float = -np.inf
@@ -57,11 +58,12 @@ def law(sample: Sample) -> Law:
         zeros.copy(),
         zeros.copy(),
         zeros.copy(),
+        sample.acting,
     )
 
 
-def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
-    """Return v' of omega or of U and Omega."""
+def rates(law: Law, t: float, v: Floats, q: Floats, own: Floats) -> Floats:
+    """Return v' of omega or of U and Omega; ``own`` are the states of the scene's own."""
     n, w = len(v), v[-3:]
     momentum = law.coriolis @ v
     force = np.empty(n)
@@ -70,7 +72,12 @@ def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
         force[:3] = np.cross(momentum[:3], w)
         force[3:] += np.cross(law.munk @ v, v[:3])
     turn = rotation(q)
-    extra = law.load - law.linear * v - law.quadratic * np.abs(v) * v
+    extra = (
+        law.load
+        + law.acting.load(t, v, q / np.linalg.norm(q), own)
+        - law.linear * v
+        - law.quadratic * np.abs(v) * v
+    )
     for i in range(0, n, 3):
         extra[i : i + 3] += turn.T @ law.space[i : i + 3]
     if law.loads_of is not None:
@@ -81,7 +88,7 @@ def rates(law: Law, t: float, v: Floats, q: Floats) -> Floats:
 
 
 def _rates_at(law: Law, t: float, q: Floats, v: Floats) -> Floats:
-    return rates(law, t, v, q)
+    return rates(law, t, v, q, law.acting.start)
 
 
 def rotation(q: Floats) -> Floats:
@@ -108,27 +115,46 @@ def integrated(
     method: str = "DOP853",
     rtol: float = 3e-14,
 ) -> Rows:
-    """Return the rows of a fine integration of a law, or of a coarse one by another method."""
+    """Return the rows of a fine integration of a law, or of a coarse one by another method.
+
+    A motion that ends on the way has rows of NaN.
+    """
     from scipy.integrate import solve_ivp
 
     n, times = sample.n, sample.times if times is None else times
     turn = law.turn or turned
 
     def slope(t: float, z: Floats) -> Floats:
-        v, q = z[:n], z[n:]
-        return np.concatenate([rates(law, t, v, q), law.clock * turn(q, v[-3:])])
+        v, q, own = np.split(z, (n, n + 4))
+        turning = law.clock * turn(q, v[-3:])
+        own_rate = law.acting.rate(t, v, q / np.linalg.norm(q), own)
+        return np.concatenate([rates(law, t, v, q, own), turning, own_rate])
 
-    z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0)])
-    parts, edges = [], [sample.times[0], times[-1]]
-    edges += [t for t in (law.from_time, law.until_time) if edges[0] < t < times[-1]]
-    edges.sort()
-    for k, (begin, end) in enumerate(pairwise(edges)):
-        inside = times[(times > begin) & (times <= end)] if k else times[times <= end]
+    z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0), law.acting.start])
+    parts = []
+    for begin, end in pairwise(_edges(law, float(sample.times[0]), float(times[-1]))):
+        v, q, own = np.split(z0, (n, n + 4))
+        z0[n + 4 :] = law.acting.taken(begin, v, q / np.linalg.norm(q), own)
+        inside = times[(times > begin) & (times <= end)] if parts else times[times <= end]
         ask = np.union1d(inside, [end])
         solved = solve_ivp(slope, (begin, end), z0, method, t_eval=ask, rtol=rtol, atol=1e-3 * rtol)
+        if not solved.success:
+            return _rows(times, np.full((len(times), n + 4), np.nan), n)
         parts.append(solved.y.T[np.isin(ask, inside)])
         z0 = solved.y[:, -1]
-    return _rows(times, np.vstack(parts), n)
+    return _rows(times, np.vstack(parts)[:, : n + 4], n)
+
+
+def _edges(law: Law, begin: float, end: float) -> list[float]:
+    """Return the ends of the pieces in which the equations are smooth."""
+    every = law.acting.every
+    instants = np.arange(begin, end, every) if every else []
+    inside = {
+        t
+        for t in (law.from_time, law.until_time, *law.acting.switches, *instants)
+        if begin < t < end
+    }
+    return [begin, *sorted(map(float, inside)), end]
 
 
 def stepped(

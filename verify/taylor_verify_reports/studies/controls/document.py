@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
+from taylor_verify.records import store
 from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.quantities import STATES, is_conserved
@@ -127,21 +128,11 @@ class ControlsStudy:
 
 # The document as data/controls.json has it.
 
-# Fields of a verdict that differ from run to run, or from machine to machine.
-_NOT_STORED: Final = ("digits", "sentence", "seconds", "provenance")
-_SHIFT: Final = ("time_shift", "residual", "shift", "trend", "remains")
-
 
 def _fields(study: ControlsStudy) -> dict[str, Any]:
     """Return the stored keys and values; of a verdict only the fields that are the same in every run."""
-    rows = [_row(verdict) for verdict in study.verdicts]
+    rows = [store.row(verdict, apart=("scene",)) for verdict in study.verdicts]
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
-
-
-def _row(verdict: Verdict) -> dict[str, Any]:
-    # A sound run is shifted in time by its roundings alone, whose sign differs between machines.
-    left_out = _NOT_STORED if verdict.verdict is Status.FAIL else (*_NOT_STORED, *_SHIFT)
-    return {name: value for name, value in verdict.row().items() if name not in left_out}
 
 
 def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:

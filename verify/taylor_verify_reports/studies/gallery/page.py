@@ -144,12 +144,11 @@ def _errors(report: Report, portrait: Document) -> Made:
 
 _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]], ...]] = (
     ("euler/generic", (_polhode, _errors)),
-    ("euler/with-attitude", (_polhode, _axis, _errors)),
     ("euler/separatrix", (_polhode, _errors)),
-    ("euler/tennis-racket", (_polhode, _errors)),
-    ("kirchhoff/whole-motion", (_axis, _path, _errors)),
-    ("kirchhoff/through-the-pole", (_axis, _path, _errors)),
-    ("kirchhoff/falling-away", (_axis, _path, _errors)),
+    ("euler/tennis-racket", (_polhode,)),
+    ("kirchhoff/whole-motion", (_axis, _path)),
+    ("kirchhoff/through-the-pole", (_path, _errors)),
+    ("kirchhoff/falling-away", (_path,)),
     ("manufactured/kirchhoff-path", (_path,)),
     ("manufactured/euler-resonance", (_errors,)),
 )

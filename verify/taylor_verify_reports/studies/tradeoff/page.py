@@ -118,8 +118,11 @@ def pictures(trades: Trades) -> list[Picture]:
 
 
 def _of_trade(trade: Trade) -> list[Picture]:
-    """Return the pictures of one scene; none if no setting is sound."""
-    return work_precision.pictures(trade.document()) if trade.sound else []
+    """Return the picture of error against time of one scene; none if no setting is sound.
+
+    The other one, against evaluations, says the same of one machine: `tradeoff SCENE --out` draws it.
+    """
+    return work_precision.pictures(trade.document())[:1] if trade.sound else []
 
 
 # The cost of digits.

@@ -1,0 +1,1 @@
+"""Questions with right answers and wrong answers, for the judges and simulators of everybody."""
