@@ -52,7 +52,7 @@ def points(path: str) -> list[tuple[str, list[float]]]:
         numbers = [float(n) for n in re.findall(r"-?\d*\.?\d+(?:e[+-]?\d+)?", text)]
         if letter == "l":
             x, y = commands[-1][1][-2:]
-            steps = np.cumsum(np.reshape(numbers, (-1, 2)), axis=0) + [x, y]
+            steps = np.cumsum(np.reshape(numbers, (-1, 2)), axis=0) + np.array([x, y])
             numbers = steps.ravel().tolist()
         commands.append((letter, numbers))
     return commands

@@ -60,7 +60,7 @@ def test_errors_of_rungs_are_in_their_own_roundoffs() -> None:
 # The whole gallery
 
 
-@pytest.mark.parametrize("end", ["generic-errors", "attitude-errors"])
+@pytest.mark.parametrize("end", ["generic-errors", "the-pole-errors"])
 def test_no_text_is_cut(end: str) -> None:
     """All names, numbers and notes lie within their pictures, to a tenth of a millimetre."""
     picture = next(one.picture for one in shown() if one.picture.stem.endswith(end))
