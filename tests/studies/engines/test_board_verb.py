@@ -14,7 +14,7 @@ import pytest
 
 from taylor_verify import check
 from taylor_verify.cli.answer import WrongCall
-from taylor_verify_reports.studies.engines import measure, own, replay, stored
+from taylor_verify_reports.studies.engines import measure, own, replay
 from taylor_verify_reports.verbs import board
 
 ADD = ["add", "mine", "--board", "engines", "--scene", "engines/oblique"]
@@ -156,13 +156,3 @@ def test_a_wrong_call_is_refused(words: list[str], expected: str, tmp_path: Path
     """The error says what was expected."""
     with pytest.raises(WrongCall, match=f"expected {expected}"):
         called(tmp_path, *words)
-
-
-def test_the_published_boards_are_shown() -> None:
-    """Each published board has its first advice, and every stored row its place in a file."""
-    reports = Path(__file__).resolve().parents[3] / "reports"
-    (document,) = called(reports, "--board", "engines").document["boards"]
-    assert document["advice"][0].startswith("For free rotation take")
-    placed = [row for row in document["rows"] if row["array"]]
-    assert {row["file"] for row in placed} == {stored.TRAJECTORIES}
-    assert len({(row["array"], row["place"]) for row in placed}) == len(placed) > 100

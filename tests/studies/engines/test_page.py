@@ -104,6 +104,42 @@ def test_steps_that_make_it_worse_are_warned_of() -> None:
     )
 
 
+def under(load: str, entry: Entry, *errors: float) -> list[EngineRow]:
+    return [replace(row, load=load) for row in with_errors(entry, *errors)]
+
+
+def test_a_way_of_giving_a_load_is_warned_of() -> None:
+    """The paragraph of a job has the best setting with its way, and the least error of a far worse way."""
+    held = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-3)
+    (sentence,) = advised(*under("asked for in each stage", SPINNER, 1e-3, 1e-6, 1e-9), *held)[:1]
+    assert "a step of 0.025 (the load asked for in each stage): omega and attitude" in sentence
+    worse = "Never with the load held over each step (**Wobbler** with splitting and a step of 0.025 has"
+    assert f"{worse} 1.00e-3)" in sentence
+    near = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-10)
+    assert "Never with" not in advised(*under("asked", SPINNER, 1e-3, 1e-6, 1e-12), *near)[0]
+
+
+def test_a_step_over_a_switch_is_warned_of() -> None:
+    """The warning has a longer step that ends on every switch, and a shorter one that does not."""
+    rows = under("asked for in each stage", SPINNER, 1e-9, 1e-3, 1e-10)
+    switched = replace(ENTRIES, scene=(replace(ENTRIES.scene[0], switches=True),))
+    assert "goes over a switch" not in advised(*rows)[0]
+    sentence = advised(*rows, entries=switched)[0]
+    assert (
+        "has 1.00e-9 with a step of 0.1, which ends on every switch, and 1.00e-3 with 0.05"
+        in sentence
+    )
+
+
+def test_an_engine_that_loses_a_loaded_motion_is_named() -> None:
+    """Its least error at any step is beside its name."""
+    rows = under("asked", SPINNER, 1e-3, 1e-6, 1e-9), under("asked", WOBBLER, 0.9, 0.8, 0.7)
+    assert (
+        "Not for free rotation, with the least error at any step: **Wobbler** (0.700)."
+        in (advised(*rows[0], *rows[1])[0])
+    )
+
+
 # The pages.
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from functools import cache
 from pathlib import Path
 
@@ -11,7 +12,9 @@ from taylor_verify.records.quantities import COLUMNS, state_groups
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.engines import stored, trajectories
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.entry import BOARDS, entry_list
 from taylor_verify_reports.studies.engines.replay import errors_of, judged
+from taylor_verify_reports.verbs import board as verb
 
 REPORTS = Path(__file__).resolve().parents[3] / "reports"
 MEGABYTE = 1_000_000
@@ -89,3 +92,17 @@ def test_the_first_row_of_every_trajectory_is_the_start() -> None:
 def test_no_engine_is_lost() -> None:
     """A run without a trajectory has a reason."""
     assert [row.key for row in board().study.rows if not row.is_judged and not row.detail] == []
+
+
+@pytest.mark.parametrize("name", BOARDS)
+def test_the_verb_shows_every_published_board(name: str) -> None:
+    """A board has its advice for each job, and every stored row its own place in a file."""
+    parser = argparse.ArgumentParser()
+    verb.add(parser)
+    asked = parser.parse_args(["--from", str(REPORTS), "--board", name])
+    (document,) = verb.run(asked).document["boards"]
+    jobs = entry_list(name).jobs
+    assert [job for job in jobs if not any(f"or {job} take" in a for a in document["advice"])] == []
+    placed = [row for row in document["rows"] if row["array"]]
+    assert {row["file"] for row in placed} == {stored.places(name).trajectories}
+    assert len({(row["array"], row["place"]) for row in placed}) == len(placed) > 100

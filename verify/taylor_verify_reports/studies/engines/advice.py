@@ -134,10 +134,10 @@ def _ways_to_avoid(
     engines: Sequence[EngineSetting], scenes: Sequence[str], names: dict[str, str]
 ) -> Iterator[str]:
     """Yield a warning of the ways of giving a load whose best engine is far worse than another way's."""
+    scores = [score for setting in engines for score in setting.scores(scenes)]
     best: dict[str, Score] = {}
-    for way in dict.fromkeys(setting.load for setting in engines):
-        scores = (score for s in engines if s.load == way for score in s.scores(scenes))
-        if score := best_of(scores):
+    for way in dict.fromkeys(score.row.load for score in scores if score.row.load):
+        if score := best_of(score for score in scores if score.row.load == way):
             best[way] = score
     least = max(NEGLIGIBLE, min((score.error for score in best.values()), default=0.0))
     bad = {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
@@ -293,15 +293,16 @@ def _states(score: Score) -> str:
 
 
 def _load(score: Score) -> str:
-    return f" (the load {prose(score.setting.load)})" if score.setting.load else ""
+    return f" (the load {prose(score.row.load)})" if score.row.load else ""
 
 
 def _step(score: Score) -> str:
     """Return the step with the words that join it to a setting; empty for a solver without a step."""
     if not score.value:
         return ""
-    knob = score.setting.knob
-    return f" and a step of {score.value}" if knob == "step" else f" and {knob} {score.value}"
+    knob, joint = score.setting.knob, "and" if score.setting.words else "with"
+    what = f"a step of {score.value}" if knob == "step" else f"{knob} {score.value}"
+    return f" {joint} {what}"
 
 
 def _listed(scenes: Sequence[str]) -> str:

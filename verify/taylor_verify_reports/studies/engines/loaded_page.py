@@ -89,7 +89,7 @@ def _cells(
     return [
         prose(f"{titles.get(setting.engine, setting.engine)} {setting.version}".strip()),
         prose(setting.words) or NOTHING,
-        prose(setting.load) or NOTHING,
+        prose(finest.load) or NOTHING,
         *(figure(rows[step].worst) if step in rows else NOTHING for step in steps),
         _orders(setting, finest),
         figure(None if pace is None else 1e6 * pace),

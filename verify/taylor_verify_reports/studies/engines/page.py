@@ -17,7 +17,7 @@ from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.engines.advice import advice, like
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.engine_page import place
-from taylor_verify_reports.studies.engines.entry import EntryList, entry_list, list_of
+from taylor_verify_reports.studies.engines.entry import BOARDS, EntryList, entry_list, list_of
 from taylor_verify_reports.studies.engines.findings import findings
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
 from taylor_verify_reports.studies.engines.ranking import (
@@ -33,7 +33,7 @@ _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same "
     "numbers. Energy and angular momentum are compared too, although they do not show whether the "
     "body is in the right place. The authors of this page sell no engine. The trajectories "
-    "behind the advice are stored, and anybody can judge them again."
+    "on the first scene are stored, and anybody can judge them again."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
@@ -274,14 +274,23 @@ def remake(board: Board) -> list[str]:
         f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
-        "page. Errors are the same on every machine. That file has the newest version of each engine on "
-        "the first scene of each job; all others are made by a measurement.",
+        "page. Errors are the same on every machine. " + _kept(name),
         f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
         f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "
         f"time on {prose(machine.processor)}; no number but a time depends on the machine.",
         made_with(board.study.versions),
     ]
+
+
+def _kept(board: str) -> str:
+    """Return a sentence on which trajectories there are."""
+    if board == BOARDS[0]:
+        return (
+            "That file has the newest version of each engine on the first scene of the advice; all others "
+            "are made by a measurement."
+        )
+    return "That file is made by a measurement: a clone does not have it."
 
 
 def sheet(board: Board) -> str:
