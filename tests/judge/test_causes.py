@@ -32,7 +32,6 @@ from builders.wrong_dynamics import (
     Turn,
     causes,
     euler,
-    runge_kutta,
     simulated,
     turned,
     turned_by_space,
@@ -42,7 +41,6 @@ from scipy.spatial.transform import Rotation
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.words.causes import with_numbers
@@ -235,17 +233,6 @@ def heavier(n: Numbers) -> None:
     n.tensor = np.linalg.inv(mass)
 
 
-def test_a_moment_in_space_axes_is_named() -> None:
-    """A moment that stands still in space is told by the file's own attitude."""
-
-    def rate(w: Array, q: Array, n: Numbers) -> Array:
-        R = Rotation.from_quat(np.roll(q / np.linalg.norm(q), -1)).as_matrix()
-        return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w) + R.T @ n.load)
-
-    scene = load(FORCED)
-    assert set(causes(scene, simulated(scene, rate))) == {"moment in space axes"}
-
-
 # Attitudes and axes.
 
 
@@ -343,25 +330,6 @@ def test_rows_that_begin_late_have_their_cause(
     assert sentence.startswith(words)
 
 
-def one_up(sound: Columns) -> Columns:
-    return {k: v[:-1] if k == "t" else v[1:] for k, v in sound.items()}
-
-
-def one_down(sound: Columns) -> Columns:
-    return {k: v if k == "t" else [v[0], *v[:-1]] for k, v in sound.items()}
-
-
-@pytest.mark.parametrize(("spoil", "row"), by_turns([(one_up, "k+1"), (one_down, "k-1")], 2))
-def test_one_row_off_is_named(
-    spoil: Callable[[Columns], Columns], row: str, tmp_path: Path
-) -> None:
-    """Rows that hold the state of the next or of the last row are told apart."""
-    scene = load(FREE)
-    causes = judged(tmp_path, FREE, spoil(columns_at(scene, scene.clock.instants))).causes
-    assert {cause.name for cause in causes} == {"rows shifted"}
-    assert all(f"row k holds the state of row {row};" in cause.sentence for cause in causes)
-
-
 @pytest.mark.parametrize(
     ("sign", "count", "shift"),
     by_turns(
@@ -379,14 +347,6 @@ def test_rows_are_counted_in_the_file(sign: int, count: int, shift: int, tmp_pat
     assert f"row k holds the state of row k{sign * shift:+d};" in cause.sentence
 
 
-def test_an_early_clock_is_named(tmp_path: Path) -> None:
-    """The shift of time that all quantities share is named, with its number."""
-    scene = load(FREE)
-    columns = columns_at(scene, [t + Fraction(1, 100) for t in scene.clock.instants])
-    columns["t"] = [float(t) for t in scene.clock.instants]
-    assert names(tmp_path, FREE, columns) == {"the clock is early by 0.01"}
-
-
 def test_a_body_that_drifts_is_not_at_rest() -> None:
     """Rows that no longer turn but still move are the same, and not said to have no velocity."""
     scene = load(FLUID)
@@ -402,40 +362,12 @@ def test_a_body_that_drifts_is_not_at_rest() -> None:
 # Answers that have no cause.
 
 
-def turned_body(scene: Scene, seed: int, spread: float) -> Scene:
-    """The scene with another body, whose moments differ by about ``spread``, and another start."""
-    draw = np.random.default_rng(seed)
-    axes = np.linalg.qr(draw.standard_normal((3, 3)))[0]
-    tensor = axes @ np.diag(1 + spread * draw.uniform(0, 1, 3)) @ axes.T
-    upper = [[Fraction(float(tensor[min(i, k), max(i, k)])) for k in range(3)] for i in range(3)]
-    body = replace(scene.body, inertia=tuple(map(tuple, upper)))
-    omega = tuple(Fraction(float(w)) for w in draw.standard_normal(3))
-    q = tuple(Fraction(float(e)) for e in draw.standard_normal(4))
-    return replace(scene, body=body, initial=Spin(omega, q))
-
-
 def false_words(names: Iterable[str]) -> list[str]:
     """The names of causes that say more of a sound method than its steps."""
     return [name for name in names if not name.startswith("truncation of order")]
 
 
 SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("spread", [1e-2, 1.0])
-@pytest.mark.parametrize("scene", [FREE, FORCED])
-def test_a_sound_method_has_no_cause(scene: str, spread: float) -> None:
-    """Coarse answers by the right equations are given no cause, whatever body and start they are for."""
-    for seed in range(3):
-        other = turned_body(load(scene), seed, spread)
-        for method, tolerance in SOUND:
-            columns = simulated(
-                other, method=method, tolerance=tolerance, times=np.linspace(0, 15, 61)
-            )
-            assert not false_words(causes(other, columns))
-        for h, every in ((0.1, 1), (0.02, 10)):
-            assert not false_words(causes(other, runge_kutta(other, h, every)))
 
 
 @pytest.mark.parametrize(
