@@ -18,6 +18,8 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies import bulk, registry
+from taylor_verify_reports.studies.engines.entry import BOARDS
+from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
 from taylor_verify_reports.studies.registry import STUDIES
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.study import (
@@ -126,7 +128,7 @@ def test_a_study_is_listed(capsys: Captured) -> None:
     """The list has title, duration and need of heyoka of each study; as JSON too."""
     assert main(["publish", "--list"]) == 0
     text = capsys.readouterr().out
-    assert "smallest   the smallest study there can be\n" in text
+    assert "smallest    the smallest study there can be\n" in text
     assert "no time; works without heyoka" in text
     assert main(["publish", "--list", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["studies"]
@@ -256,13 +258,17 @@ def test_a_wrong_call_is_told_in_a_sentence(
 
 
 def test_every_study_has_a_name_of_its_own() -> None:
-    """The word is that of its folder, and no two write or link to one page or share an option."""
-    names = [study.name for study in STUDIES]
+    """The word is that of its folder, and no two write or link to one page or share an option; the boards
+    are one folder with one set of options."""
+    others = [study for study in STUDIES if study.name not in BOARDS[1:]]
+    assert {study.options for study in STUDIES if study.name in BOARDS} == {ENGINES.options}
+    paths = [study.path for study in STUDIES if study.path]
+    assert len(set(paths)) == len(paths)
+    names = [study.name for study in others]
     assert len(set(names)) == len(names)
     place = Path(registry.__file__).parent
     assert all((place / name / "study.py").is_file() for name in names if name != "smallest")
     folders = {file.parent.name for file in place.glob("*/study.py")}
     assert folders == set(names) - {"smallest"}
-    for kind in ("path", "options"):
-        values = [value for study in STUDIES if (value := getattr(study, kind))]
-        assert len(set(values)) == len(values)
+    values = [study.options for study in others if study.options]
+    assert len(set(values)) == len(values)

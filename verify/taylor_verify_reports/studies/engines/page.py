@@ -274,7 +274,7 @@ def remake(board: Board) -> list[str]:
         f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
-        "page. Errors are the same on every machine. " + _kept(name),
+        "page. Errors are the same on every machine. " + _stored_ones(name),
         f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
         f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "
@@ -283,7 +283,7 @@ def remake(board: Board) -> list[str]:
     ]
 
 
-def _kept(board: str) -> str:
+def _stored_ones(board: str) -> str:
     """Return a sentence on which trajectories there are."""
     if board == BOARDS[0]:
         return (
