@@ -1,4 +1,4 @@
-"""One scene solved and judged."""
+"""The chain for a scene: it is solved and judged."""
 
 from __future__ import annotations
 

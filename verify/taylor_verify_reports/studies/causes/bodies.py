@@ -21,7 +21,7 @@ def _no_load(t: float, v: Floats, q: Floats, own: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Acting:
-    """What acts on a body besides its numbers: a load of t, v, q and own states, which are not tracked.
+    """Loads of t, v, q and own states that act on a body; own states are not tracked.
 
     Own states have a ``rate``, or are ``taken`` every so often. The load jumps at ``switches`` alone.
     """
