@@ -99,7 +99,7 @@ def test_verdicts_without_their_sum_are_edited(is_lost: bool, report: Path, caps
     status, message = published(report, capsys)
     assert (status, message.count("\n")) == (2, 1)
     assert "expected the verdicts that a run has written" in message
-    assert read_report(report).edited is (None if gone else True)
+    assert read_report(report).edited is (None if is_lost else True)
     assert published(report, capsys, "--edited")[0] == 0
 
 
