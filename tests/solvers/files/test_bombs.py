@@ -171,8 +171,8 @@ def liar(file: Path) -> None:
     parquet.write_table(pa.table({"t": texts, **numbers}), file, compression="brotli", **plain)
     group = parquet.ParquetFile(file).metadata.row_group(0)
     content = file.read_bytes()
-    for said in (group.total_byte_size, group.column(0).total_uncompressed_size):
-        content = content.replace(number(said), number(100, len(number(said))))
+    for size in (group.total_byte_size, group.column(0).total_uncompressed_size):
+        content = content.replace(number(size), number(100, len(number(size))))
     file.write_bytes(content)
 
 

@@ -65,7 +65,7 @@ class Work:
 
     @property
     def warnings(self) -> Path:
-        """What Sphinx has said of the pages: of one that is finished it says nothing again."""
+        """The warnings of Sphinx, which it gives once: it reads no page again that is finished."""
         return self.pages / "warnings.txt"
 
     def source(self, files: Mapping[str, str | bytes]) -> Path:
