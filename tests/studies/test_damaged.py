@@ -91,15 +91,17 @@ def test_damaged_verdicts_are_refused(damage: str, report: Path, capsys: Capture
     assert "sys." not in message
 
 
-@pytest.mark.parametrize("is_lost", [False, True])
-def test_verdicts_without_their_sum_are_edited(is_lost: bool, report: Path, capsys: Captured) -> None:
+@pytest.mark.parametrize("is_deleted", [False, True])
+def test_verdicts_without_their_sum_are_edited(
+    is_deleted: bool, report: Path, capsys: Captured
+) -> None:
     """A sum that was deleted says as little as a wrong one."""
     file = report / "data" / store.SUM
-    file.unlink() if is_lost else file.write_text("")
+    file.unlink() if is_deleted else file.write_text("")
     status, message = published(report, capsys)
     assert (status, message.count("\n")) == (2, 1)
     assert "expected the verdicts that a run has written" in message
-    assert read_report(report).edited is (None if is_lost else True)
+    assert read_report(report).edited is (None if is_deleted else True)
     assert published(report, capsys, "--edited")[0] == 0
 
 

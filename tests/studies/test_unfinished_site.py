@@ -21,7 +21,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def part_of_a_site(report: Path, error: type[BaseException] | None = None) -> list[str]:
+def make_page(report: Path, error: type[BaseException] | None = None) -> list[str]:
     """Make a page where there is none, and return the pages that were there; end in an error."""
     with unfinished.unfinished(report) as work:
         work.source(SOURCES)
@@ -36,14 +36,14 @@ def part_of_a_site(report: Path, error: type[BaseException] | None = None) -> li
 def test_pages_stay_after_an_interrupt_alone(tmp_path: Path) -> None:
     """An error leaves none, because Sphinx would not read a page with a fault again; the end neither."""
     with pytest.raises(KeyboardInterrupt):
-        part_of_a_site(tmp_path, KeyboardInterrupt)
+        make_page(tmp_path, KeyboardInterrupt)
     with pytest.raises(ZeroDivisionError):
-        part_of_a_site(tmp_path, ZeroDivisionError)
-    assert part_of_a_site(tmp_path) == []
+        make_page(tmp_path, ZeroDivisionError)
+    assert make_page(tmp_path) == []
     with pytest.raises(KeyboardInterrupt):
-        part_of_a_site(tmp_path, KeyboardInterrupt)
-    assert part_of_a_site(tmp_path) == ["index.html"]
-    assert part_of_a_site(tmp_path) == []
+        make_page(tmp_path, KeyboardInterrupt)
+    assert make_page(tmp_path) == ["index.html"]
+    assert make_page(tmp_path) == []
 
 
 def test_pages_of_other_sources_are_made_anew(tmp_path: Path) -> None:

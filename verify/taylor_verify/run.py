@@ -1,4 +1,4 @@
-"""The chain for a scene: it is solved and judged."""
+"""The run of one scene: solved, compared with the exact motion, and judged."""
 
 from __future__ import annotations
 

@@ -102,11 +102,12 @@ def has_own_records(folder: Path) -> bool:
 def are_edited(folder: Path) -> bool | None:
     """Return True if the verdicts in ``folder``/data are not those that their SHA-256 was made of.
 
-    None where it is gone. Raises OSError.
+    None where it is gone. Raises OSError for verdicts that cannot be read.
     """
     data = folder / FOLDER
-    (data / VERDICTS).stat()
-    return None if not (data / SUM).exists() else not _agrees(data, SUM, VERDICTS)
+    if (data / SUM).exists():
+        return not _agrees(data, SUM, VERDICTS)
+    return None if (data / VERDICTS).exists() else False
 
 
 def _agrees(data: Path, stated: str, named: str) -> bool:

@@ -100,8 +100,8 @@ def _run_sphinx(source: Path, work: Work, settings: Path) -> None:
         )
         # Without the index of the search, which is written last, it would be one of the other pages.
         app.build(force_all=not (work.made / "searchindex.js").exists())
-    warnings = work.warnings.read_text(encoding="utf-8")
-    if faults := warnings.replace(f"{source.resolve()}{os.sep}", ""):
+    warned = work.warnings.read_text(encoding="utf-8")
+    if faults := warned.replace(f"{source.resolve()}{os.sep}", ""):
         lines = dict.fromkeys(re.sub(r"\x1b\[[\d;]*m", "", faults).strip().splitlines())
         raise ValueError(f"expected pages without a fault, got {'; '.join(lines)}")
 

@@ -65,7 +65,7 @@ class Work:
 
     @property
     def warnings(self) -> Path:
-        """The file of the warnings of Sphinx, which are not repeated for a finished page."""
+        """The warnings of Sphinx, which it gives once: it reads no page again that is finished."""
         return self.pages / "warnings.txt"
 
     def source(self, files: Mapping[str, str | bytes]) -> Path:
