@@ -12,6 +12,8 @@ from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.flow import Floats
 
 _BAD: Final = 30.0
+# A simulator has errors of its own: those below this part of the largest one.
+_OWN: Final = 1e-9
 _FEWEST: Final = 4
 _ONE_IN: Final = 20
 _MOST_BETWEEN: Final = 12
@@ -25,7 +27,7 @@ def wrong_rows(answer: Answer) -> Cause | None:
     """Return the cause of an answer most of whose rows are right."""
     bad = np.zeros(answer.count, dtype=bool)
     for name in answer.failed:
-        bad |= answer.error[name] > _BAD * answer.roundings[name]
+        bad |= answer.error[name] > max(_BAD * answer.roundings[name], _OWN * answer.worst[name])
     wrong, good = np.flatnonzero(bad), ~bad
     if not len(wrong) or np.count_nonzero(good) < max(_FEWEST, answer.count // _ONE_IN):
         return None

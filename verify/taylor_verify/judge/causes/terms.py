@@ -113,7 +113,7 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     yield from _loads(right, sizes)
     yield family("damping", "damping", sizes.pace, [right.damping], damping=[1])
     yield from _drags(right, sizes)
-    yield from _damping_steps(right, sizes.pace)
+    yield from _damping_steps(right)
     for name, rows in _coriolis_terms(right):
         extra = [factors(products=rows)]
         yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
@@ -187,32 +187,26 @@ _FACTORS: Final = (
 )
 
 
-def _damping_steps(right: Equations, pace: float) -> Iterator[Family]:
+def _damping_steps(right: Equations) -> Iterator[Family]:
     """Yield damping by a factor f once in each step h, after the motion of the step or before it.
 
     With f = e^(-c' h) such an engine solves P' = k (terms of second order) - c' P exactly, where
     k = c' h/(1 - f) for a factor after the motion, and f times that for one before it. The attitude turns
-    by k omega. Where the scene has no damping, c is a second number, and the three factors are alike.
+    by k omega.
     """
-    if right.has_loads or np.any(right.rotor):
+    if not right.damping or right.has_loads or np.any(right.rotor):
         return
-    own = float(right.damping)
-    scale = np.array([0.05 / abs(own)] if own else [0.05 / pace, pace])
+    h = np.array([0.05 / abs(right.damping)])
     products = right.basis.factors(products=coriolis_of(right.mass))
-    for (name, words, factor), place in product(
-        _FACTORS if own else _FACTORS[:1], ("after", "before")
-    ):
+    for (name, words, factor), place in product(_FACTORS, ("after", "before")):
 
         def changes(p: Floats, factor: Any = factor, place: str = place) -> Changes:
-            step, c = float(p[0]) or 1e-9, own or float(p[1]) or 1e-9
-            f = factor(c * step)
+            step = float(p[0]) or 1e-9
+            f = factor(right.damping * step)
             damping = -np.log(f) / step if f > 0 else np.nan
             k = damping * step / (1 - f) * (1.0 if place == "after" else f)
             turns = np.array([0.0, k])
             return {"extra": (k - 1) * products, "damping": damping, "turns": turns}
 
-        numbers = "h" if own else "h and c"
-        title = (
-            f"{name}: the momentum times {words} {place} the motion of each step, with {numbers}"
-        )
-        yield Family(title, "damping step", 1e-3 * scale, scale, changes)
+        title = f"{name}: the momentum times {words} {place} the motion of each step, with h"
+        yield Family(title, "damping step", 1e-3 * h, h, changes)

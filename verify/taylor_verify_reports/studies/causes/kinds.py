@@ -322,7 +322,6 @@ KINDS: Final = (
     Kind("moment more", _LOADS, _set("load", lambda s, d, e: _three(s, d, e) + law(s).load)),
     Kind("moment in space", ("space axes",), _set("space", _three)),
     Kind("load from some time on", ("right up to", "force", "couple", "moment"), _of(_from_time)),
-    Kind("load for a while", ("from t =",), _of(_for_a_while), ("free", "wheels", *FLUID)),
     Kind("drag on one axis", ("drag",), _set("linear", _one)),
     Kind("drag on all rates", ("drag",), _set("linear", _three)),
     Kind("quadratic drag", ("quadratic drag",), _set("quadratic", _three)),
@@ -371,4 +370,5 @@ KINDS: Final = (
     Kind("RK23 at 1e-5", (), _coarse("RK23", 1e-5)),
     Kind("LSODA at 1e-6", (), _coarse("LSODA", 1e-6)),
     Kind("Radau at 1e-6", (), _coarse("Radau", 1e-6)),
+    Kind("load for a while", ("from t =",), _of(_for_a_while), ("free", "wheels", *FLUID)),
 )
