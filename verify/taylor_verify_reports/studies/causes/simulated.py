@@ -131,7 +131,7 @@ def integrated(
         return np.concatenate([rates(law, t, v, q, own), turning, own_rate])
 
     z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0), law.acting.start])
-    parts = []
+    parts: list[Floats] = []
     for begin, end in pairwise(_edges(law, float(sample.times[0]), float(times[-1]))):
         v, q, own = np.split(z0, (n, n + 4))
         z0[n + 4 :] = law.acting.taken(begin, v, q / np.linalg.norm(q), own)
@@ -148,7 +148,7 @@ def integrated(
 def _edges(law: Law, begin: float, end: float) -> list[float]:
     """Return the ends of the pieces in which the equations are smooth."""
     every = law.acting.every
-    instants = np.arange(begin, end, every) if every else []
+    instants: Any = np.arange(begin, end, every) if every else ()
     inside = {
         t
         for t in (law.from_time, law.until_time, *law.acting.switches, *instants)

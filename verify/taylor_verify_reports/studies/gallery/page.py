@@ -145,8 +145,7 @@ def _errors(report: Report, portrait: Document) -> Made:
 _SCENES: Final[tuple[tuple[str, tuple[Callable[[Report, Document], Made], ...]], ...]] = (
     ("euler/generic", (_polhode, _errors)),
     ("euler/separatrix", (_polhode, _errors)),
-    ("euler/tennis-racket", (_polhode,)),
-    ("kirchhoff/whole-motion", (_axis, _path)),
+    ("kirchhoff/whole-motion", (_axis,)),
     ("kirchhoff/through-the-pole", (_path, _errors)),
     ("kirchhoff/falling-away", (_path,)),
     ("manufactured/kirchhoff-path", (_path,)),

@@ -25,7 +25,8 @@ def on_grid(values: Floats) -> Floats:
 def plain(sort: str, draw: Draw, loaded: Loaded | None = None) -> Sample:
     """Draw a body whose numbers are multiples of 1/64, with 11 to 16 rows."""
     drawn = sample(sort, draw)
-    step = max(float(on_grid(np.asarray(0.45 / max(np.linalg.norm(drawn.v0[-3:]), 0.4)))), 1 / GRID)
+    pace = max(float(np.linalg.norm(drawn.v0[-3:])), 0.4)
+    step = max(float(on_grid(np.asarray(0.45 / pace))), 1 / GRID)
     mass = on_grid(drawn.mass)
     body = replace(
         drawn,
@@ -34,7 +35,7 @@ def plain(sort: str, draw: Draw, loaded: Loaded | None = None) -> Sample:
         rotor=on_grid(drawn.rotor),
         v0=on_grid(drawn.v0),
         q0=on_grid(drawn.q0),
-        times=step * np.arange(int(draw.integers(11, 17))),
+        times=step * np.arange(int(draw.integers(11, 17)), dtype=np.float64),
         digits=int(draw.choice([9, 12])),
     )
     return loaded(body, draw) if loaded else body

@@ -113,8 +113,8 @@ def _replaced(name: str, row: int, value: Any) -> Callable[[Columns], Columns]:
 
 def _scaled(names: tuple[str, ...], factor: float) -> Callable[[Columns], Columns]:
     def changed(columns: Columns) -> Columns:
-        digits = lambda x: float(f"{x * factor:.12g}")  # noqa: E731 (one use, one line)
-        return {k: [digits(x) for x in v] if k in names else list(v) for k, v in columns.items()}
+        new = {name: [float(f"{x * factor:.12g}") for x in columns[name]] for name in names}
+        return {**columns, **new}
 
     return changed
 

@@ -2,7 +2,7 @@
 // Put your own simulator in place of `solve`; this one knows free bodies, wheels, constant moments.
 use std::{env, fs, process::exit};
 type Vector = [f64; 3];
-const KINDS: [&str; 3] = ["\"free\",", "\"wheels\",", "\"moment\","];
+const KINDS: [&str; 3] = ["\"kind\":\"free\"", "\"kind\":\"wheels\"", "\"kind\":\"moment\""];
 // A question is a line; the numbers of a name are the first list after it.
 fn numbers(line: &str, name: &str) -> Vec<f64> {
     let (_, list) = line.split_once(&format!("\"{name}\":")).expect(name);
