@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from builders.verdicts import row
 
 from taylor_verify.cli import main
 from taylor_verify.plotting.picture import Picture
@@ -172,7 +173,7 @@ def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
     """`--pages`, like no option at all, makes its page anew without a measurement, and links to it."""
     assert call(folder, "smallest", "--terms", "2") == 0
     SUM.write(folder, Sum(2, 7.0))
-    store.write(folder, [], [])
+    store.write(folder, [row()], [])
     assert call(folder, "--pages") == 0
     assert (folder / SMALLEST.path).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
     assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
@@ -187,7 +188,7 @@ def test_files_that_are_not_committed_are_made_when_they_are_missing(
     folder: Path, capsys: Captured
 ) -> None:
     """They are counted in words, and their pattern is one of those that git leaves out."""
-    store.write(folder, [], [])
+    store.write(folder, [row()], [])
     assert "data/smallest/" in bulk.patterns()
     assert "1 big files" in bulk.missing(folder, {}).data
     assert call(folder, "--missing") == 0
