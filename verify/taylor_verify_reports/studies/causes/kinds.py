@@ -343,7 +343,7 @@ KINDS: Final = (
     Kind(
         "times rounded",
         ("times",),
-        _at(lambda s, d, e: s.times + 4e-4 * d.uniform(0, 1, len(s.times))),
+        _at(lambda s, d, e: s.times + 4e-4 * d.uniform(-1, 1, len(s.times)) * (s.times > 0)),
     ),
     Kind("early clock", ("early", "another start"), _at(lambda s, d, e: s.times + 0.3 * e)),
     Kind("row repeated", ("repeat",), _repeated),

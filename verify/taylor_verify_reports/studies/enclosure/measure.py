@@ -12,8 +12,7 @@ from typing import Final
 
 from flint import arb, ctx
 
-from taylor_verify.exact.enclosure.placing import norm
-from taylor_verify.exact.enclosure.posing import posed
+from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.reading.reader import load
@@ -65,5 +64,10 @@ def _states(scene: Scene, times: Sequence[Fraction], bits: int) -> list[list[arb
 
 def _relative(deviations: Sequence[arb], truth: Sequence[arb], span: range) -> float:
     """Return the size of a vector of deviations over that of the true vector, in three digits."""
-    size = norm([truth[i] for i in span])
-    return float(f"{float(norm([deviations[i] for i in span]) / size):.2e}")
+    deviation, size = (_size([entries[i] for i in span]) for entries in (deviations, truth))
+    return float(f"{float(deviation / size):.2e}")
+
+
+def _size(entries: Sequence[arb]) -> arb:
+    """Return an upper bound of the length of a vector."""
+    return sum((e * e for e in map(arb.abs_upper, entries)), arb(0)).sqrt().abs_upper()
