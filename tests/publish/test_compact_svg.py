@@ -51,8 +51,8 @@ def points(path: str) -> list[tuple[str, list[float]]]:
     for letter, text in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
         numbers = [float(n) for n in re.findall(r"-?\d*\.?\d+(?:e[+-]?\d+)?", text)]
         if letter == "l":
-            x, y = commands[-1][1][-2:]
-            steps = np.cumsum(np.reshape(numbers, (-1, 2)), axis=0) + np.array([x, y])
+            before = np.array(commands[-1][1][-2:])
+            steps = np.cumsum(np.reshape(numbers, (-1, 2)), axis=0) + before
             numbers = steps.ravel().tolist()
         commands.append((letter, numbers))
     return commands
