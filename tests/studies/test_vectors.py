@@ -99,24 +99,24 @@ def test_the_right_answer_passes(question: Any, tmp_path: Path) -> None:
     columns = {k: v for k, v in question["truth"]["columns"].items() if k != "radius"}
     file = tmp_path / "right.json"
     file.write_text(json.dumps(columns), encoding="utf-8")
-    found = taylor_verify.check(read(question["scene"], question["name"]), str(file))
-    assert found.passed
-    assert not found.causes
+    judgement = taylor_verify.check(read(question["scene"], question["name"]), str(file))
+    assert judgement.passed
+    assert not judgement.causes
 
 
 @pytest.mark.parametrize("each", by_turns(wrong(), 30), ids=named)
 def test_check_says_what_is_expected(each: Wrong) -> None:
     """The verdict is the expected one, a named cause has an expected word and none has a false one."""
-    said = judged(asked()[each.question]["scene"], each.answer)
-    assert said.meets(each), said
+    words = judged(asked()[each.question]["scene"], each.answer)
+    assert words.meets(each), words
 
 
 def test_expectations_can_fail() -> None:
     """An answer is no other fault: the words of each are false for the next family."""
     each = next(each for each in wrong() if each.fault == "scalar last")
-    said = judged(asked()[each.question]["scene"], each.answer)
+    words = judged(asked()[each.question]["scene"], each.answer)
     other = Wrong(each.question, "RK4", "methods", {}, "fail", ("RK4",), never=("scalar last",))
-    assert not said.meets(other)
+    assert not words.meets(other)
     assert "scalar last" in forbidden("RK4", ("RK4", "attitude"))
 
 

@@ -90,7 +90,7 @@ NOT_KNOWN: Final = ("controller of another size", "controller a sample late", "m
 
 @dataclass(frozen=True)
 class FileFault:
-    """What is wrong with a right file: the change of its columns, and the verdict."""
+    """A fault of a right file: the change of its columns, and the verdict."""
 
     name: str
     verdict: str

@@ -1,4 +1,4 @@
-"""One hundred drawn questions, in numbers that are doubles and short decimals at once."""
+"""A hundred drawn questions, in numbers that are doubles and short decimals at once."""
 
 from __future__ import annotations
 

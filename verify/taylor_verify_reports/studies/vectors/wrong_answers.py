@@ -61,7 +61,7 @@ class Wrong:
 
 @dataclass(frozen=True)
 class Said:
-    """What `check` says of an answer: the worst verdict, and the sentences of causes and conventions."""
+    """Words of `check` about an answer: the worst verdict, the sentences of causes and conventions."""
 
     verdict: str
     sentences: tuple[str, ...] = ()
@@ -97,10 +97,10 @@ def wrong_answer(seed: int, number: int) -> tuple[Wrong | None, list[str]]:
         made = maker(draw, [*asked.values()])
         if made is None:
             continue
-        said = judged(asked[made.question].text, made.answer)
-        if said.has(made.never):
-            false.append(f"{made.fault} ({made.question}): {' | '.join(said.sentences)}")
-        elif said.meets(made):
+        words = judged(asked[made.question].text, made.answer)
+        if words.has(made.never):
+            false.append(f"{made.fault} ({made.question}): {' | '.join(words.sentences)}")
+        elif words.meets(made):
             return made, false
     return None, false
 
@@ -111,12 +111,12 @@ def judged(scene: str, answer: Columns) -> Said:
         file = Path(folder) / "answer.json"
         file.write_text(json.dumps(answer), encoding="utf-8")
         try:
-            found = taylor_verify.check(read(scene, "vector"), str(file), tolerance=TOLERANCE)
+            judgement = taylor_verify.check(read(scene, "vector"), str(file), tolerance=TOLERANCE)
         except Refused:
             return Said("refused")
-    findings = [*found.causes, *getattr(found, "conventions", ())]
+    findings = [*judgement.causes, *getattr(judgement, "conventions", ())]
     sentences = tuple(finding.sentence.partition("; leaves")[0] for finding in findings)
-    verdicts = {str(verdict.verdict) for verdict in found.verdicts}
+    verdicts = {str(verdict.verdict) for verdict in judgement.verdicts}
     worst = next((name for name in ("fail", "undecided") if name in verdicts), "pass")
     return Said(worst, sentences)
 
