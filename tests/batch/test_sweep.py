@@ -58,7 +58,7 @@ def invented(scene: Scene, solver: str, rung: str, *_: Any, **__: Any) -> Judgem
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows that are invented, for what is asked of the cuts and not of the numbers."""
-    monkeypatch.setattr(chunks, "run", invented)
+    monkeypatch.setattr(chunks, "judge_scene", invented)
 
 
 class Later(Executor):
@@ -141,7 +141,7 @@ def test_a_scene_that_breaks_the_code_stops_no_other(
             raise ArithmeticError("on purpose")
         return run(scene, *given, **options)
 
-    monkeypatch.setattr(chunks, "run", broken)
+    monkeypatch.setattr(chunks, "judge_scene", broken)
     result = swept(template, tmp_path / "out")
     assert result.bodies["undecided"] == 1
     (row,) = (row for row in rows(tmp_path / "out") if row["point"] == 3)

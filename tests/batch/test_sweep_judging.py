@@ -69,7 +69,7 @@ def test_causes_are_sought_for_the_worst_cases_alone(
         explained.extend([scene.name] * causes)
         return run(scene, *given, causes=False)
 
-    monkeypatch.setattr(chunks, "run", counted)
+    monkeypatch.setattr(chunks, "judge_scene", counted)
     with ThreadPoolExecutor(1) as threads:
         result = swept(
             template,

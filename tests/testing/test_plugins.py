@@ -203,7 +203,7 @@ def test_a_garbled_list_of_entry_points_harms_nobody(
     assert "same" in [plugin.name for plugin in plugins.plugins("solvers")]
     assert "the entry points of tv-garbled cannot be read" in caplog.text
     messages = [record.getMessage() for record in caplog.records]
-    assert any("RuntimeError: x ::error::boo" in message for message in messages)
+    assert any(r"RuntimeError: x\n::error::boo" in message for message in messages)
     assert any("to be module:object, got 'math:y z'" in message for message in messages)
 
 

@@ -100,6 +100,11 @@ class Body(Parted):
         return {}
 
     @property
+    def added_mass(self) -> Matrix | None:
+        """The part of the mass matrix that a scene calls added mass; None where it names none."""
+        return None
+
+    @property
     def has_velocities(self) -> bool:
         """True if the linear velocity belongs to the motion: U and Omega are linear in the momenta."""
         return False
@@ -226,6 +231,11 @@ class ImmersedBody(Body):
     def energy_matrix(self) -> Matrix:
         """The 6x6 matrix [[A, B], [B^T, C]]: (U, Omega) = energy_matrix (x, y)."""
         return tensors.blocks(self.linear, self.coupling, self.angular)
+
+    @property
+    def added_mass(self) -> Matrix | None:
+        """The part of the mass matrix that a scene calls added mass; None where it names none."""
+        return self.added
 
     @cached_property
     def mass_matrix(self) -> Matrix:

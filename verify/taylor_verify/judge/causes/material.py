@@ -29,7 +29,7 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import Body, ImmersedBody
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
@@ -62,7 +62,7 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     mass = energy if given.model == "euler" else np.linalg.inv(energy)
     n, loads = len(mass), given.body.loads
     constant = [entry for name in body.load_names() for entry in parts[name]]
-    added = body.added if isinstance(body, ImmersedBody) else None
+    added = body.added_mass
     equations = replace(
         Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
         load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
