@@ -182,7 +182,7 @@ def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
 
 
 def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path: Path) -> None:
-    """A Runge-Kutta answer is right to its own digits and no further; the cause is the order of its steps."""
+    """A Runge-Kutta answer is right to its own digits; the cause of its error is the order of its steps."""
     scene = with_rows(RIGID)
     file = written(tmp_path / "steps.csv", scene, by_steps(scene, of_text(scene)))
     assert check(scene, file, partial=True, tolerance=TOLERANCE).passed
