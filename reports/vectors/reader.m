@@ -1,4 +1,4 @@
-% Compares a solver with the right answers: octave reader.m vectors.json 1e-9
+% Compares a solver with the right answers: octave reader.m vectors.json 1e-7
 % Put your own simulator in place of `solve`; this one knows free bodies, wheels and constant moments.
 1;
 

@@ -120,7 +120,9 @@ def _document(folder: Path, name: str) -> dict[str, Any]:
         board, entries, mine = own.read(folder, name)
     published = 0 if board is None else len(board.study.rows)
     ours = own.with_own(board, mine, name)
-    files = [stored.places(name).trajectories if row.is_stored else "" for row in ours.study.rows]
+    place = stored.places(name).trajectories
+    there = place if (folder / place).is_file() else ""
+    files = [there if row.is_stored else "" for row in ours.study.rows]
     files[published:] = [os.path.relpath(own.file_of(folder, name, a), folder) for a in mine]
     rows = [
         _row(number, row, file)
@@ -185,6 +187,8 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
     check = f"taylor-verify check FILE --scene {answer.row.scene} --rung {answer.row.rung}"
     if options.out is None:
         return Answer(PASS, columns, lambda: answer.to_bytes().decode(), [check])
+    if Path(options.out).suffix != ".json":
+        raise WrongCall(f"expected a name that ends in .json, got {options.out!r:.60} @ --out")
     file = writable_file(options.out, "--out")
     file.write_bytes(answer.to_bytes())
     return Answer(

@@ -256,7 +256,7 @@ def _frame_of(file: TrajectoryFile) -> str:
 
 def _ratio(rows: Floats, columns: Floats) -> float:
     """Return the factor of a reading, by the sizes of the rows."""
-    before, after = float(np.nanmax(np.abs(columns))), float(np.nanmax(np.abs(rows)))
+    before, after = (float(np.nanmax(np.abs(each), initial=0.0)) for each in (columns, rows))
     return after / before if before > 0 else 1.0
 
 

@@ -17,8 +17,10 @@ from taylor_verify.records.answers import MissingLoad
 
 _ROUNDS: Final = 3
 _SHIFT: Final = 1e-3
-# A load stands out if it is so many times what the rounding of the rows makes.
+# A load stands out if it is so many times what the rounding of the rows makes, and at least this part of
+# the largest: what is less may be the noise of the method.
 _STANDS_OUT: Final = 30.0
+_PART: Final = 1e-4
 # The rows must follow to this part of their defects.
 _LEAVES: Final = 1e-3
 
@@ -32,7 +34,9 @@ def missing_load(answer: Answer) -> tuple[MissingLoad, ...]:
     if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
         return ()
     unit = np.abs(np.linalg.inv(slopes)) @ answer.rounding
-    clear = np.flatnonzero(np.any(np.abs(load) > _STANDS_OUT * unit, axis=1))
+    sizes = np.linalg.norm(load / Sizes.of(answer).load, axis=1)
+    is_clear = np.any(np.abs(load) > _STANDS_OUT * unit, axis=1) & (sizes > _PART * np.max(sizes))
+    clear = np.flatnonzero(is_clear)
     times = (answer.times + answer.right.start).tolist()
     return tuple(MissingLoad(times[k], times[k + 1], tuple(load[k].tolist())) for k in clear)
 

@@ -26,12 +26,25 @@ def half_units(file: TrajectoryFile) -> dict[str, float]:
     relative = _SINGLE if file.is_single_precision else _DOUBLE
     entries = (e for rows in file.groups.values() for column, _ in rows.written() for e in column)
     digits, decimals = _longest(entries)
-    units = {}
-    for name, rows in file.groups.items():
-        values = rows.doubles()
-        largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
-        units[name] = max(relative * largest, _printed(largest, digits, decimals))
-    return units
+    return {
+        name: max(relative * size, _printed(size, digits, decimals))
+        for name, size in _largest(file).items()
+    }
+
+
+def relative_unit(file: TrajectoryFile) -> float:
+    """Return the largest half unit of a group of columns, relative to its largest number."""
+    units, sizes = half_units(file), _largest(file)
+    return max((units[name] / size for name, size in sizes.items() if size), default=0.0)
+
+
+def _largest(file: TrajectoryFile) -> dict[str, float]:
+    """Return the size of the largest number of each group."""
+    columns = {name: rows.doubles() for name, rows in file.groups.items()}
+    return {
+        name: float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
+        for name, values in columns.items()
+    }
 
 
 def _printed(largest: float, digits: int, decimals: int) -> float:

@@ -244,8 +244,9 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     assert q is not None
     assert truth is not None
     yield Reading("is the conjugate: it takes space to body axes", 0, conjugate(truth))
-    yield Reading("has the scalar last", 0, np.roll(truth, -1, axis=1))
-    yield Reading("has the scalar last, read as first", 0, np.roll(truth, 1, axis=1))
+    last, first = np.roll(truth, -1, axis=1), np.roll(truth, 1, axis=1)
+    yield Reading("has the scalar last, read as first", 0, last)
+    yield Reading("has the scalar first, read as last", 0, first)
     for words, rows in (("", truth), ("is the conjugate, and ", conjugate(truth))):
         for side, turn in (
             ("space", times(q, conjugate(rows))),
@@ -256,8 +257,14 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
             name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
             turned = (mean, rows) if side == "space" else (rows, mean)
             yield Reading(name, 3, times(*turned))
-    yield from _both_frames(q, truth)
+    # A quaternion with its scalar in the wrong place is that of other frames too, for a reason of its own.
+    if not any(_is_near(q, rows) for rows in (last, first)):
+        yield from _both_frames(q, truth)
     yield _frame_that_turns(answer, q, truth)
+
+
+def _is_near(q: Floats, rows: Floats) -> bool:
+    return bool(np.all(np.abs(np.sum(q * rows, axis=1)) > 1 - _NEAR))
 
 
 def _mean(turns: Floats) -> Floats:

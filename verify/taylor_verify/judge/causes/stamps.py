@@ -18,6 +18,9 @@ _ROUNDINGS: Final = 10.0
 _LEAVES: Final = 1e-2
 _NEAR: Final = 1e-5
 _PATTERN: Final = 1e-3
+# Offsets are in proportion to time, or steps are equal, to these parts of the largest offset.
+_STRAIGHT: Final = 1e-2
+_EQUAL: Final = 0.1
 _SCATTER: Final = "times scatter"
 
 
@@ -85,20 +88,31 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
             f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
         )
     return (
-        _decimals(answer, size)
+        _decimals(answer, late, size)
         or _single_precision(times, times + late, size)
         or _factor_or_jumps(answer, late, size, spacing)
     )
 
 
-def _decimals(answer: Answer, size: float) -> str | None:
-    digits = answer.decimals
-    if digits is None:
+def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
+    """Return the words for equal steps whose times are rounded; a clock is late in proportion to time."""
+    digits, times = answer.decimals, answer.times
+    if digits is None or not _are_equal_steps(times + late, size) or _is_line(times, late, size):
         return None
     unit = 10.0**-digits
     if digits <= 6 and 0.05 * unit < size <= 0.51 * unit:
         return f"times are rounded to {digits} decimals; no error is left beyond that"
     return None
+
+
+def _are_equal_steps(exact: Floats, size: float) -> bool:
+    steps = np.linspace(exact[0], exact[-1], len(exact))
+    return bool(np.max(np.abs(exact - steps)) <= _EQUAL * size)
+
+
+def _is_line(times: Floats, late: Floats, size: float) -> bool:
+    line = np.polynomial.Polynomial.fit(times, late, 1)
+    return bool(np.max(np.abs(late - line(times))) < _STRAIGHT * size)
 
 
 def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
@@ -113,8 +127,7 @@ def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
 
 def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) -> str | None:
     times = answer.times
-    line = np.polynomial.Polynomial.fit(times, late, 1)
-    if np.max(np.abs(late - line(times))) < 1e-2 * size:
+    if _is_line(times, late, size):
         return None
     jumps = np.flatnonzero(np.abs(np.diff(late)) > 0.2 * size)
     if 0 < len(jumps) <= max(3, len(times) // 50) and answer.stride > 0:

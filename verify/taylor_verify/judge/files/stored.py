@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.printed import relative_unit
 from taylor_verify.judge.conventions.fits import Finding
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.judgement import Judgement
@@ -73,7 +74,7 @@ def storing(file: TrajectoryFile, rung: Rung) -> Storing | None:
         f"no number is written with more than {digits} significant digits, where "
         f"{rung.name} has {needed}: what the printing cut off counts as error"
     )
-    return Storing(ErrorKind.PRINTED, 0.5 * 10.0 ** (1 - digits), note)
+    return Storing(ErrorKind.PRINTED, relative_unit(file), note)
 
 
 def single_precision_note(rung: Rung, is_single: Callable[[], bool]) -> str:

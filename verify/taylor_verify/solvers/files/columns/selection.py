@@ -161,7 +161,7 @@ class _Chooser:
         """Keep the attitudes of the strongest rank and the best frame, and doubts that these settle."""
         every = [self.chosen[group] for group in ATTITUDES if group in self.chosen]
         sure = [choice for choice in every if not choice.doubt]
-        is_usual = not any(choice.rank < Rank.PROGRAM for choice in sure)
+        is_usual = not any(choice.rank is Rank.ASKED for choice in sure)
         best = min((choice.rank for choice in sure), default=Rank.BEHIND_A_WORD)
         beside = range(Rank.BEHIND_A_WORD) if is_usual else ()
         strongest = self._of_best_frame([c for c in sure if c.rank == best or c.rank in beside])
@@ -171,7 +171,7 @@ class _Chooser:
                 self._doubt_one(choice)
             elif choice not in strongest and not (choice.doubt and is_usual):
                 del self.chosen[choice.group]
-        if len(strongest) > 1 and best is Rank.OURS:
+        if sum(choice.rank is Rank.OURS for choice in strongest) > 1:
             got = "q0 q1 q2 q3 and r11 ... r33"
             self.faults.add("the attitude once", got, self.place, "keep one of them")
 
