@@ -96,7 +96,7 @@ def test_no_engine_is_lost() -> None:
 
 @pytest.mark.parametrize("name", BOARDS)
 def test_the_verb_shows_every_published_board(name: str) -> None:
-    """A board has its advice for each job, and every stored row its own place in a file."""
+    """A board has its advice for each job, and every stored row its own place in a file, if that is there."""
     parser = argparse.ArgumentParser()
     verb.add(parser)
     asked = parser.parse_args(["--from", str(REPORTS), "--board", name])
@@ -104,5 +104,6 @@ def test_the_verb_shows_every_published_board(name: str) -> None:
     jobs = entry_list(name).jobs
     assert [job for job in jobs if not any(f"or {job} take" in a for a in document["advice"])] == []
     placed = [row for row in document["rows"] if row["array"]]
-    assert {row["file"] for row in placed} == {stored.places(name).trajectories}
+    place = stored.places(name).trajectories
+    assert {row["file"] for row in placed} == {place if (REPORTS / place).is_file() else None}
     assert len({(row["array"], row["place"]) for row in placed}) == len(placed) > 100
