@@ -96,7 +96,7 @@ def test_no_engine_is_lost() -> None:
 
 @pytest.mark.parametrize("name", BOARDS)
 def test_the_verb_shows_every_published_board(name: str) -> None:
-    """A board has its advice for each job, and each stored row a place of its own in a file, if it is there."""
+    """A board has its advice for each job, and each stored row a place of its own in a file."""
     parser = argparse.ArgumentParser()
     verb.add(parser)
     asked = parser.parse_args(["--from", str(REPORTS), "--board", name])
