@@ -30,8 +30,9 @@ from taylor_verify.records.version import __version__
 
 _VERB: Final = "VERB"
 COLOURS: Final = ("auto", "always", "never")
-# What this distribution publishes is not on the first page of help.
+# Of the verbs that our second package adds, those that publish are not on the first page of help.
 _OWN_PACKAGE: Final = "taylor-verify"
+_LISTED: Final = {"board": "show the boards of engines, and put one of yours on them"}
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
 _NEGATIVE_TIME = re.compile(r"-[\d.]")
@@ -325,7 +326,8 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         if plugged.name in words:
             add(_verb_parser(own, plugged.name, *described(plugged)), plugged)
         elif package_of(plugged) == _OWN_PACKAGE:
-            own.add_parser(plugged.name)
+            listed = _LISTED.get(plugged.name)
+            own.add_parser(plugged.name, **({"help": listed} if listed else {}))
         else:
             own.add_parser(plugged.name, help=f"a verb of the package {package_of(plugged)}")
     return parser

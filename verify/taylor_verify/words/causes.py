@@ -50,6 +50,8 @@ def with_numbers(
 ) -> str:
     """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
     values = [float(number) for number in numbers]
+    if name == "clock" and abs(values[0]) < _NOTHING:
+        return "clock = 0: the motion stands still"
     if name == "clock" and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
     if labels:
