@@ -9,6 +9,8 @@ from typing import Any, Final
 from taylor_verify.records.answers import MissingLoad
 
 _NOTHING: Final = 1e-7
+# A clock with a smaller factor stands still; nanoseconds for seconds are 1e-9.
+_STILL: Final = 1e-12
 # A change below this part of the largest one is none: the entry agrees.
 _AGREES: Final = 1e-4
 _MOST_DIGITS: Final = 15
@@ -50,7 +52,7 @@ def with_numbers(
 ) -> str:
     """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
     values = [float(number) for number in numbers]
-    if name == "clock" and abs(values[0]) < _NOTHING:
+    if name == "clock" and abs(values[0]) < _STILL:
         return "clock = 0: the motion stands still"
     if name == "clock" and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
