@@ -325,9 +325,10 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     for plugged in verbs(OWN_VERBS) if first not in OWN_VERBS else ():
         if plugged.name in words:
             add(_verb_parser(own, plugged.name, *described(plugged)), plugged)
+        elif plugged.name in _LISTED:
+            own.add_parser(plugged.name, help=_LISTED[plugged.name])
         elif package_of(plugged) == _OWN_PACKAGE:
-            listed = _LISTED.get(plugged.name)
-            own.add_parser(plugged.name, **({"help": listed} if listed else {}))
+            own.add_parser(plugged.name)
         else:
             own.add_parser(plugged.name, help=f"a verb of the package {package_of(plugged)}")
     return parser
