@@ -1,4 +1,7 @@
-"""The study of vectors: questions with right answers, wrong answers, and readers in four languages."""
+"""The study of vectors: questions with right answers, and wrong answers.
+
+Their schema and the readers in four languages are written by hand where they are published.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +13,13 @@ from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 FOLDER: Final = "vectors"
 _SEED: Final = 48
-BESIDE: Final = Path(__file__).with_name("published")
 
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify_reports.studies.vectors.vectors_document import written
 
     texts, messages = written(_SEED, progress)
-    beside = {file.name: file.read_text(encoding="utf-8") for file in sorted(BESIDE.iterdir())}
-    named = {f"{FOLDER}/{name}": text for name, text in (texts | beside).items()}
+    named = {f"{FOLDER}/{name}": text for name, text in texts.items()}
     return Measured(replace_files(folder, named), messages)
 
 
