@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
@@ -53,5 +53,4 @@ def earlier(baseline: str | PathLike[str] | Mapping[str, Any] | None, gate: str)
 def compared(judged: Judgement, before: Earlier, gate: str) -> ComparedJudgement:
     """Return a judgement with its comparison."""
     comparison = before.compare_as_baseline(judged, gate == "baseline")
-    own = {each.name: getattr(judged, each.name) for each in fields(Judgement)}
-    return ComparedJudgement(**own, comparison=comparison)
+    return ComparedJudgement(**judged.common, comparison=comparison)

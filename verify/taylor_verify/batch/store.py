@@ -18,7 +18,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -110,10 +110,7 @@ def unfinished(asked: Sequence[Job], out: Path | None, resume: bool) -> Iterator
 
 def to_bytes(judgements: Sequence[Judgement]) -> bytes:
     """Return the content of a file: the digest of the rest, then JSON; of a judged file its verdicts."""
-    from taylor_verify.judge.judgement import Judgement
-
-    names = [field.name for field in fields(Judgement)]
-    rows = [{name: getattr(each, name) for name in names} for each in judgements]
+    rows = [judged.common for judged in judgements]
     # An error that is not finite stays what it is: Python reads its own NaN and Infinity.
     text = json.dumps(to_builtins(rows, enc_hook=tuple)).encode()
     return _digest(text).encode() + b"\n" + text

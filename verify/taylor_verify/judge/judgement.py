@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.costs import Costs
@@ -67,6 +67,11 @@ class Judgement:
     def times(self) -> Sequence[float]:
         """The times of the rows that were compared; empty where nothing was."""
         return () if self.record is None else self.record.times
+
+    @property
+    def common(self) -> dict[str, Any]:
+        """The fields that every judgement has, by name, without those of a judged file."""
+        return {each.name: getattr(self, each.name) for each in fields(Judgement)}
 
     def __getitem__(self, quantity: str) -> Verdict:
         """Return the verdict on a quantity, as ``judgement["omega"]``; KeyError with those there are."""

@@ -97,7 +97,11 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
 def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
     """Return the words for equal steps whose times are rounded; a clock is late in proportion to time."""
     digits, times = answer.decimals, answer.times
-    if digits is None or not _are_equal_steps(times + late, size) or _is_line(times, late, size):
+    if (
+        digits is None
+        or not _are_equal_steps(times + late, _EQUAL * size)
+        or _is_line(times, late, size)
+    ):
         return None
     unit = 10.0**-digits
     if digits <= 6 and 0.05 * unit < size <= 0.51 * unit:
@@ -105,9 +109,9 @@ def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
     return None
 
 
-def _are_equal_steps(exact: Floats, size: float) -> bool:
+def _are_equal_steps(exact: Floats, apart: float) -> bool:
     steps = np.linspace(exact[0], exact[-1], len(exact))
-    return bool(np.max(np.abs(exact - steps)) <= _EQUAL * size)
+    return bool(np.max(np.abs(exact - steps)) <= apart)
 
 
 def _is_line(times: Floats, late: Floats, size: float) -> bool:
@@ -116,10 +120,10 @@ def _is_line(times: Floats, late: Floats, size: float) -> bool:
 
 
 def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
+    if not _are_equal_steps(exact, _PATTERN * size):
+        return None
     count = len(times) - 1
     h = (exact[-1] - exact[0]) / count
-    if np.max(np.abs(exact - exact[0] - h * np.arange(count + 1))) > _PATTERN * size:
-        return None
     sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
     is_sum = np.max(np.abs(times[1:] - times[0] - sums)) < _PATTERN * size
     return "times are a running sum in float32" if is_sum else None
