@@ -110,8 +110,10 @@ def under(load: str, entry: Entry, *errors: float) -> list[EngineRow]:
 
 def test_a_way_of_giving_a_load_is_warned_of() -> None:
     """The paragraph of a job has the best setting with its way, and the least error of a far worse way."""
-    held = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-3)
-    (sentence,) = advised(*under("asked for in each stage", SPINNER, 1e-3, 1e-6, 1e-9), *held)[:1]
+    each_step = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-3)
+    (sentence,) = advised(*under("asked for in each stage", SPINNER, 1e-3, 1e-6, 1e-9), *each_step)[
+        :1
+    ]
     assert "a step of 0.025 (the load asked for in each stage): omega and attitude" in sentence
     worse = "Never with the load held over each step (**Wobbler** with splitting and a step of 0.025 has"
     assert f"{worse} 1.00e-3)" in sentence
