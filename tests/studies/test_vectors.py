@@ -50,7 +50,7 @@ def texts(value: Any) -> list[str]:
 
 
 def test_the_file_is_of_its_schema_and_small() -> None:
-    """The file has a hundred questions and three hundred wrong answers; six files have two megabytes at most."""
+    """The file has a hundred questions and three hundred wrong answers; six files have two megabytes."""
     schema = json.loads((PUBLISHED / "schema.json").read_text(encoding="utf-8"))
     assert not [*Draft202012Validator(schema).iter_errors(vectors())]
     assert (len(asked()), len(wrong())) == (100, 300)
