@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -105,6 +106,24 @@ def test_a_spheroid_keeps_its_digits(route: str, damping: str, t: int, x1: str) 
     fine = printed(body, "arb", t, 100)
     check_digits(printed(body, route, t, 40), fine)
     assert abs(Fraction(fine["linear_impulse"][0]) - Fraction(x1)) <= unit(x1)
+
+
+TURNS: Final[dict[str, Callable[[], mpf]]] = {
+    'euler = { sequence = "zyx", degrees = [10, 5, 0] }': lambda: (
+        mp.cos(mp.pi / 18) * mp.cos(mp.pi / 36)
+    ),
+    "rotation_vector = [1, 0, 1]": lambda: (1 + mp.cos(mp.sqrt(2))) / 2,
+    "axis_angle = { axis = [1, 1, 1], degrees = 90 }": lambda: mpf(1) / 3,
+}
+
+
+@pytest.mark.parametrize("route", ROUTES)
+@pytest.mark.parametrize("turn", TURNS)
+def test_an_attitude_by_angles_is_that_of_the_angles(route: str, turn: str) -> None:
+    """Two hundred digits of R are those of the angles, where a solver's quaternion has 120."""
+    row = printed(scene("inertia = [1, 2, 3]", f"omega = [0, 0, 1]\n{turn}"), route, 0, 200)
+    with mp.workdps(220):
+        assert_equal([row["attitude"][0][0]], [TURNS[turn]()], 199)
 
 
 ELLIPSOID: Final = "ellipsoid = { semi_axes = [4, 6, 9], density = 1, fluid_density = 0 }"

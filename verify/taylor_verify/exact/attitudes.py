@@ -15,6 +15,7 @@ import numpy as np
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import ball, midpoint, upper
+from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.numbers.precision import exact_value
 
 Array = np.ndarray[Any, Any]
@@ -66,5 +67,5 @@ def in_form(form: str, matrix: Array, errors: Array, digits: int) -> tuple[Array
 
 
 def _ball(value: Any, error: Any) -> arb:
-    exact = value if isinstance(value, Fraction) else exact_value(value)
+    exact = value if isinstance(value, Fraction | Irrational) else exact_value(value)
     return ball(exact) + arb(0, ball(exact_value(error)))

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
+from flint import ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact.balls import ball, midpoint
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Quaternion
+
+_SPARE_BITS: Final = 16
 
 Frame = list[list[mpf]]  # rows of a 3x3 matrix
 
 
 def start_frame(quaternion: Quaternion) -> Frame:
-    """The rotation of a quaternion of any length but zero, rational before it is rounded."""
-    return [[mp.convert(entry) for entry in row] for row in rotation_matrix(quaternion)]
+    """The rotation of a quaternion of any length but zero, exact before it is rounded."""
+    with ctx.workprec(mp.prec + _SPARE_BITS):
+        return [[midpoint(ball(entry)) for entry in row] for row in rotation_matrix(quaternion)]
 
 
 def turn(axis: Sequence[mpf], angle: mpf) -> Frame:

@@ -17,7 +17,7 @@ from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
 from taylor_verify.exact.written import as_written
-from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.numbers.irrational import Irrational, Undecided
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
@@ -185,12 +185,20 @@ def enclosed_number(value: Any, error: mpf, digits: int, least: int) -> tuple[st
 
 
 def _start(scene: Scene) -> dict[str, np.ndarray[Any, Any]]:
-    """Return the initial state by name, as rationals; a zero of the start is exactly zero."""
+    """Return the initial state by name, exactly, without what may have a zero that is not proven."""
     initial, kind = scene.initial, kind_of(scene.body)
     z = kind.state(initial)
     state: dict[str, Any] = {name: z[3 * k : 3 * k + 3] for k, name in enumerate(kind.moving)}
     state |= {"attitude": rotation_matrix(initial.attitude), "centre": kind.centre(initial)}
-    return {name: np.array(values, dtype=object) for name, values in state.items()}
+    arrays = {name: np.array(values, dtype=object) for name, values in state.items()}
+    return {name: array for name, array in arrays.items() if _zeros_are_proven(array)}
+
+
+def _zeros_are_proven(array: Array) -> bool:
+    try:
+        return bool(array.astype(bool).size)
+    except Undecided:
+        return False
 
 
 def _regime(scene: Scene, exact: Solution) -> str:

@@ -19,8 +19,8 @@ from typing import Any, Final
 
 from flint import Ordering, arb, ctx, fmpz_mpoly, fmpz_mpoly_ctx
 
-# More constants than any scene has: pi, and two of Lamb's three integrals.
-_PLACES: Final = fmpz_mpoly_ctx.get(("c1", "c2", "c3"), Ordering.lex)
+# More constants than any scene has: pi, two of Lamb's three integrals, and three tangents or roots.
+_PLACES: Final = fmpz_mpoly_ctx.get(("c1", "c2", "c3", "c4", "c5", "c6"), Ordering.lex)
 _ONE: Final = _PLACES.constant(1)
 _FIRST_GUARD_BITS: Final = 32
 _SIGN_BITS: Final = 8
@@ -58,8 +58,8 @@ class Pi(Constant):
 class Irrational:
     """A number of the field of its ``constants``. It adds, multiplies and compares with rationals too.
 
-    Two numbers fit together if the constants of one begin with those of the other. Comparisons, ``bool``
-    and ``abs`` raise Undecided where a sign is not proven.
+    A number of two such fields lies in the field of all their constants. Comparisons, ``bool`` and ``abs``
+    raise Undecided where a sign is not proven.
     """
 
     __slots__ = ("__dict__", "constants", "denominator_polynomial", "numerator_polynomial")
@@ -114,13 +114,23 @@ class Irrational:
         constants = self.constants
         if isinstance(other, Irrational):
             constants = _joined(constants, other.constants)
-            c, d = other.numerator_polynomial, other.denominator_polynomial
+            c, d = other._polynomials_in(constants)
         elif isinstance(other, Rational):
             c, d = _constant(other.numerator), _constant(other.denominator)
         else:
             return NotImplemented
         a, b = self.numerator_polynomial, self.denominator_polynomial
         return _number(constants, *rule(a, b, c, d))
+
+    def _polynomials_in(self, constants: tuple[Constant, ...]) -> tuple[fmpz_mpoly, fmpz_mpoly]:
+        """Return numerator and denominator as polynomials in these constants, which hold its own."""
+        above, below = self.numerator_polynomial, self.denominator_polynomial
+        if constants[: len(self.constants)] == self.constants:
+            return above, below
+        variables = _PLACES.gens()
+        places = [variables[constants.index(constant)] for constant in self.constants]
+        unused = variables[len(places) :]
+        return above.compose(*places, *unused), below.compose(*places, *unused)
 
     # Comparisons.
 
@@ -280,11 +290,10 @@ def _from_terms(
 
 
 def _joined(first: tuple[Constant, ...], second: tuple[Constant, ...]) -> tuple[Constant, ...]:
-    """Return the longer list of constants, which begins with the shorter one."""
-    longer, shorter = (first, second) if len(first) >= len(second) else (second, first)
-    if longer[: len(shorter)] != shorter:
-        raise ValueError(f"expected numbers of one field, got {first} and {second}")
-    return longer
+    """Return the constants of both, those of the first one before the others."""
+    if first[: len(second)] == second:
+        return first
+    return tuple(dict.fromkeys(first + second))
 
 
 def _compared(difference: Any, question: Callable[[Any], bool]) -> Any:

@@ -1,52 +1,104 @@
-"""Rotations in rationals: quaternions of any length, scalar first, and their exact matrices.
+"""Rotations by angles: quaternions of any length, scalar first, and their exact matrices.
 
-The sine and cosine of a rational angle are irrational. But the matrix of a quaternion of rational
-components is rational, and orthogonal exactly, whatever the length of the quaternion. So the quaternion
-of an angle is formed with some bits to spare, its largest component made 1, and the others rounded, to 20
-decimals where a file is imported; everything after that is exact, and a tensor that is turned by it keeps
-its principal moments.
+The sine and cosine of a rational angle are irrational. But a quaternion may have any length, and that of an
+angle is (1, c v) with c the tangent of half the angle over the length of the axis v: one irrational number
+a turn, and none for quarter turns. So products of turns are exact. Where a file is imported, the largest
+component is made 1 and the others are rounded to 20 decimals; the matrix of rational components is rational
+and orthogonal exactly, so that a tensor that is turned by it keeps its principal moments.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from math import pi, remainder
-from typing import Any, Final, NamedTuple
+from math import isqrt, pi, remainder
+from typing import Any, Final, NamedTuple, final
+
+from flint import arb, ctx, fmpq
 
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import exact_value, float_text
+from taylor_verify.numbers.irrational import PI, Constant, Irrational, generator
+from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.motion import Quaternion
 
 DECIMALS: Final = 20
-_BITS: Final = 500
 # An angle written with four digits, 1.571, is as near as this to a quarter turn.
 _NEAR: Final = 3e-4
+# Degrees of a quarter turn; a half turn and a whole one in quarters.
+_QUARTER: Final = 90
+_HALF: Final = 2
+_WHOLE: Final = 4
 AXES: Final = tensors.diagonal((Fraction(1),) * 3)
 
 
 class Turn(NamedTuple):
-    """A turn by an angle about an axis of any length but zero."""
+    """A turn by an angle, a Fraction or an Irrational, about an axis of any length but zero."""
 
     axis: Vector
-    angle: Fraction
+    angle: Any
     degrees: bool = False
 
 
-def combined(turns: Iterable[Turn], parts: int = 10**DECIMALS) -> Quaternion:
-    """Return the product of the turns, the last one done first: each is about an axis that moves along.
+@final
+@dataclass(frozen=True)
+class Root(Constant):
+    """The square root of a positive rational number."""
 
-    Each component is a whole number over ``parts``, at most 2^400, and the largest is 1. Turns by zero, and
-    whole quarter turns in degrees about body axes, are exact.
+    square: Fraction
+
+    def __str__(self) -> str:
+        return "roots"
+
+    def evaluated(self) -> arb:
+        return _ball(self.square).sqrt()
+
+
+@final
+@dataclass(frozen=True)
+class HalfTangent(Constant):
+    """The tangent of half an angle, over the length of the axis."""
+
+    angle: Any
+    degrees: bool
+    square: Fraction
+
+    def __str__(self) -> str:
+        return "tangents"
+
+    def evaluated(self) -> arb:
+        half = _ball(self.angle) / 2
+        if self.degrees:
+            half *= arb.pi() / (_HALF * _QUARTER)
+        return half.tan() / _ball(self.square).sqrt()
+
+
+def length(axis: Vector) -> Any:
+    """Return the length of a vector exactly, as a Fraction or an Irrational."""
+    square = tensors.dot(axis, axis)
+    root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
+    return root if root * root == square else generator((Root(square),), 0)
+
+
+def product(turns: Iterable[Turn]) -> tuple[Any, ...]:
+    """Return the exact quaternion of the turns, the last one done first.
+
+    Each turn is about an axis that moves along. The sign is that of each one's cos(angle/2), sin(angle/2).
     """
-    from mpmath import mp
+    whole: Sequence[Any] = reduce(times, map(_quaternion, turns))
+    return tuple(whole)
 
-    with mp.workprec(_BITS):
-        q = reduce(times, map(_half_angle, turns))
-        largest = max(q, key=abs)
-        w, x, y, z = (Fraction(round(exact_value(part / largest) * parts), parts) for part in q)
+
+def combined(turns: Iterable[Turn]) -> Quaternion:
+    """Return the product of the turns, its largest component made 1, the others rounded to 20 decimals.
+
+    Turns by zero, and whole quarter turns in degrees about body axes, are exact.
+    """
+    q = product(turns)
+    largest = max(q, key=lambda part: abs(float(part)))
+    w, x, y, z = (round(_near(part / largest), DECIMALS) for part in q)
     return (w, x, y, z)
 
 
@@ -84,9 +136,9 @@ def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, .
     unit = "degrees" if degrees else "radians"
     text = ", ".join(map(float_text, angles))
     remarks = [
-        f"The tensor was turned by {name} = ({text}) {unit}: their quaternion is formed with {_BITS} bits, "
-        f"its largest component made 1, and rounded to {DECIMALS} decimals (quarter turns in degrees are "
-        "exact). The turn by it is exact, so that the principal moments are those of the file."
+        f"The tensor was turned by {name} = ({text}) {unit}: the largest component of their quaternion is "
+        f"made 1, and the others are rounded to {DECIMALS} decimals (quarter turns in degrees are exact). "
+        "The turn by it is exact, so that the principal moments are those of the file."
     ]
     if not degrees:
         remarks += [
@@ -97,16 +149,46 @@ def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, .
     return tuple(remarks)
 
 
-def _half_angle(turn: Turn) -> Sequence[Any]:
-    """Return the quaternion of one turn at the ambient precision of mpmath."""
-    from mpmath import mp
+def _quaternion(turn: Turn) -> Sequence[Any]:
+    """Return a positive multiple of (cos(angle/2), sin(angle/2) v/|v|), v the axis of the turn."""
+    if _quarters(turn) % _WHOLE == _HALF:
+        is_first = _quarters(turn) % (2 * _WHOLE) == _HALF
+        return (Fraction(0), *tensors.scaled(Fraction(1 if is_first else -1), turn.axis))
+    cosine = Fraction(-1 if _half_turns(turn) % 2 else 1)
+    return (cosine, *tensors.scaled(cosine * _tangent(turn), turn.axis))
 
-    half = mp.convert(turn.angle) / 2
-    if turn.degrees:
-        half *= mp.degree
-    share = mp.sin(half) / mp.sqrt(mp.convert(tensors.dot(turn.axis, turn.axis)))
-    x, y, z = (share * mp.convert(entry) for entry in turn.axis)
-    return (mp.cos(half), x, y, z)
+
+def _quarters(turn: Turn) -> Any:
+    """Return the angle in quarter turns if it is in degrees; radians are never whole quarters: 1/2."""
+    return turn.angle / _QUARTER if turn.degrees else Fraction(1, 2)
+
+
+def _half_turns(turn: Turn) -> int:
+    """Return the whole number of half turns nearest to half the angle, proven."""
+    whole = _WHOLE * _QUARTER if turn.degrees else 2 * PI
+    return int(abs(turn.angle) / whole + Fraction(1, 2))
+
+
+def _tangent(turn: Turn) -> Any:
+    """Return tan(angle/2) over the length of the axis."""
+    quarters = _quarters(turn)
+    if not turn.angle or quarters % 2 == 0:
+        return Fraction(0)
+    if quarters % 2 == 1:
+        return (2 - quarters % _WHOLE) / length(turn.axis)
+    square = tensors.dot(turn.axis, turn.axis)
+    tangent = generator((HalfTangent(abs(turn.angle), turn.degrees, square),), 0)
+    return tangent if turn.angle > 0 else -tangent
+
+
+def _near(number: Any) -> Fraction:
+    return number.near() if isinstance(number, Irrational) else number
+
+
+def _ball(number: Any) -> arb:
+    if isinstance(number, Irrational):
+        return number.around(ctx.prec)
+    return arb(fmpq(number.numerator, number.denominator))
 
 
 def times(a: Sequence[Any], b: Sequence[Any]) -> Sequence[Any]:

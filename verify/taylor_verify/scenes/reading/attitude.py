@@ -1,7 +1,7 @@
 """The attitude at the start: a quaternion, or angles, a vector or an axis in its place.
 
-The quaternion of an angle is irrational. It is held with 400 bits behind the point beside its largest
-component, and the exact motion is that of this quaternion; quarter turns in degrees are exact.
+The quaternion of an angle is irrational. The exact motion is that of the angle; a solver gets the
+quaternion with 400 bits at most. Quarter turns in degrees are rational.
 """
 
 from __future__ import annotations
@@ -9,22 +9,19 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from fractions import Fraction
-from math import isqrt
 from typing import Final, NamedTuple
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import shown
-from taylor_verify.scenes.loads.steps import exact_root
 from taylor_verify.scenes.motion import IDENTITY
 from taylor_verify.scenes.reading.table import Table
-from taylor_verify.scenes.stand_in import STAND_IN_BITS
-from taylor_verify.scenes.turns import AXES, Turn, combined
+from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in
+from taylor_verify.scenes.turns import AXES, Turn, length, product
 
 # No two neighbours are one axis.
 _SEQUENCE: Final = re.compile(r"([xyz])(?!\1)([xyz])(?!\2)[xyz]")
-_SPARE_BITS: Final = 100
-# An angle of more digits before its point loses the bits of its sine.
+# The sine of a larger angle costs more bits than anybody asks for.
 _MOST_ANGLE: Final = 10**20
 
 
@@ -62,14 +59,7 @@ def _rotation_vector(table: Table) -> Vector | None:
     vector = table.vector("rotation_vector")
     if vector is None or not any(vector):
         return None if vector is None else IDENTITY
-    return _formed(table, "rotation_vector", [Turn(vector, _length(vector))])
-
-
-def _length(vector: Vector) -> Fraction:
-    """Return the length of a vector, to more bits than a quaternion has."""
-    square, bits = tensors.dot(vector, vector), STAND_IN_BITS + _SPARE_BITS
-    root = isqrt(square.numerator * square.denominator << 2 * bits)
-    return exact_root(square) or Fraction(root, square.denominator << bits)
+    return _formed(table, "rotation_vector", [Turn(vector, length(vector))])
 
 
 def _axis_angle(table: Table) -> Vector | None:
@@ -130,10 +120,10 @@ def _angles(table: Table, count: int | None) -> _Angles | None:
 
 def _formed(table: Table, key: str, turns: list[Turn]) -> Vector:
     table.note(
-        f"The attitude is given by {table.path(key)}: its quaternion is formed with {STAND_IN_BITS} bits, "
-        "and the exact motion is that of this quaternion (quarter turns in degrees are exact)."
+        f"The attitude is given by {table.path(key)}: the exact motion is that of what is written; solvers "
+        f"get its quaternion with {STAND_IN_BITS} bits at most."
     )
-    return combined(turns, 2**STAND_IN_BITS)
+    return tuple(map(stand_in, product(turns)))
 
 
 _FORMS: Final[dict[str, Callable[[Table], Vector | None]]] = {
