@@ -47,7 +47,6 @@ _STEPPED = tuple(f"geometric:{method}?step=NUMBER" for method in _GEOMETRIC.spli
 _TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY.split())
 _ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)
 _ELLIPJ = ("closed-form:ellipj",)
-_FMU = ("fmu:FILE?step=NUMBER",)
 
 FAMILIES = (
     Family("taylor?", "taylor.names", TAYLOR, _TAYLOR, "heyoka", "taylor"),
@@ -58,7 +57,6 @@ FAMILIES = (
     Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
     Family(PROCESS, "process.process", "process:COMMAND"),
     Family(PYTHON, "function", "python:package.module:function"),
-    Family("fmu:", "fmu.fmu", _FMU[0], _FMU, "fmpy", "fmu"),
 )
 
 
