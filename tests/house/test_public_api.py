@@ -17,10 +17,8 @@ from builders.turns import by_turns
 
 import taylor_verify
 import taylor_verify_reports
-from taylor_verify.batch.failure import Failed
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -35,7 +33,6 @@ PROMISED = {
     *("certify", "enclose", "events"),
     "sweep",
 }
-SCENES = ("euler/spherical", "euler/rest")
 
 
 def program(script: str) -> str:
@@ -186,24 +183,6 @@ def test_a_run_that_cannot_begin_is_an_outcome(
     first, *_ = taylor_verify.run(scene, solver, "f32").verdicts
     assert first.outcome == outcome.value
     assert first.verdict is not Status.PASS
-
-
-@pytest.mark.parametrize(
-    ("changed", "error", "expected"),
-    [
-        ({"scenes": ["euler/rest", "euler/none"]}, Refused, "euler/none"),
-        ({"solver": "tailor"}, ValueError, "tailor"),
-        ({"rungs": ["f65"]}, ValueError, "f65"),
-    ],
-)
-def test_many_runs_refuse_a_wrong_call(
-    changed: dict[str, Any], error: type[Exception], expected: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What cannot be run is an error of the call, before anything runs."""
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("it ran"))
-    with pytest.raises(error, match=expected) as raised:
-        taylor_verify.run_many(**{"scenes": SCENES, **changed})
-    assert not isinstance(raised.value, Failed)
 
 
 def test_a_recommendation_has_the_arguments_of_its_room() -> None:
