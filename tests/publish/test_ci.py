@@ -46,16 +46,6 @@ EXAMPLE = ROOT / ".github" / "workflows" / "example.yml"
 Captured = pytest.CaptureFixture[str]
 
 
-def unscored(status: Status, because: str, **changed: Any) -> Verdict:
-    names: dict[str, Any] = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
-    return Verdict(
-        **{"solver": "taylor", "setting": "", **names, **changed},
-        verdict=status,
-        outcome="not started",
-        reason=stated(Cause.STATED, because),
-    )
-
-
 def remark(quantity: str = "omega", status: Status = Status.FAIL, text: str = "grew") -> Remark:
     return Remark("euler/generic", "taylor", "", "f64", quantity, status, text)
 
@@ -177,13 +167,6 @@ def test_any_text_makes_a_document(scene: str, quantity: str, because: str) -> N
     (failure,) = ElementTree.fromstring(text).iter("failure")
     if not junit._NOT_XML.search(sentence(verdict)):
         assert failure.get("message") == sentence(verdict)
-
-
-def test_what_xml_cannot_hold_is_escaped() -> None:
-    """The escape sequence of a coloured stderr stays readable."""
-    text = junit.junit([unscored(Status.FAIL, "stderr: \x1b[31m<b>&\x00\ud800")])
-    (failure,) = ElementTree.fromstring(text).iter("failure")
-    assert r"stderr: \x1b[31m<b>&\x00\xd800" in failure.get("message", "")
 
 
 def test_a_failure_says_what_a_person_needs() -> None:
@@ -501,16 +484,6 @@ def test_without_a_runner_there_is_no_summary(
     monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)
     assert main(["run", str(short), "--github"]) == 0
     assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
-
-
-def test_a_pipe_for_the_summary_holds_nobody_up(
-    short: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A FIFO that nobody reads is a file that cannot be written."""
-    os.mkfifo("pipe")
-    monkeypatch.setenv("GITHUB_STEP_SUMMARY", "pipe")
-    assert main(["run", str(short), "--github"]) == 2
-    assert "@ pipe (--github)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("place", ["", ".", "short.toml/r.xml"])
