@@ -45,7 +45,6 @@ assert check(SCENE, "mine.csv")
     + """
 assert run("euler/rest", "geometric:splitting?step=1/4").record is not None
 assert run("euler/rest", "scipy:DOP853").record is not None
-assert run("euler/generic", "closed-form:ellipj").record is not None
 import pathlib, shlex, sys
 rk4 = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
 assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), 'step=0.05'])}")
