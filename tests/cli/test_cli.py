@@ -25,7 +25,7 @@ from taylor_verify.cli import main
 from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
-from taylor_verify.scenes.families.library import family_names
+from taylor_verify.scenes.families.shipped import family_names
 from taylor_verify.scenes.library import GUIDE
 from taylor_verify.solvers import registry
 from taylor_verify.solvers.files.formats.reading import FORMATS
