@@ -14,15 +14,11 @@ import taylor_verify
 from taylor_verify.batch.comparison import compare_with_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
-    compare_with_published,
-    read_report,
     remarks,
     write_junit,
 )
 from taylor_verify.batch.selection import select
-from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.status import Status
-from taylor_verify.report.folder import write_report
 
 SCENES = ["euler/rest", "euler/generic"]
 LONG = "extremes/euler-separatrix-long"
@@ -54,44 +50,6 @@ def baseline(tmp_path: Path, results: Judgements) -> Path:
     file = tmp_path / "baseline.json"
     file.write_text(json.dumps(results.document()), encoding="utf-8")
     return file
-
-
-def test_an_error_that_grew_is_a_regression(baseline: Path, results: Judgements) -> None:
-    """It fails by name, also where the gate itself still passes."""
-    worse = changed(results, "euler/generic", "omega", max=1e-3)
-    comparison = compare_with_baseline(worse, baseline)
-    (failure,) = comparison.failures
-    assert "euler/generic f64 omega max" in str(failure)
-    assert (comparison.exit_status, comparison.passed) == (1, False)
-    with pytest.raises(NotPassed, match="euler/generic f64 omega max"):
-        comparison.raise_for_failure()
-
-
-def test_only_what_was_asked_for_again_is_compared(baseline: Path, results: Judgements) -> None:
-    """A scene that was not named may be missing; of another solver nothing is compared."""
-    (_, second) = results.judgements
-    one = Judgements((second,), select(["euler/generic"]), "taylor")
-    assert compare_with_baseline(one, baseline).passed
-    assert not compare_with_baseline(replace(one, selection=select(SCENES)), baseline).passed
-    other = compare_with_baseline(replace(one, solver="scipy:RK45"), baseline)
-    assert (other.compared, other.exit_status) == (0, 3)
-    with pytest.raises(NotPassed, match="no row was compared"):
-        other.raise_for_failure()
-
-
-def test_a_report_is_compared_both_ways(tmp_path: Path, results: Judgements) -> None:
-    """Against the folder it wrote a result passes; an error that shrank departs too."""
-    paths = write_report(tmp_path, results)
-    assert {tmp_path / "data" / "verdicts.json", tmp_path / "tables" / "accuracy.md"} <= set(paths)
-    assert len(read_report(tmp_path).verdicts) == len(results.verdicts)
-    comparison = compare_with_published(results, tmp_path)
-    assert (comparison.passed, comparison.compared) == (True, len(results.verdicts))
-    large = changed(results, "euler/generic", "omega", max=1e-3, bound=1.0)
-    write_report(tmp_path, large)
-    failures = compare_with_published(results, tmp_path).failures
-    assert any("euler/generic f64 omega max" in str(failure) for failure in failures)
-    with pytest.raises(FileNotFoundError):
-        compare_with_published(results, tmp_path / "none")
 
 
 def colour(file: Path) -> str:

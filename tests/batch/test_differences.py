@@ -77,17 +77,6 @@ def test_two_draws_of_one_walk_are_in_one_class(model: Any) -> None:
     assert share_out(old, new, 2.0, LEVEL) > 1e-3
 
 
-def test_no_factor_is_a_class_without_a_level() -> None:
-    """The maximum of a walk in one unstable direction is a single Gaussian: the ratio of two such
-    exceeds any factor f with probability (4/pi) arctan(1/f), one way or the other."""
-    rng = np.random.default_rng(3)
-    old, new = np.abs(rng.standard_normal((2, PAIRS)))
-    expected = 4 / math.pi * math.atan(1 / FACTOR)
-    # Five standard deviations of a count of PAIRS: a fixed seed leaves no room for luck.
-    allowed = 5 * math.sqrt(expected / PAIRS)
-    assert abs(share_out(old, new, FACTOR, 0.0) - expected) <= allowed
-
-
 @pytest.mark.parametrize("model", [walk, secular, unstable])
 def test_the_stated_rate_of_false_alarms(model: Any) -> None:
     """Alarms ask for one error beyond FACTOR LEVEL = 5, and Gaussian tails make that rare: the

@@ -181,7 +181,7 @@ def test_a_lost_process_costs_its_own_work_alone() -> None:
     """Another worker's result arrives; executors with one pipe for all would fail both."""
     with LocalPool(2) as pool:
         # Long enough for both to be under way.
-        other = pool.submit(time.sleep, 3)
+        other = pool.submit(time.sleep, 1)
         lost = pool.submit(end, signal.SIGKILL)
         assert isinstance(lost.exception(timeout=PATIENCE), WorkerLost)
         assert other.result(timeout=PATIENCE) is None

@@ -11,7 +11,7 @@ from builders.verdicts import by_quantity
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung as rung_named
-from taylor_verify.records.observed_order import Convergence, convergence
+from taylor_verify.records.observed_order import SAME, Convergence, convergence
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
@@ -38,7 +38,7 @@ class AtStep(Solver):
 
 
 def by_step(
-    scene: Scene, answer: Answer, steps: Sequence[float], rung: str = "f64", expected: float = 0.0
+    scene: Scene, answer: Answer, steps: Sequence[float], rung: str = "f64"
 ) -> dict[str, Convergence]:
     """The convergence of every quantity that is measured."""
     problem = pose(scene, rung_named(rung))
@@ -51,5 +51,10 @@ def by_step(
         rows = [each.get(name) for each in judged]
         errors = [r.max if r and r.verdict is not Status.UNDECIDED else None for r in rows]
         floors = [(row.attainable or 0.0) if row else 0.0 for row in rows]
-        orders[name] = convergence(steps, errors, floors, expected or None)
+        orders[name] = convergence(steps, errors, floors)
     return orders
+
+
+def has_order(fit: Convergence, order: float) -> bool:
+    """Return True if the steps show this order, within the scatter of local orders."""
+    return fit.order is not None and abs(fit.order - order) <= SAME

@@ -54,21 +54,6 @@ def test_a_call_without_a_verb_in_a_pipe_is_an_error_of_usage(capsys: Captured) 
     assert "expected a verb, got none (list, scene, question, run" in refusal(capsys)
 
 
-@pytest.mark.parametrize(
-    ("words", "sentence"),
-    [
-        ("check a.csv", "expected --scene, got none"),
-        ("run --jobs x", "expected a whole number, got 'x' @ --jobs"),
-        ("run --color red", "expected 'auto', 'always', 'never', got 'red' @ --color"),
-        ("exact euler/rest --at", "expected a value, got none @ --at"),
-        ("run --resume=3", "expected no value, got '3' @ --resume"),
-    ],
-)
-def test_a_wrong_option_says_what_was_expected(words: str, sentence: str, capsys: Captured) -> None:
-    """The sentences of argparse are written as all others are."""
-    assert refusal(capsys, *words.split()).rstrip().endswith(sentence)
-
-
 def test_the_version_is_printed(capsys: Captured) -> None:
     """`--version` prints name and version, and ends with status 0."""
     with pytest.raises(SystemExit) as ended:
@@ -101,6 +86,9 @@ def test_a_wrong_verb_suggests_the_near_one(capsys: Captured, word: str, meant: 
         (["exact", "euler/rest", "--at=--"], "expected a value, got -- @ --at"),
         (["run", "euler/rest", "--tolerance=--"], "expected a value, got -- @ --tolerance"),
         (["check", "mine.csv"], "expected --scene, got none"),
+        (["run", "euler/rest", "--color", "red"], "'always', 'never', got 'red' @ --color"),
+        (["run", "euler/rest", "--resume=3"], "expected no value, got '3' @ --resume"),
+        (["exact", "euler/rest", "--at", "1", "--dig", "5"], "got --dig"),
         (["draw"], "expected SCENE, got none"),
     ],
 )

@@ -274,16 +274,3 @@ def test_the_machines_faults_are_not_called_ours(
 
 
 # Results.
-
-
-def test_the_truth_value_of_a_judgement_is_whether_it_passed(judgement: Judgement) -> None:
-    """A failed result is false; so is one of which nothing was judged."""
-    assert not judgement
-    assert not judgement.passed
-    assert not Judgement((), None)
-    exact = taylor_verify.check(
-        SCENE, lambda p: taylor_verify.exact(p.given, p.given.clock.instants)["omega"]
-    )
-    assert exact
-    assert exact.passed
-    exact.raise_for_failure()

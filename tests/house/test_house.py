@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import functools
 import graphlib
-import itertools
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -182,35 +181,6 @@ def test_no_import_circle() -> None:
     assert {"taylor_verify.records.verdict", "taylor_verify.run"} <= {*circle(graph)}
 
 
-# The tests
-
-
-def imports_no_tests(module: str, source: str) -> Iterator[str]:
-    """No test module is imported: what two of them need stands in builders."""
-    for line, text in enumerate(source.splitlines(), 1):
-        if imported := re.match(r"\s*(?:from|import)\s+\.*((?:\w+\.)*test_\w+)", text):
-            yield f"expected an import from builders, got {imported[1]} @ {module}:{line}"
-
-
-def test_no_test_module_is_imported() -> None:
-    """No file below tests imports a test module."""
-    files = sorted(TESTS.rglob("*.py"))
-    assert len(files) > 100
-    faults = [imports_no_tests(file.stem, file.read_text(encoding="utf-8")) for file in files]
-    assert list(itertools.chain(*faults)) == []
-
-
-@pytest.mark.parametrize(
-    "source", ["from test_hard import row", "import test_hard", "from hard.test_page import row"]
-)
-def test_an_import_of_a_test_module_is_named(source: str) -> None:
-    """The fault names the module that is imported, and the file that imports it."""
-    (fault,) = imports_no_tests("test_growth", source)
-    assert "test_" in fault.partition(", got ")[2]
-    assert fault.endswith(" @ test_growth:1")
-    assert list(imports_no_tests("test_growth", "from builders.verdicts import row")) == []
-
-
 # The checker must catch what is planted
 
 
@@ -256,20 +226,6 @@ def test_a_planted_fault_is_named(rule: Rule, module: str, source: str, named: s
 def test_every_rule_has_a_planted_fault() -> None:
     """Each rule has been seen to fail."""
     assert {rule for rule, *_ in PLANTED} == set(RULES)
-
-
-@pytest.mark.parametrize(
-    ("module", "source"),
-    [
-        ("taylor_verify.batch.cluster", "d = import_module('distributed')"),
-        ("taylor_verify.judge.errors.state", "from taylor_verify.modelscope import x"),
-        ("taylor_verify.exact.theta", "x = 1\n" * 399),
-    ],
-)
-def test_a_sound_module_passes(module: str, source: str) -> None:
-    """No rule objects to a module that keeps all of them."""
-    described = f'"""What it is."""\n{source}'
-    assert [fault for rule in RULES for fault in rule(module, described)] == []
 
 
 @pytest.mark.parametrize(

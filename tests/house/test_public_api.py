@@ -13,14 +13,11 @@ from types import FunctionType
 from typing import Any, get_args, get_type_hints
 
 import pytest
-from builders.turns import by_turns
 
 import taylor_verify
 import taylor_verify_reports
-from taylor_verify.batch.failure import Failed
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -35,7 +32,6 @@ PROMISED = {
     *("certify", "enclose", "events"),
     "sweep",
 }
-SCENES = ("euler/spherical", "euler/rest")
 
 
 def program(script: str) -> str:
@@ -69,24 +65,6 @@ def test_no_module_takes_the_name_of_a_function() -> None:
     assert program(EVERY_MODULE).strip() == ""
 
 
-@pytest.mark.parametrize(
-    "first",
-    by_turns(["exact.route", "judge.judgement", "run", "check", "cli", "explain"]),
-)
-def test_a_function_is_one_whatever_module_was_imported_first(first: str) -> None:
-    """The functions can be called after an import of any module, in either form of import."""
-    script = (
-        f"import taylor_verify.{first}\nimport taylor_verify, taylor_verify.exact.solution\n"
-        "scene = taylor_verify.load('euler/generic')\n"
-        "assert taylor_verify.exact(scene, [0, '1/2'], 20)['omega'].shape == (2, 3)\n"
-        "from taylor_verify import check, exact, explain, load, run\n"
-        "from taylor_verify.exact import exact as same\n"
-        "assert exact is taylor_verify.exact is same and run is taylor_verify.run\n"
-        "assert callable(check) and callable(explain) and callable(load)\n"
-    )
-    program(script)
-
-
 def test_importing_the_package_imports_no_library_of_numbers() -> None:
     """`import taylor_verify` brings in neither an array nor an integrator, nor what is slow to import."""
     loaded = set(program("import sys, taylor_verify; print(*sys.modules)").split())
@@ -102,14 +80,6 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
 def test_a_type_is_exported_by_its_name(name: str) -> None:
     """It is the class itself, and no module has another of this name."""
     assert getattr(taylor_verify, name).__name__ == name
-
-
-@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
-def test_the_hints_of_a_function_are_types(function: FunctionType) -> None:
-    """`typing.get_type_hints` finds every name, as checkers of types at run time do."""
-    hints = get_type_hints(function)
-    assert hints.keys() == {*inspect.signature(function).parameters, "return"}
-    assert not any(isinstance(hint, str) for hint in hints.values())
 
 
 def named_in(hint: Any) -> Iterator[type]:
@@ -186,24 +156,6 @@ def test_a_run_that_cannot_begin_is_an_outcome(
     first, *_ = taylor_verify.run(scene, solver, "f32").verdicts
     assert first.outcome == outcome.value
     assert first.verdict is not Status.PASS
-
-
-@pytest.mark.parametrize(
-    ("changed", "error", "expected"),
-    [
-        ({"scenes": ["euler/rest", "euler/none"]}, Refused, "euler/none"),
-        ({"solver": "tailor"}, ValueError, "tailor"),
-        ({"rungs": ["f65"]}, ValueError, "f65"),
-    ],
-)
-def test_many_runs_refuse_a_wrong_call(
-    changed: dict[str, Any], error: type[Exception], expected: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What cannot be run is an error of the call, before anything runs."""
-    monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("it ran"))
-    with pytest.raises(error, match=expected) as raised:
-        taylor_verify.run_many(**{"scenes": SCENES, **changed})
-    assert not isinstance(raised.value, Failed)
 
 
 def test_a_recommendation_has_the_arguments_of_its_room() -> None:

@@ -16,15 +16,6 @@ from taylor_verify.records.version import __version__
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
-ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
-# Of each action the newest version that was known when the workflows were last looked at.
-NEWEST = {
-    "actions/checkout": "v7",
-    "actions/setup-python": "v7",
-    "actions/upload-artifact": "v7",
-    "actions/download-artifact": "v8",
-    "pypa/gh-action-pypi-publish": "release/v1",
-}
 
 
 def text_of(name: str) -> str:
@@ -127,13 +118,6 @@ def test_a_workflow_is_one(file: Path) -> None:
         assert all(("uses" in step) != ("run" in step) for step in job["steps"])
 
 
-@pytest.mark.parametrize("file", [*WORKFLOWS, ACTION], ids=lambda file: file.stem)
-def test_actions_are_of_their_newest_version(file: Path) -> None:
-    """Every action is known, and of one version everywhere."""
-    used = re.findall(r"uses: ([\w/-]+)@(\S+)", file.read_text(encoding="utf-8"))
-    assert used == [(name, NEWEST[name]) for name, _ in used]
-
-
 def test_every_command_of_make_in_a_workflow_exists() -> None:
     """A target that a workflow makes has a rule in the Makefile."""
     rules = set(re.findall(r"^([a-z-]+):", text_of("Makefile"), re.MULTILINE))
@@ -156,16 +140,6 @@ def test_a_release_is_published_without_a_password() -> None:
 
 
 # What other services read.
-
-
-def test_dependabot_watches_actions_and_libraries() -> None:
-    """Both places that use actions, and the pinned versions."""
-    settings = read(ROOT / ".github" / "dependabot.yml")
-    assert settings["version"] == 2
-    kinds = {update["package-ecosystem"]: update for update in settings["updates"]}
-    assert set(kinds) == {"github-actions", "pip"}
-    assert kinds["github-actions"]["directories"] == ["/", "/.github/actions/verify"]
-    assert all("interval" in update["schedule"] for update in settings["updates"])
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -16,7 +13,6 @@ import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
 from taylor_verify_reports.studies.registry import STUDIES
 
-TESTS = Path(__file__).resolve().parents[1]
 HEYOKA = ("heyoka",)
 # The environments of the other libraries have none of this package; `__main__` is a run.
 EVERY_MODULE = """
@@ -49,7 +45,6 @@ assert check(SCENE, "mine.csv")
     + """
 assert run("euler/rest", "geometric:splitting?step=1/4").record is not None
 assert run("euler/rest", "scipy:DOP853").record is not None
-assert run("euler/generic", "closed-form:ellipj").record is not None
 import pathlib, shlex, sys
 rk4 = pathlib.Path(taylor_verify.__file__).parent / "solvers" / "outside" / "rk4.py"
 assert run("euler/spherical", f"process:{shlex.join([sys.executable, str(rk4), 'step=0.05'])}")
@@ -166,72 +161,6 @@ def test_nothing_is_published_without_heyoka(tmp_path: Path) -> None:
     assert not (tmp_path / "reports").exists()
 
 
-def test_a_verb_that_needs_heyoka_says_so(tmp_path: Path) -> None:
-    """A verb that measures heyoka ends with exit status 2 and the same sentence, without a traceback."""
-    script = (
-        "import sys\nfrom taylor_verify import cli\n"
-        "def act(options):\n from taylor_verify.solvers.taylor.ensemble import batch_width\n"
-        " from taylor_verify.numbers.precision import rung\n batch_width(rung('f64'))\n"
-        "import taylor_verify.cli.list as verb\nverb.answer = act\n"
-        "sys.exit(cli.main(['list']))"
-    )
-    done = lacking(tmp_path, HEYOKA, "-c", script)
-    assert done.returncode == 2
-    message = done.stderr.splitlines()[-1]
-    assert message == f"taylor-verify: expected heyoka, got no such package: {INSTALL}"
-
-
-# Tests of this project where heyoka is not installed. It is hidden here, not blocked.
-HIDDEN = """
-from importlib.machinery import PathFinder
-real = PathFinder.find_spec
-def visible(cls, name, path=None, target=None):
-    return None if name == "heyoka" else real(name, path, target)
-PathFinder.find_spec = classmethod(visible)
-"""
-NEEDY = """
-import pytest
-
-def test_import():
-    import heyoka
-
-def test_lack():
-    from taylor_verify.solvers.taylor.package import lack
-    lack()
-
-@pytest.mark.heyoka
-def test_marked():
-    pytest.fail("it ran")
-
-def test_free():
-    from taylor_verify import exact
-    assert exact("euler/rest", [0], 20)["omega"].shape == (1, 3)
-"""
-
-
-def test_tests_that_need_it_are_skipped_with_one_reason(tmp_path: Path) -> None:
-    """Those that import it, and those that are marked; all others run."""
-    (tmp_path / "conftest.py").write_text((TESTS / "conftest.py").read_text(encoding="utf-8"))
-    (tmp_path / "test_needy.py").write_text(NEEDY)
-    (tmp_path / "site").mkdir()
-    (tmp_path / "site" / "sitecustomize.py").write_text(HIDDEN)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path / "site"), *sys.path])}
-    options = ["-p", "no:cacheprovider", "-q", "-rs", "-o", "markers=heyoka"]
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", *options, "test_needy.py"],
-        cwd=tmp_path,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert "1 passed, 3 skipped" in done.stdout, done.stdout
-    reasons = [line.partition(": ")[2] for line in done.stdout.splitlines() if "SKIPPED" in line]
-    assert set(reasons) == {
-        "needs heyoka, which is not installed (pip install 'taylor-verify[taylor]')"
-    }
-
-
 @pytest.mark.parametrize("scene", by_turns(["euler/with-attitude", "kirchhoff/constant-loads"], 2))
 def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
     """Equations, orbit, truth and bounds are those of the exact motion, and a warning names the mend."""
@@ -256,43 +185,6 @@ def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> 
     # The warning stands in the text too, and no cost of a run.
     assert INSTALL in " ".join(text.split())
     assert "steps of order" not in text
-
-
-# What another project writes. The fixture runs the solver of the project, and no heyoka.
-SESSION = """
-def still(problem):
-    return [problem.given.initial.omega] * len(problem.times)
-
-def test_callable(verify_solver):
-    verify_solver("euler/spherical", still)
-
-def test_wrong(verify_solver):
-    verify_solver("euler/generic", still)
-
-def test_default(verify_solver):
-    verify_solver("euler/generic", "taylor")
-"""
-
-
-def test_the_plugin_judges_a_solver_of_ones_own(tmp_path: Path) -> None:
-    """A right solver passes, a wrong one fails, and `taylor` fails with the command that installs it."""
-    (tmp_path / "test_mine.py").write_text(SESSION)
-    plugin = (
-        "-p",
-        "no:cacheprovider",
-        "-p",
-        "no:taylor-verify",
-        "-p",
-        "taylor_verify.testing.plugin",
-    )
-    done = lacking(tmp_path, HEYOKA, "-m", "pytest", *plugin, "-rA")
-    outcomes = dict(line.split()[:2][::-1] for line in done.stdout.splitlines() if "py::" in line)
-    assert outcomes == {
-        "test_mine.py::test_callable": "PASSED",
-        "test_mine.py::test_wrong": "FAILED",
-        "test_mine.py::test_default": "FAILED",
-    }, done.stdout
-    assert "pip install 'taylor-verify[taylor]'" in done.stdout
 
 
 def test_no_library_of_a_solver_is_imported(tmp_path: Path) -> None:

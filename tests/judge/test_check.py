@@ -526,22 +526,6 @@ def test_command_reports_faults_of_scene_and_file(
     assert "Traceback" not in err
 
 
-def test_command_tells_a_file_without_a_number(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A column of NaN alone is a fail in words and in JSON, and no convention is made of it."""
-    sound = exact_columns("euler/generic")
-    file = write_csv(tmp_path / "mine.csv", {**sound, "w1": [math.nan] * len(sound["t"])})
-    assert main(["check", file, "--scene", "euler/generic"]) == 1
-    printed = capsys.readouterr().out
-    assert "w1 is nan in row 1, t = 0" in printed
-    assert "conventions" not in printed
-    assert main(["check", file, "--scene", "euler/generic", "--json"]) == 1
-    document = json.loads(capsys.readouterr().out)
-    assert document["summary"]["fail"] == len(document["verdicts"])
-    assert document["conventions"] == []
-
-
 def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:
     """A body whose numbers overflow float32 is a refused row, as in a run."""
     scene = tmp_path / "huge.toml"

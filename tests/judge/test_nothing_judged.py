@@ -55,7 +55,6 @@ def without_heyoka(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         (without_scipy, "scipy:DOP853", INSTALL),
         (with_broken_scipy, "scipy:DOP853", INSTALL),
-        (without_scipy, "closed-form:ellipj", INSTALL),
         (without_heyoka, "taylor", "pip install 'taylor-verify[taylor]'"),
         (without_uv, "outside:cvode-bdf", "pip install 'taylor-verify[engines]'"),
     ],

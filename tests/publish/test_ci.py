@@ -31,7 +31,6 @@ from taylor_verify.cli import main
 from taylor_verify.records import schema, store
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
-from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, exit_status, read_row
 from taylor_verify.words import annotations, junit
 from taylor_verify.words.account import with_numbers as sentence
@@ -44,16 +43,6 @@ ACTION = ROOT / ".github" / "actions" / "verify" / "action.yml"
 EXAMPLE = ROOT / ".github" / "workflows" / "example.yml"
 
 Captured = pytest.CaptureFixture[str]
-
-
-def unscored(status: Status, because: str, **changed: Any) -> Verdict:
-    names: dict[str, Any] = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
-    return Verdict(
-        **{"solver": "taylor", "setting": "", **names, **changed},
-        verdict=status,
-        outcome="not started",
-        reason=stated(Cause.STATED, because),
-    )
 
 
 def remark(quantity: str = "omega", status: Status = Status.FAIL, text: str = "grew") -> Remark:
@@ -177,13 +166,6 @@ def test_any_text_makes_a_document(scene: str, quantity: str, because: str) -> N
     (failure,) = ElementTree.fromstring(text).iter("failure")
     if not junit._NOT_XML.search(sentence(verdict)):
         assert failure.get("message") == sentence(verdict)
-
-
-def test_what_xml_cannot_hold_is_escaped() -> None:
-    """The escape sequence of a coloured stderr stays readable."""
-    text = junit.junit([unscored(Status.FAIL, "stderr: \x1b[31m<b>&\x00\ud800")])
-    (failure,) = ElementTree.fromstring(text).iter("failure")
-    assert r"stderr: \x1b[31m<b>&\x00\xd800" in failure.get("message", "")
 
 
 def test_a_failure_says_what_a_person_needs() -> None:
@@ -397,13 +379,6 @@ def test_check_tells_a_ci_the_same_way(short: Path, capsys: Captured) -> None:
     assert main(call) == 0
     assert is_green(Path("r.xml").read_text(encoding="utf-8"))
     capsys.readouterr()
-    # A file of another name is compared all the same: each run writes one.
-    of_another = with_sum(json.loads(printed.replace("mine.csv", "other.csv")))
-    Path("base.json").write_text(json.dumps(of_another), encoding="utf-8")
-    assert main(call) == 0
-    assert "the baseline is of the file other.csv, and this is mine.csv" in capsys.readouterr().err
-    Path("base.json").write_text(printed, encoding="utf-8")
-    capsys.readouterr()
     trajectory(short, capsys, math.degrees(1.0))
     assert main(call) == 1
     out, error = capsys.readouterr()
@@ -501,16 +476,6 @@ def test_without_a_runner_there_is_no_summary(
     monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)
     assert main(["run", str(short), "--github"]) == 0
     assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
-
-
-def test_a_pipe_for_the_summary_holds_nobody_up(
-    short: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A FIFO that nobody reads is a file that cannot be written."""
-    os.mkfifo("pipe")
-    monkeypatch.setenv("GITHUB_STEP_SUMMARY", "pipe")
-    assert main(["run", str(short), "--github"]) == 2
-    assert "@ pipe (--github)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("place", ["", ".", "short.toml/r.xml"])
@@ -665,8 +630,7 @@ def test_the_script_of_the_action_judges(short: Path) -> None:
     assert step(SCENES="short.toml", RUNG="f32", BASELINE=str(baseline), SOLVER="taylor") == 1
     assert not is_green(Path(results["junit"]).read_text(encoding="utf-8"))
     assert Path("summary.md").read_text(encoding="utf-8").count("## taylor-verify") == 2
-    assert step(SCENES="short.toml", TOLERANCE="1e-19") == 1
-    assert step(SCENES="short.toml", TOLERANCE="omega=1e-8,T=1e-8", GATE="bound") == 0
+    assert step(SCENES="short.toml", TOLERANCE="omega=1e-19,T=1e-8", GATE="bound") == 1
     assert step(SCENES="short.toml", GATE="baseline") == 2
     # A file, with a name for a column of its own; on Windows the programs are in Scripts.
     Path("taylor-verify/bin").rename("taylor-verify/Scripts")

@@ -14,11 +14,17 @@ from hypothesis import strategies as st
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.cube import Spread, places
-from taylor_verify.scenes.families.draw import Draw, linspace, logspace, number_text, with_decimals
+from taylor_verify.scenes.families.distributions import (
+    Draw,
+    linspace,
+    logspace,
+    number_text,
+    with_decimals,
+)
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.formula import NoValue, formula
-from taylor_verify.scenes.families.library import family, family_names
-from taylor_verify.scenes.families.reading import load_family, read_family
+from taylor_verify.scenes.families.shipped import family, family_names
+from taylor_verify.scenes.families.template import load_family, read_family
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.reading.table import exact_number
 

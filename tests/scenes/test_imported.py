@@ -23,7 +23,7 @@ from taylor_verify.run import run
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.imported import import_scene
-from taylor_verify.scenes.imported.document import MOST_BYTES, MOST_ELEMENTS
+from taylor_verify.scenes.imported.tree import MOST_BYTES, MOST_ELEMENTS
 from taylor_verify.scenes.motion import Quaternion
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene

@@ -12,7 +12,6 @@ from taylor_verify.run import run
     ("name", "wider"),
     [
         ("scipy:DOP853", "f128"),
-        ("closed-form:ellipj", "f80"),
         *(("geometric:lie-rk4?step=0.1", wider) for wider in ("f32", "f80", "mp237")),
     ],
 )

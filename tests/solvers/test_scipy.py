@@ -13,7 +13,6 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers import registry
 from taylor_verify.solvers import scipy as solver
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome
@@ -115,28 +114,4 @@ def test_rates_that_are_no_numbers_are_an_outcome(
     assert not trajectory.quantities
 
 
-def test_without_scipy_it_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """An extra that is not there makes the solver unavailable, and nothing else."""
-    monkeypatch.setattr(solver, "find_spec", lambda name: None)
-    (verdict,) = run("euler/generic", "scipy:DOP853").verdicts
-    assert verdict.verdict is Status.UNAVAILABLE
-    assert verdict.because == "SciPy is not installed: pip install 'taylor-verify[scipy]'"
-
-
 # Names.
-
-
-def test_every_method_is_listed() -> None:
-    """`list` shows each with its settings, and each shown one exists."""
-    listed = [name for name in registry.solver_names() if name.startswith("scipy:")]
-    assert listed == [f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in solver.METHODS]
-    for name in listed:
-        solver_named(name.replace("NUMBER", "1e-6"))
-
-
-@pytest.mark.parametrize("tolerance", ["1e-3", 0, -1.0, float("nan"), True, 10**400])
-@pytest.mark.parametrize("place", ["rtol", "atol"])
-def test_a_tolerance_that_is_no_positive_number_is_refused(place: str, tolerance: Any) -> None:
-    """Given in Python, it is refused as in a solver's name: what was expected, what came, where."""
-    with pytest.raises(ValueError, match=rf"expected a positive number, got .* @ {place}"):
-        solver.SciPy("DOP853", "scipy:DOP853", **{place: tolerance})

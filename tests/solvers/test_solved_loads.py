@@ -194,7 +194,7 @@ def test_a_length_that_may_vanish_is_refused(name: str) -> None:
 
 # Who takes none.
 
-TAKING = ("taylor", "scipy", "mpmath", "fmu", "geometric:splitting")
+TAKING = ("taylor", "scipy", "mpmath", "geometric:splitting")
 
 
 @pytest.mark.parametrize(

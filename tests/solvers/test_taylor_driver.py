@@ -95,13 +95,6 @@ def test_rounding_beyond_the_range_is_an_error() -> None:
         rung("f32").round(largest + 2**103)
 
 
-@pytest.mark.parametrize("name", ["f16", "mp23", "mp", "double", "mp1e3", "F64"])
-def test_unknown_rung_is_an_error_that_lists_the_ladder(name: str) -> None:
-    """A name that is no rung is refused with the names that are."""
-    with pytest.raises(ValueError, match="f32, f64, f80, f128 or mpN"):
-        rung(name)
-
-
 def spinning(omega: tuple[Fraction, ...], end: Fraction, inertia: int = 3) -> Scene:
     """A free body of moments 1, 2, inertia, sampled eleven times."""
     moments = (Fraction(1), Fraction(2), Fraction(inertia))
@@ -255,24 +248,6 @@ def test_runs_are_repeatable_whatever_ran_before() -> None:
     first = Taylor().solve(problem)
     Taylor().solve(pose(load("euler/about-max-axis"), rung("f64")))
     assert_alike(first, Taylor().solve(problem))
-
-
-def _answer(problem: Problem) -> object:
-    """The sound answer as doubles, in the columns of a callback."""
-    return Taylor().solve(problem).quantities["omega"].astype(float)
-
-
-def test_callback_of_the_wrong_shape_or_that_raises_is_not_scored() -> None:
-    """A misshapen answer and an exception are outcomes with their own sentences."""
-    (misshapen,) = run("euler/generic", Callback(lambda p: _answer(p)[:, :2]), "f64").verdicts
-    assert misshapen.verdict is Status.FAIL
-    assert "expected states of shape (101, 3), got (101, 2)" in misshapen.because
-
-    def broken(problem: Problem) -> object:
-        raise ZeroDivisionError("by zero")
-
-    (raised,) = run("euler/generic", Callback(broken), "f64").verdicts
-    assert "ZeroDivisionError: by zero" in raised.because
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes import library
 from taylor_verify.scenes.families.family import Family
-from taylor_verify.scenes.families.library import family
+from taylor_verify.scenes.families.shipped import family
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.hard import search as hunt
 from taylor_verify_reports.studies.hard.search import SEARCHED, Candidate, search

@@ -83,7 +83,6 @@ def test_stops_are_measured_both_ways(scene: str, expected: bool) -> None:
         ("scipy:LSODA", NOTHING, None, "scipy LSODA"),
         ("geometric:splitting?step=1/64", STEP, 1 / 64, "geometric splitting"),
         ("mpmath:odefun?degree=9&tol=1e-5", TOLERANCE, 1e-5, "mpmath odefun"),
-        ("closed-form:ellipj", NOTHING, None, "closed-form ellipj"),
         ("process:./mine?tol=1e-3", NOTHING, None, "process:./mine?tol=1e-3"),
     ],
 )
@@ -144,7 +143,6 @@ def test_odefun_is_withheld_from_a_long_motion() -> None:
     [
         ("euler/constant-moment", "geometric:splitting?step=0.1", "a body without a moment"),
         ("kirchhoff/screw", "geometric:lie-rk4?step=0.1", "made for Euler's equations"),
-        ("kirchhoff/screw", "closed-form:ellipj", "made for Euler's equations"),
     ],
 )
 def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, reason: str) -> None:

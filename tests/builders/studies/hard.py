@@ -9,7 +9,7 @@ from taylor_verify.records.answers import LeftOut
 from taylor_verify.records.provenance import Machine, Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.families.draw import Draw
+from taylor_verify.scenes.families.distributions import Draw
 from taylor_verify.scenes.families.family import Family, Variable
 from taylor_verify_reports.studies.hard.document import (
     Expected,

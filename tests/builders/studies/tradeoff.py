@@ -10,7 +10,6 @@ from taylor_verify.records.provenance import Machine
 from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify_reports.studies.tradeoff.document import (
-    PlainDouble,
     TimingMethod,
     TradeNumbers,
     TradeScene,
@@ -63,7 +62,6 @@ POINTS = (
     ),
     point("geometric:splitting?step=1/4", 1e-3, asked="step", requested=0.25),
     point("outside:cvode-bdf?rtol=1e-9&atol=1e-9", 1e-10),
-    point("closed-form:ellipj", 1e-14),
     point("mpmath:odefun", None, standing=Standing.NOT_RUN, because="it would take minutes"),
 )
 
@@ -78,7 +76,6 @@ RATIOS = {
     ("scipy:RK45?rtol=1e-9&atol=1e-9", "f64"): 30.0,
     ("geometric:splitting?step=1/4", "f64"): 2.0,
     ("outside:cvode-bdf?rtol=1e-9&atol=1e-9", "f64"): 0.9,
-    ("closed-form:ellipj", "f64"): 0.1,
 }
 
 REACHED = "reached the last sample"
@@ -88,16 +85,6 @@ NUMBERS_MADE = TradeNumbers(
     versions={"heyoka": "7.13.0"},
     yardstick="taylor f64",
     scenes=(SCENE,),
-    plain_doubles=(
-        PlainDouble(
-            *("easy", "euler/generic", 100.0, 0.5, 1e-14),
-            *(REACHED, Standing.SOUND, "", "taylor", 2e-14),
-        ),
-        PlainDouble(
-            *("hard", "euler/generic", 100.0, 2e-12, 4e18),
-            *(REACHED, Standing.FALSE, "", "taylor", None),
-        ),
-    ),
     points=POINTS,
 )
 

@@ -36,16 +36,6 @@ def read_report(folder: str | PathLike[str]) -> Earlier:
     return Earlier(fspath(folder), store.load(place), store.are_edited(place))
 
 
-def compare_with_published(
-    results: Judgements | Judgement, folder: str | PathLike[str]
-) -> Comparison:
-    """Compare a result with a report folder, as `taylor-verify run --against DIR` does.
-
-    Raises what `read_report` raises.
-    """
-    return read_report(folder).compare_as_published(results)
-
-
 def write_junit(
     file: str | PathLike[str],
     results: Judgements | Judgement,

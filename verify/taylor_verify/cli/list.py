@@ -15,7 +15,7 @@ from taylor_verify.cli.verbs import verbs
 from taylor_verify.records.plugins import KINDS, Plugin, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.schema import schema, text
-from taylor_verify.scenes.families.library import family, family_names
+from taylor_verify.scenes.families.shipped import family, family_names
 from taylor_verify.scenes.library import ENGINES, EXTREMES, GUIDE, WORST, added_names, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.formats.reading import FORMATS, plugged

@@ -46,7 +46,6 @@ from taylor_verify.tradeoff.trade_off import trade_off
 _NOT_RUN = "not run"
 _HEADINGS = {
     "The front": "sentences",
-    "The front of integrators": "integrators",
     "Asked for and achieved": "requests",
 }
 

@@ -41,7 +41,7 @@ class Convergence:
     straight line in log-log; None if no range of steps has an order. ``steps`` are the steps used, in
     descending order. ``level`` is the smallest error that smaller steps reach, None if the error still
     falls. ``stalls_at`` is the step at which it stops falling, and ``by_rounding`` is True if rounding
-    explains that. ``reason`` says all this in words, with the expected order if it differs.
+    explains that. ``reason`` says all this in words.
     """
 
     order: float | None
@@ -49,29 +49,20 @@ class Convergence:
     steps: tuple[float, ...]
     level: float | None
     reason: str
-    expected: float | None = None
     stalls_at: float | None = None
     by_rounding: bool = False
-
-    @property
-    def is_expected(self) -> bool:
-        """True if there is an order, and it is the expected one if one was named."""
-        if self.order is None or self.spread is None:
-            return False
-        return self.expected is None or _agree(self.order, self.spread, self.expected)
 
 
 def convergence(
     steps: Sequence[float],
     errors: Sequence[float | None],
     roundoff_floor: float | Sequence[float] = 0.0,
-    expected: float | None = None,
 ) -> Convergence:
     """Return the order of convergence from errors and steps, which may be given in any sequence.
 
     ``errors`` that are None or not finite belong to runs that broke. ``roundoff_floor`` is the error that
-    perfect rounding would leave, for all steps or for each. ``expected`` is the nominal order of the
-    method. Raises ValueError for different lengths and for steps that are not positive or not distinct.
+    perfect rounding would leave, for all steps or for each. Raises ValueError for different lengths and for
+    steps that are not positive or not distinct.
     """
     points, broken = _points(steps, errors, roundoff_floor)
     stop = _stop(points)
@@ -80,7 +71,7 @@ def convergence(
     least = min(points[stop:], key=lambda point: point.error, default=None)
     order, spread = (None, None) if chosen is None else _slope(chosen)
     words = [
-        *_order_words(usable, chosen, order, spread, expected),
+        *_order_words(usable, chosen, order),
         *([f"no answer with step {', '.join(f'{s:.3g}' for s in broken)}"] if broken else []),
         *_floor_words(points, least),
     ]
@@ -90,7 +81,6 @@ def convergence(
         steps=tuple(point.step for point in chosen or ()),
         level=least.error if least else None,
         reason="; ".join(words),
-        expected=expected,
         stalls_at=points[stop].step if least else None,
         by_rounding=least is not None and least.is_rounding,
     )
@@ -203,34 +193,21 @@ def _centred(values: Sequence[float]) -> list[float]:
     return [value - mean for value in values]
 
 
-def _agree(order: float, spread: float, expected: float) -> bool:
-    """Return True if an order agrees with the expected one.
-
-    The allowance for scatter ends half of the way to the next order.
-    """
-    return abs(order - expected) <= min(max(spread, SAME), 2 * SAME)
-
-
 # The words.
 
 
 def _order_words(
-    usable: Sequence[_Point],
-    chosen: Sequence[_Point] | None,
-    order: float | None,
-    spread: float | None,
-    expected: float | None,
+    usable: Sequence[_Point], chosen: Sequence[_Point] | None, order: float | None
 ) -> Iterator[str]:
-    """Yield the order, with the expected one if it is another, and the steps that show it."""
-    if chosen is None or order is None or spread is None:
+    """Yield the order and the steps that show it."""
+    if chosen is None or order is None:
         lacking = f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
         if len(usable) >= _FEWEST:
             listed = ", ".join(f"{local:.2f}" for local in _locals(usable))
             lacking = f"from step to step it is {listed}, nowhere twice the same"
         yield f"no order: {lacking}"
         return
-    is_other = expected is not None and not _agree(order, spread, expected)
-    yield f"order {order:.2f}{f', expected {expected:g}' if is_other else ''}"
+    yield f"order {order:.2f}"
     yield f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
     if any(point.step > chosen[0].step for point in usable):
         yield "larger ones are not asymptotic yet"

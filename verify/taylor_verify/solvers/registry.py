@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 TAYLOR = "taylor"
 # A user's program: the command that starts it follows.
 PROCESS = "process:"
-CLOSED_FORM = "closed-form:"
 # Solvers of other libraries, each in its own environment.
 OUTSIDE = "outside:"
 # A function of Python.
@@ -46,19 +45,15 @@ _TAYLOR = (TAYLOR, "taylor?tol=NUMBER", "taylor?code=optimised")
 _STEPPED = tuple(f"geometric:{method}?step=NUMBER" for method in _GEOMETRIC.split())
 _TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY.split())
 _ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)
-_ELLIPJ = ("closed-form:ellipj",)
-_FMU = ("fmu:FILE?step=NUMBER",)
 
 FAMILIES = (
     Family("taylor?", "taylor.names", TAYLOR, _TAYLOR, "heyoka", "taylor"),
     Family("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER", _STEPPED),
     Family("scipy:", "scipy", "scipy:METHOD", _TOLERANT, "scipy", "scipy"),
     Family("mpmath:", "odefun", "mpmath:odefun", _ODEFUN),
-    Family(CLOSED_FORM, "closed_form", _ELLIPJ[0], _ELLIPJ, "scipy", "scipy"),
     Family(OUTSIDE, "engines.engine", "outside:LIBRARY-METHOD", None),
     Family(PROCESS, "process.process", "process:COMMAND"),
     Family(PYTHON, "function", "python:package.module:function"),
-    Family("fmu:", "fmu.fmu", _FMU[0], _FMU, "fmpy", "fmu"),
 )
 
 

@@ -15,7 +15,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import Outside, engines
 from taylor_verify.solvers.engines.peer import Peer
-from taylor_verify.solvers.registry import CLOSED_FORM, PROCESS, TAYLOR, solver_named
+from taylor_verify.solvers.registry import PROCESS, TAYLOR, solver_named
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.tradeoff.document import label
@@ -40,7 +40,6 @@ _STEPS: Final = (Fraction(1, 4), Fraction(1, 16), Fraction(1, 64))
 _ODEFUN: Final = ("mpmath:odefun?tol=1e-6", "mpmath:odefun")
 # odefun takes tens of milliseconds for a natural unit of time, so that this limit is about ten seconds.
 _LONGEST_FOR_ODEFUN: Final = 400
-ELLIPJ: Final = "closed-form:ellipj"
 
 # The names of a solver and a rung, which are sent from process to process.
 Name = tuple[str, str]
@@ -76,11 +75,6 @@ class Setting:
         """The names of the solver and the rung."""
         return self.solver.name, self.rung.name
 
-    @property
-    def is_integrator(self) -> bool:
-        """True for a solver that steps through the times before a sample."""
-        return not self.solver.name.startswith(CLOSED_FORM)
-
 
 def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
     """Return all settings for a scene on the ``rungs``, family by family, the coarsest first.
@@ -98,7 +92,6 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
                 all_settings += library(_SCIPY[:2], LIBRARY_TOLERANCES, rung, _UNSTOPPED)
             all_settings += geometric(scene, rung) if is_rigid else ()
             all_settings += odefun(scene, rung)
-            all_settings += [setting(ELLIPJ, rung)] if is_rigid else []
     return tuple(all_settings)
 
 

@@ -38,11 +38,8 @@ class TradeOff:
     def document(self) -> dict[str, Any]:
         """Return the document of `tradeoff --json`.
 
-        ``sentences`` describe the front, and ``integrators`` the front of integrators alone.
+        ``sentences`` describe the front.
         """
-        integrators = [p for p in self.points if p.timed.setting.is_integrator]
-        # If solvers without steps are on the front, integrators get a front of their own.
-        is_mixed = not all(p.timed.setting.is_integrator for p in self.front)
         return {
             "scene": self.scene.name,
             "track": sorted(self.scene.track),
@@ -50,7 +47,6 @@ class TradeOff:
             "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
-            "integrators": front_sentences(integrators) if is_mixed else [],
             "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,

@@ -13,8 +13,8 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.scenes.families.cube import Spread, places
 from taylor_verify.scenes.families.family import Family
-from taylor_verify.scenes.families.library import family, is_family
-from taylor_verify.scenes.families.reading import MOST_POINTS, load_family
+from taylor_verify.scenes.families.shipped import family, is_family
+from taylor_verify.scenes.families.template import MOST_POINTS, load_family
 from taylor_verify.scenes.library import find, named
 from taylor_verify.scenes.reading.reader import load, text_of
 from taylor_verify.scenes.scene import Scene

@@ -9,7 +9,7 @@ from functools import cached_property
 from math import prod
 
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.families.draw import Draw, Grid, number_text, with_decimals
+from taylor_verify.scenes.families.distributions import Draw, Grid, number_text, with_decimals
 from taylor_verify.scenes.families.formula import Formula, NoValue
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene

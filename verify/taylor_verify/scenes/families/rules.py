@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.records.faults import Faults, cut, near, shown
-from taylor_verify.scenes.families.draw import (
+from taylor_verify.scenes.families.distributions import (
     DISTRIBUTIONS,
     Draw,
     Grid,

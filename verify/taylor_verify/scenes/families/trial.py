@@ -9,7 +9,7 @@ from typing import Final
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.cube import Spread, places
-from taylor_verify.scenes.families.draw import Draw
+from taylor_verify.scenes.families.distributions import Draw
 from taylor_verify.scenes.families.family import Family, Place
 
 # If 2 % of the points are bodies, none is among so many trials with a probability of 3e-5.

@@ -18,10 +18,10 @@ from typing import Final, NamedTuple
 
 from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.scenes.imported import mjcf, sdf, urdf
-from taylor_verify.scenes.imported.document import Node, read_document
+from taylor_verify.scenes.imported.attributes import Reading
+from taylor_verify.scenes.imported.gazebo import surrounded
 from taylor_verify.scenes.imported.link import Candidate, Format
-from taylor_verify.scenes.imported.plugins import surrounded
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.tree import Node, read_document
 from taylor_verify.scenes.imported.written import scene_text
 
 _FORMATS: Final[Mapping[str, Format]] = {

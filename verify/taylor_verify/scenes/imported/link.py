@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
-from taylor_verify.scenes.imported.document import Node
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.attributes import Reading
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.water import Water
 
 

@@ -16,9 +16,9 @@ from typing import Final
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import cut, shown
 from taylor_verify.scenes import turns
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.attributes import Reading
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.water import Water
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 

@@ -16,9 +16,9 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import cut, near, shown
 from taylor_verify.scenes import turns
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.attributes import Reading, is_true
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
-from taylor_verify.scenes.imported.reading import Reading, is_true
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.urdf import COMPONENTS
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 

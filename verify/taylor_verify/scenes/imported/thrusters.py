@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes import turns
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.attributes import Reading, is_true
 from taylor_verify.scenes.imported.link import Link
-from taylor_verify.scenes.imported.reading import Reading, is_true
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.water import Water, term
 
 if TYPE_CHECKING:
-    from taylor_verify.scenes.imported.plugins import Scoped
+    from taylor_verify.scenes.imported.gazebo import Scoped
 
 _DIGITS: Final = 12
 _FRAMES: Final = ("relative_to", "frame", "rotation_format")

@@ -11,9 +11,9 @@ from typing import Final
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes import turns
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.attributes import Reading
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.tree import Node
 
 COMPONENTS: Final = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

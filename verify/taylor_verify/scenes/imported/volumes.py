@@ -9,8 +9,8 @@ from typing import Final, NamedTuple
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
-from taylor_verify.scenes.imported.document import Node
-from taylor_verify.scenes.imported.reading import Reading
+from taylor_verify.scenes.imported.attributes import Reading
+from taylor_verify.scenes.imported.tree import Node
 
 GRAVITY: Final = (Fraction(0), Fraction(0), Fraction("-9.8"))
 """Gravity of a world that does not write its own (sdformat, sdf/1.10/world.sdf)."""

@@ -16,8 +16,8 @@ from typing import Final
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.scenes.imported.document import Node
-from taylor_verify.scenes.imported.reading import Reading, decimal, is_true
+from taylor_verify.scenes.imported.attributes import Reading, decimal, is_true
+from taylor_verify.scenes.imported.tree import Node
 
 _FORCES: Final = "xyzkmn"
 _SPEEDS: Final = dict(zip("UVWPQR", ("u1", "u2", "u3", "w1", "w2", "w3"), strict=True))

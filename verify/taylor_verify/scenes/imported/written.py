@@ -11,8 +11,8 @@ from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.escapes import escaped
 from taylor_verify.records.quantities import MAIN, TRACKED
+from taylor_verify.scenes.imported.attributes import decimal
 from taylor_verify.scenes.imported.link import Link
-from taylor_verify.scenes.imported.reading import decimal
 from taylor_verify.scenes.imported.water import Water
 
 _WIDTH: Final = 100

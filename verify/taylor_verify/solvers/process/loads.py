@@ -18,7 +18,7 @@ from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.scenes.loads.loads import VECTORS, Entry, Loads, Piece
 from taylor_verify.scenes.loads.states import Held, State
 from taylor_verify.scenes.loads.steps import Step
-from taylor_verify.solvers.process.numbers import exact_text
+from taylor_verify.solvers.process.exact_text import exact_text
 
 
 def written_loads(problem: Problem) -> dict[str, Any]:

@@ -16,8 +16,8 @@ from typing import Final
 from mpmath import mp
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.scenes.families.draw import Grid
-from taylor_verify.scenes.families.library import family
+from taylor_verify.scenes.families.distributions import Grid
+from taylor_verify.scenes.families.shipped import family
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene

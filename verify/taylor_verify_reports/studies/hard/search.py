@@ -23,7 +23,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
 from taylor_verify.scenes.families.cube import Spread, places
 from taylor_verify.scenes.families.family import Family, Place
-from taylor_verify.scenes.families.library import family
+from taylor_verify.scenes.families.shipped import family
 from taylor_verify.scenes.library import WORST
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify_reports.studies.hard.document import WorstOfFamily

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from taylor_verify.records.provenance import Machine
-from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff.document import Number, TradePoint
 
 # Text between the name of a shipped scene and a later time until which the scene is followed.
@@ -36,33 +35,12 @@ class TradeScene:
 
 
 @dataclass(frozen=True)
-class PlainDouble:
-    """The closed form in plain doubles on one orbit, and the error of another solver beside it.
-
-    ``m_prime`` is 1 - m of the orbit, ``end`` the time of the last sample. ``beside`` names the other
-    solver.
-    """
-
-    what: str
-    scene: str
-    end: float
-    m_prime: Number
-    error: Number
-    outcome: str
-    standing: Standing
-    because: str
-    beside: str
-    error_beside: Number
-
-
-@dataclass(frozen=True)
 class TradeNumbers:
     """All scenes and points; ``yardstick`` names the setting that is the unit of times."""
 
     versions: dict[str, str]
     yardstick: str
     scenes: tuple[TradeScene, ...]
-    plain_doubles: tuple[PlainDouble, ...]
     points: tuple[TradePoint, ...]
 
 

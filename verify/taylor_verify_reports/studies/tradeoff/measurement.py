@@ -31,7 +31,6 @@ from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.session import end_sessions
 from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.tradeoff.setting import (
-    ELLIPJ,
     Name,
     Setting,
     geometric,
@@ -54,7 +53,6 @@ from taylor_verify_reports.studies.tradeoff.document import (
     TradeTiming,
     TradeTimings,
 )
-from taylor_verify_reports.studies.tradeoff.plain_doubles import plain_doubles
 from taylor_verify_reports.studies.tradeoff.rounds import (
     ROUNDS,
     YARDSTICK,
@@ -132,13 +130,10 @@ def measurement(
         # With one piece of work a pool has one process, which is new and ends with it.
         by_process += run_all(one_process, [(asked, seed + number, rounds)], workers=1)
         finished(f"times, process {number + 1} of {processes}")
-    doubles = tuple(plain_doubles())
-    finished("the closed form in doubles")
     numbers = TradeNumbers(
         versions=_versions(),
         yardstick=" ".join(YARDSTICK),
         scenes=tuple(map(_scene, trades)),
-        plain_doubles=doubles,
         points=tuple(p.on(trade.scene.name) for trade in trades for p in trade.points),
     )
     times = TradeTimings(
@@ -192,7 +187,6 @@ def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
         yield from library([solver], tolerances, f64)
     if isinstance(scene.body, RigidBody):
         yield from geometric(scene, f64)
-        yield setting(ELLIPJ, f64)
         if not scene.track - {"omega"}:
             # A solve takes seconds: the scene with the fewest equations is enough.
             yield setting(_ODEFUN, f64)

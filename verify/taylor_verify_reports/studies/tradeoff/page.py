@@ -17,7 +17,6 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.studies import figures
-from taylor_verify_reports.studies.tradeoff.document import PlainDouble
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify_reports.studies.tradeoff.timing_method import (
@@ -29,7 +28,6 @@ from taylor_verify_reports.studies.tradeoff.timing_method import (
 _NOT_REACHED: Final = "not reached"
 _RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau", "scipy BDF")
 _GEOMETRIC: Final = "geometric "
-_CLOSED_FORM: Final = "closed-form ellipj"
 _ASKED: Final = (1e-3, 1e-6, 1e-9, 1e-12)
 
 _WHAT: Final = (
@@ -37,30 +35,6 @@ _WHAT: Final = (
     "the exact motion. A time is given as a multiple of that of the *yardstick*, the Taylor "
     "integrator of heyoka in float64 at its own tolerance, in the same minute on the same machine; "
     "the error is the largest of everything that the scene tracks, at all its samples."
-)
-_PLAIN_DOUBLES: Final = (
-    "Omega of a free body is Jacobi's sn, cn and dn of time, and SciPy has them: `closed-form:ellipj` is "
-    "that in float64, written with care. 1 - m is exact here and 0 on the separatrix; the error is "
-    "relative to the largest |omega|. Beside it the integrator, where the motion is short enough for it."
-)
-_WHY_DOUBLES_FAIL: Final = (
-    "**Long times.** The argument u = lam t + u0 is rounded to 2^-53 of itself, and so is lam: a "
-    "phase error of some 1e-16 lam |t|. The error grows in proportion to time, although no step was "
-    "taken; at t = 1e15 u is known to a tenth, and the answer is an arbitrary point of the right "
-    "orbit.",
-    "**Near the separatrix.** m is a double near 1, so that 1 - m is known to 1e-16: its relative "
-    "error is 1e-16/(1 - m), and the period depends on its logarithm. The error shows where an orbit "
-    "waits at the middle axis. Below 1 - m = 1e-10 SciPy's `ellipj` takes series about m = 1 that "
-    "hold within the first quarter of a period only. Beyond it they grow like an exponential, and the "
-    "answer may be larger than the motion by any factor, without a warning.",
-    "**On it** the answer depends on the last bit of m. It is right if m happens to be 1, which may "
-    "fail if the principal axes are computed in doubles.",
-    "**About the middle axis** the phase is infinite and the answer no number, although the motion is "
-    "the simplest of all.",
-    "Equal moments, a moment of force, a body at rest, an attitude, a fluid: it refuses them, because "
-    "it is not made for them.",
-    "The exact route of this suite has the same functions with 1 - m formed in rationals and as much "
-    "precision as the answer needs: none of these orbits is difficult for it.",
 )
 
 
@@ -99,10 +73,6 @@ def page(trades: Trades, folder: Path) -> str:
         "## What failed, and what was not run",
         "None of these is on a front, and none has a number above.",
         _failures(trades),
-        "## The closed form in plain doubles",
-        _PLAIN_DOUBLES,
-        _doubles(trades.numbers.plain_doubles),
-        bullets(_WHY_DOUBLES_FAIL),
         "## What is timed",
         what_is_timed(),
         "## How it was timed, and where",
@@ -135,7 +105,7 @@ def _by_digits(trades: Trades) -> str:
         yardstick = _yardstick(trade, trades.numbers.yardstick)
         rows.append([code(trade.scene), yardstick, *[""] * len(DIGITS)])
         ran = {p.family for p in trade.points if p.standing is not Standing.NOT_RUN}
-        for family in (TAYLOR, *_RIVALS, _CLOSED_FORM):
+        for family in (TAYLOR, *_RIVALS):
             if family in ran:
                 own = [row for row in trade.sound if row.point.family == family]
                 rows.append(["", _family(family), *(_cheapest(own, digits) for digits in DIGITS)])
@@ -258,30 +228,6 @@ def _failures(trades: Trades) -> str:
 
 def _family(family: str) -> str:
     return prose(family.removesuffix(" f64").replace("scipy ", "SciPy "))
-
-
-# The closed form in plain doubles.
-
-
-def _doubles(rows: Iterable[PlainDouble]) -> str:
-    """Return a table of the cases; a false success is bold, any other outcome in its own words."""
-    lines = []
-    for row in rows:
-        error = figure(row.error)
-        claims = {Standing.SOUND: "success", Standing.FALSE: bold("success, falsely")}
-        is_wrong = row.error is not None and row.standing is not Standing.SOUND
-        lines.append(
-            [
-                prose(row.what),
-                figure(row.end),
-                figure(row.m_prime),
-                bold(error) if is_wrong else error,
-                figure(row.error_beside),
-                claims.get(row.standing, prose(row.outcome)),
-            ]
-        )
-    columns = ["orbit", "until t:", "1 - m:", "error:", "taylor f64:", "what it claims"]
-    return table(columns, lines)
 
 
 # The sheet.

@@ -25,12 +25,6 @@ _WHAT_IS_TIMED: Final = (
         "every step, Python throughout, and the attitude where it is tracked",
         "nothing but rounding the scene",
     ),
-    (
-        "closed-form",
-        "the orbit's constants, the phase and Jacobi's functions at all samples at once, NumPy and "
-        "compiled SciPy",
-        "loading SciPy",
-    ),
     ("mpmath", "`odefun` as a whole, Python throughout", "making the straight-line code"),
     (
         "outside",

@@ -8,7 +8,7 @@ from typing import Final
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.family import Family
-from taylor_verify.scenes.families.reading import load_family
+from taylor_verify.scenes.families.template import load_family
 from taylor_verify.scenes.library import cases_directory
 
 FAMILIES: Final = "families"

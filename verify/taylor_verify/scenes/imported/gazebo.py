@@ -12,10 +12,10 @@ from typing import Final, NamedTuple
 
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.scenes.imported import volumes
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.attributes import Reading, is_true
 from taylor_verify.scenes.imported.link import Link
-from taylor_verify.scenes.imported.reading import Reading, is_true
 from taylor_verify.scenes.imported.thrusters import with_thruster
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.imported.water import (
     Water,
     balance,

@@ -13,7 +13,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import decimal_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Faults, shown
-from taylor_verify.scenes.imported.document import Node
+from taylor_verify.scenes.imported.tree import Node
 from taylor_verify.scenes.reading.table import complete
 
 _DECIMAL: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?")
