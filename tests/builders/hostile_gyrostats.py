@@ -7,16 +7,10 @@ from fractions import Fraction
 from random import Random
 from typing import Final
 
-from mpmath import mp, mpf
-
 from builders.free_spins import near_separatrix, rotation, spinning
-from builders.gyrostats import MOTIONS, homoclinic, on_circle, paced, scene_of, turned
-from builders.numbers import apart
-from taylor_verify.exact.elements import elements
+from builders.gyrostats import MOTIONS, homoclinic, on_circle, turned
 from taylor_verify.exact.gyrostat.azimuth import FRAMES
-from taylor_verify.exact.gyrostat.closed import closed_form, enclosed
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 
@@ -30,22 +24,6 @@ def hostile(kind: str, number: int, seed: int = 1) -> FreeGyrostat:
     if random.random() < 0.5:
         return free
     return turned(free, rotation(*_some([random.randint(-20, 20) for _ in range(4)])))
-
-
-def disagreements(free: FreeGyrostat, digits: int = 20) -> tuple[mpf, mpf]:
-    """Return how far the closed form in balls is from mpmath, and from enclosed Taylor series.
-
-    Taylor series go to a radian and a half and back by two; mpmath is asked beyond, at 300 radians, too.
-    The elements are asked as well: each of them has its digits, or Unsettled is raised.
-    """
-    instants = paced(free, (Fraction(3, 2), Fraction(-2), Fraction(300)))
-    scene = scene_of(free)
-    near, far = (enclosed(scene).motion(times, digits) for times in (instants[:2], instants))
-    other = closed_form(scene).motion(instants, digits)
-    series = TaylorSolution(scene).motion(instants[:2], digits)
-    assert elements(scene, digits).regime == free.regime
-    with mp.workdps(2 * digits):
-        return apart(far, other), apart(near, series)
 
 
 # Numbers

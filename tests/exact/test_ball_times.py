@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from itertools import product
 from typing import Any
 
 import pytest
+from builders.routes import closed_routes, has_route
 from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp
@@ -16,7 +16,7 @@ from mpmath import mp
 from taylor_verify.exact.balls import Enclosed, ball
 from taylor_verify.exact.carried import carried
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NoClosedForm, Solution
+from taylor_verify.exact.solution import Solution
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
@@ -27,10 +27,6 @@ FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
 PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
 
 
-# Taylor series are the second route there.
-WITHOUT_MPMATH = {("kirchhoff/weber", "mpmath")}
-
-
 @cache
 def free_forms() -> list[str]:
     """The shipped scenes without loads and wheels that have a closed form."""
@@ -39,11 +35,7 @@ def free_forms() -> list[str]:
         scene = load(name)
         body = scene.body
         if body.is_free and not body.damping and "gyrostat" not in name:
-            try:
-                solution(scene, "arb")
-            except NoClosedForm:
-                continue
-            forms.append(name)
+            forms += [name] * has_route(scene, "arb")
     return forms
 
 
@@ -54,11 +46,7 @@ def everything(scene: Scene) -> Scene:
         return replace(scene, track=frozenset({"attitude"}), initial=turned)
     moved = replace(scene.initial, attitude=FRAME, centre=PLACE)
     whole = replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
-    try:
-        solution(whole, "arb")
-    except NoClosedForm:
-        return scene
-    return whole
+    return whole if has_route(whole, "arb") else scene
 
 
 def as_it_is(rows: dict[str, Any], elapsed: Any, number: Any) -> None:
@@ -73,9 +61,7 @@ def at_numbers(inner: Solution) -> Solution:
 @pytest.mark.parametrize(
     ("name", "route"),
     # By turns a form has one route, the other, and none.
-    by_turns(
-        pair for pair in product(free_forms(), ["arb", "mpmath"]) if pair not in WITHOUT_MPMATH
-    ),
+    by_turns((name, route) for name in free_forms() for route in closed_routes(load(name))),
 )
 def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
     """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.routes import closed_routes
 from builders.turns import by_turns
 from mpmath import mp
 
@@ -81,13 +82,13 @@ def apart(one: Motion, other: Motion) -> Any:
         for k, damping in enumerate([Fraction(7, 20), Fraction(-1, 5)])
     ],
 )
-def test_three_routes_agree(name: str, damping: Fraction) -> None:
-    """Balls, mpmath and Taylor series of the equations with -c z overlap in every regime, for either sign.
+def test_all_routes_agree(name: str, damping: Fraction) -> None:
+    """Closed forms and Taylor series of the equations with -c z overlap in every regime, for either sign.
 
     The series know nothing of the theorem. The regime is that of the body without damping.
     """
     scene = damped(name, damping)
-    routes = ("arb", "taylor") if name == "kirchhoff/weber" else ("arb", "taylor", "mpmath")
+    routes = (*closed_routes(scene), "taylor")
     balls, *others = (solution(scene, route).motion(NEAR, DIGITS) for route in routes)
     for other in others:
         assert apart(balls, other) <= 1

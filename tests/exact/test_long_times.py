@@ -28,15 +28,14 @@ PERIOD_DIGITS = 60
 
 
 def closed_scenes() -> list[str]:
-    """Return all but damped motions, which never recur, and quadratures, which cost time as it passes."""
+    """Return all but damped motions, which never recur."""
     shipped = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
     return [name for name in shipped if recurs(load(name))]
 
 
 def recurs(scene: Scene) -> bool:
     exact = solution(scene)
-    is_far = exact.regime != NO_CLOSED_FORM and not exact.by_quadrature
-    return is_far and not scene.body.damping
+    return exact.regime != NO_CLOSED_FORM and not scene.body.damping
 
 
 def period(scene: Scene) -> Fraction | None:
@@ -92,12 +91,9 @@ def test_a_billion_periods_keep_forty_digits(name: str) -> None:
 
 @pytest.mark.slow
 def test_no_extreme_scene_is_too_far() -> None:
-    """Nor does any of the extremes with a closed form lose a digit: forty are proven of all of them.
-
-    But for the weakest moment, whose power series ends after 1e5 radians.
-    """
+    """Nor does any of the extremes with a closed form lose a digit: forty are proven of all of them."""
     is_answered = False
-    for name in set(names(EXTREMES, WORST)) - {"extremes/euler-axial-weak"}:
+    for name in names(EXTREMES, WORST):
         scene = load(name)
         exact = solution(scene)
         if exact.regime != NO_CLOSED_FORM:

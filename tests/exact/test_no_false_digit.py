@@ -199,7 +199,7 @@ def test_degrees_have_a_hundred_and_fifty_digits(route: str) -> None:
         assert_equal(row["omega"], values, 150)
 
 
-@pytest.mark.parametrize("route", ROUTES)
+@pytest.mark.parametrize("route", ["arb", "taylor"])
 def test_a_spheroid_in_degrees_has_two_hundred_digits(route: str) -> None:
     """A prolate spheroid that does not move along precesses, with Lamb's added inertia, as by hand."""
     start = f"linear_velocity = [0, 0, 0]\nangular_velocity = {DEGREES}"

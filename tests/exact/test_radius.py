@@ -22,7 +22,7 @@ from taylor_verify.scenes.reading.reader import load
 ROUTES = ("arb", "mpmath", "taylor")
 SCENES = (
     "euler/with-attitude",
-    "euler/moment-along-axis",
+    "euler/oblique-symmetry",
     "kirchhoff/screw",
 )
 TIMES = ("1.25", "7")

@@ -1,7 +1,4 @@
-"""Two routes to a closed form, balls and mpmath, sharing no formula: they must overlap.
-
-The second route to a washboard, an integral in balls, is the enclosure (test_washboard).
-"""
+"""Two routes to a closed form, balls and mpmath, sharing no formula: they must overlap."""
 
 from __future__ import annotations
 
@@ -11,13 +8,14 @@ from fractions import Fraction
 
 import pytest
 from builders.free_spins import rotation
+from builders.routes import has_route
 from builders.turns import by_turns
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
@@ -42,15 +40,6 @@ def everything(scene: Scene) -> Scene:
     return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
 
 
-# No closed form of the attitude: under a moment that is not along an axis of symmetry.
-STATE_ALONE = {
-    *("euler/moment-across-axis", "euler/moment-across-no-spin"),
-    *("euler/moment-oblique", "euler/moment-backward"),
-}
-# Their second route is Taylor's, and test_weber compares them.
-WITHOUT_MPMATH = {"kirchhoff/weber"}
-
-
 def disagreement(scene: Scene, times: list[Fraction]) -> str:
     """Where the two routes lie further apart than both radii allow; nothing if they overlap."""
     one, other = (solution(scene, route).motion(times, DIGITS) for route in ("arb", "mpmath"))
@@ -66,24 +55,12 @@ def disagreement(scene: Scene, times: list[Fraction]) -> str:
     return ""
 
 
-def closed_forms() -> list[str]:
-    scenes = []
-    for name in sorted(set(names()) - WITHOUT_MPMATH):
-        try:
-            regime = solution(load(name), "arb").regime
-        except NoClosedForm:
-            continue
-        if not regime.startswith("washboard"):
-            scenes.append(name)
-    return scenes
-
-
-@pytest.mark.parametrize("name", by_turns(closed_forms()))
+@pytest.mark.parametrize(
+    "name", by_turns([name for name in names() if has_route(load(name), "mpmath")])
+)
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""
-    scene = load(name)
-    if name not in STATE_ALONE:
-        scene = everything(scene)
+    scene = everything(load(name))
     end = scene.clock.elapsed[-1]
     assert disagreement(scene, [end / 7, end * Fraction(8, 9), -end / 3, 5 * end]) == ""
 
@@ -217,6 +194,7 @@ def _overlap(examples: int, scenes: st.SearchStrategy[Scene]) -> Callable[[], No
     )
     @given(scenes, st.lists(times, min_size=1, max_size=2, unique=True))
     def routes_overlap(scene: Scene, instants: list[Fraction]) -> None:
+        assume(has_route(scene, "mpmath"))
         try:
             assert disagreement(scene, instants) == ""
         except Unsettled:

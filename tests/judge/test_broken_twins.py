@@ -25,7 +25,6 @@ from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.euler.theta import _Precession
 from taylor_verify.exact.kirchhoff import wave
-from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
@@ -123,10 +122,9 @@ def norm(entries: Any) -> mpf:
 
 def _backward_kirchhoff(patch: Patch) -> None:
     """x3 starts the other way, or x and y turn the other way where x3 rests; both routes ask this."""
-    right, turn, rate = Nutation.of, Nutation.turn_rate.func, Plane.rate.fget
+    right, turn = Nutation.of, Nutation.turn_rate.func
     patch.setattr(Nutation, "of", lambda *a: replace(right(*a), speed=-right(*a).speed))
     patch.setattr(Nutation, "turn_rate", property(lambda self: -turn(self)))
-    patch.setattr(Plane, "rate", property(lambda self: -rate(self)))
 
 
 def _backward_balls(patch: Patch) -> None:

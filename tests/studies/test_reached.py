@@ -19,7 +19,7 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.route import QuickerSolution
+from taylor_verify.exact.route import ElseSeries
 from taylor_verify.exact.solution import Quantities, Settled, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.scenes.bodies import RigidBody
@@ -143,7 +143,7 @@ def test_a_closed_form_hands_over_its_rows_as_well(known: Enclosed | Settled) ->
 def test_a_closed_form_that_fails_leaves_the_rows_of_the_series() -> None:
     """The rows of the series stand where a closed form fails and the series ends early."""
     few = TaylorSolution(FASTER, most_steps=60)
-    both = QuickerSolution(_Balls(), few)
+    both = ElseSeries(_Balls(), few)
     with pytest.raises(Unsettled, match="steps") as raised:
         both.motion([Fraction(400), Fraction(2)], 12)
     assert raised.value.places == (1,)

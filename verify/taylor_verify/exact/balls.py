@@ -59,14 +59,14 @@ class Enclosed(Solution):
         """
 
     @final
-    def motion(self, elapsed: Sequence[Fraction], digits: int, attempts: int = _ATTEMPTS) -> Motion:
+    def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
         """The midpoints, and the proven relative radius of every row, at most 10^-digits.
 
-        Raises Unsettled when so many precisions, each higher than the last, do not suffice.
+        Raises Unsettled when a dozen precisions, each higher than the last, do not suffice.
         """
         target = ceil(digits * log2(10))
         bits, last = target + _FIRST_GUARD_BITS, None
-        for _ in range(attempts):
+        for _ in range(_ATTEMPTS):
             try:
                 motion, widest = self._attempt(elapsed, bits)
             except Undecided as doubt:

@@ -40,7 +40,7 @@ class CarriedBalls(Enclosed):
         self, inner: Enclosed, back: Back, regime: str, clock: Clock | None = None
     ) -> None:
         self.regime = regime
-        self.by_quadrature, self.by_periods = inner.by_quadrature, inner.by_periods
+        self.by_periods = inner.by_periods
         self._inner, self._back, self._clock = inner, back, clock
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:
@@ -62,7 +62,7 @@ class Carried(Settled):
     def __init__(
         self, inner: Solution, back: Back, regime: str, clock: Clock | None = None
     ) -> None:
-        self.regime, self.by_quadrature = regime, inner.by_quadrature
+        self.regime = regime
         self._inner, self._back, self._clock = inner, back, clock
 
     def evaluate(self, elapsed: Sequence[Time], digits: int) -> Quantities:

@@ -100,7 +100,7 @@ class Damped(Solution):
     """The motion of a damped body, by the closed form of the same body without damping."""
 
     def __init__(self, scene: Scene, free: Solution) -> None:
-        self.regime, self.route, self.by_quadrature = free.regime, free.route, free.by_quadrature
+        self.regime, self.route = free.regime, free.route
         self._damping = damping = scene.body.damping
         moving = kind_of(scene.body).moving
 

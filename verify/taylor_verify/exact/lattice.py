@@ -27,10 +27,12 @@ _ROUGH_TAIL: Final = 0.25
 class Lattice(ABC):
     """The periods of p, with numbers of one precision, and to be used at that precision.
 
-    ``period`` is the real one; None where p has none.
+    ``period`` is the real one; None where p has none. ``parameters`` are m = k^2 and 1 - m of Jacobi's
+    functions; None where p is elementary.
     """
 
     period: arb | None
+    parameters: tuple[arb, arb] | None = None
 
     @abstractmethod
     def jet(self, u: acb, order: int) -> list[acb]:
@@ -81,7 +83,9 @@ def _rectangular(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
     e2 = ball(g3) / (4 * e1 * e3)
     upper, lower, whole = (ball(g2).sqrt() * angle.sin() for angle in (rest, theta, theta + turn))
     across, along = whole.sqrt().agm(upper.sqrt()), whole.sqrt().agm(lower.sqrt())
-    return Periods([acb(e) for e in (e1, e2, e3)], arb.pi() / across, acb(0, across / along))
+    parameters = lower / whole, upper / whole
+    roots = [acb(e) for e in (e1, e2, e3)]
+    return Periods(roots, arb.pi() / across, acb(0, across / along), parameters)
 
 
 def _rhombic(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
@@ -105,7 +109,8 @@ def _rhombic(g2: Fraction, g3: Fraction, discriminant: Fraction) -> Periods:
     m, m_prime = (smaller, larger) if g3 >= 0 else (larger, smaller)  # e has the sign of g3
     real, imaginary = arb(1).agm(m_prime.sqrt()), arb(1).agm(m.sqrt())
     roots = [acb(e), acb(-e / 2, b), acb(-e / 2, -b)]
-    return Periods(roots, arb.pi() / (real * H.sqrt()), acb(0.5, real / imaginary / 2))
+    tau = acb(0.5, real / imaginary / 2)
+    return Periods(roots, arb.pi() / (real * H.sqrt()), tau, (m, m_prime))
 
 
 @final
@@ -114,9 +119,11 @@ class Periods(Lattice):
 
     period: arb
 
-    def __init__(self, roots: Sequence[acb], length: arb, tau: acb) -> None:
+    def __init__(
+        self, roots: Sequence[acb], length: arb, tau: acb, parameters: tuple[arb, arb]
+    ) -> None:
         self._roots, self._length, self._tau = roots, length, tau
-        self.period = length
+        self.period, self.parameters = length, parameters
         _, th2, th3, th4 = acb.modular_theta(acb(0), tau)
         scale = arb.pi() / length
         # p - e_1 = (pi/L)^2 (th3 th4 theta_2/theta_1)^2, DLMF 23.6.5

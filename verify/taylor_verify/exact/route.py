@@ -11,7 +11,7 @@ from typing import Final, final
 from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.damping import NOT_QUADRATIC, Damped, is_solved
 from taylor_verify.exact.registry import function_at, kind_of
-from taylor_verify.exact.solution import NoClosedForm, Quantities, Solution, Unsettled
+from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Undecided
@@ -19,8 +19,6 @@ from taylor_verify.records.faults import brief
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 
-# Two doublings of the precision: more are needed only where an integral is hard.
-_FEW_PRECISIONS: Final = 3
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
 # The functions of a closed form by route, in ``closed`` of each kind's room.
@@ -29,45 +27,23 @@ CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
 
 
 @final
-class QuickerSolution(Solution):
-    """A closed form with integrals, or Taylor series where the integrals are hard: both in balls.
+class ElseSeries(Solution):
+    """A closed form whose periods are integrals, or Taylor series where they are hard: both in balls.
 
-    The closed form is asked first, whatever the span. For up to 100 instants and 100 digits of the shipped
-    scenes it takes at most 0.2 s more than Taylor series on a short span, and on a hundred spans the series
-    take twenty times as long and more. But beside a crest of its potential a bead all but stops, and
-    its integrals take hundreds of bits, while the motion itself is as easy as any other; and no integral
-    is made to more than ten thousand bits. ``route`` is the one that answered last.
+    No integral is made to more than ten thousand bits. ``route`` is the one that answered last.
     """
 
     def __init__(self, closed: Enclosed, series: TaylorSolution) -> None:
         self._closed, self._series = closed, series
         self.regime, self.route = closed.regime, closed.route
-        self.by_quadrature = closed.by_quadrature
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion:
-        """The motion by the closed form at few precisions, else by few steps, else by the closed form."""
-        with suppress(Unsettled):
-            motion = self._closed.motion(elapsed, digits, _FEW_PRECISIONS)
-            self.route = self._closed.route
-            return motion
-        self.route = self._series.route
-        try:
-            return self._series.motion(elapsed, digits)
-        except Unsettled as doubt:
-            partial = doubt
         with suppress(Unsettled):
             motion = self._closed.motion(elapsed, digits)
             self.route = self._closed.route
             return motion
-        raise partial
-
-    def evaluate(self, elapsed: Sequence[Fraction], digits: int) -> Quantities:
-        """The midpoints of the motion; series lose no digits beside another orbit, where each costs one."""
-        if not self.by_quadrature:
-            return self.motion(elapsed, digits).quantities
-        with suppress(Unsettled):
-            return self._series.evaluate(elapsed, digits)
-        return self._closed.evaluate(elapsed, digits)
+        self.route = self._series.route
+        return self._series.motion(elapsed, digits)
 
 
 def solution(scene: Scene, route: str | None = None) -> Solution:
@@ -89,8 +65,8 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
         closed = _closed_form(scene, "arb")
     except NoClosedForm:
         return TaylorSolution(scene)
-    if isinstance(closed, Enclosed) and (closed.by_quadrature or closed.by_periods):
-        return QuickerSolution(closed, TaylorSolution(scene, _FEW_STEPS))
+    if isinstance(closed, Enclosed) and closed.by_periods:
+        return ElseSeries(closed, TaylorSolution(scene, _FEW_STEPS))
     return closed
 
 
@@ -101,9 +77,12 @@ def _closed_form(scene: Scene, route: str) -> Solution:
     if scene.body.loads is not None:
         module = "taylor_verify.exact.euler.heavy"
     try:
-        closed: Solution = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
+        closed: Solution | None = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     except Undecided as doubt:
         raise NoClosedForm(f"the kind of motion is not decided: {doubt}") from doubt
+    if closed is None:
+        _closed_form(scene, "arb")
+        raise NoClosedForm("in mpmath, where this motion has none: its routes are arb and taylor")
     return closed
 
 

@@ -66,14 +66,11 @@ class Solution(ABC):
 
     ``regime`` is one word for the kind of orbit, decided in exact rationals, or ``no closed form``.
     ``route`` is ``arb`` or ``mpmath`` (closed forms), or ``taylor`` (enclosed Taylor series).
-    ``by_quadrature`` says that every instant costs an integral: what needs a motion at hundreds of
-    digits, or many of them, has a cheaper way than differences of this one. ``by_periods`` says that its
-    periods are integrals, made once.
+    ``by_periods`` says that its periods are integrals, made once.
     """
 
     regime: str
     route: str
-    by_quadrature: bool = False
     by_periods: bool = False
 
     @property

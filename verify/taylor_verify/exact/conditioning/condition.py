@@ -279,13 +279,10 @@ def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
 
 
 def differs_dearly(scene: Scene) -> bool:
-    """Return True if each difference of the motion would cost a Taylor integration or quadratures.
+    """Return True if each difference of the motion would cost a Taylor integration.
 
-    One integration along it costs less. A start beside it may leave the closed form: a motion in a plane
-    leaves the plane, and Weber's loses FG = 0.
+    One integration along it costs less. A start beside it may leave the closed form: Weber's loses FG = 0.
     """
-    if solution(scene).by_quadrature:
-        return True
     start = momentum(scene)
     beside = (start.moved(j, unit) for j, unit in enumerate(start.units))
     return any(solution(start_scene).route == "taylor" for start_scene in (scene, *beside))

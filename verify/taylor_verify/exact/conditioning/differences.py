@@ -48,8 +48,7 @@ def settled(scene: Scene, elapsed: Sequence[Fraction], least: int = 0) -> Deriva
     D_i D_k^-1, so precision rises until det D = 1 to six digits. Raises Unsettled if it never is.
     """
     exact = solution(scene)
-    is_by_series = exact.route == "taylor" or exact.by_quadrature
-    ladder = _TAYLOR_EXPONENTS if is_by_series else _CLOSED_FORM_EXPONENTS
+    ladder = _TAYLOR_EXPONENTS if exact.route == "taylor" else _CLOSED_FORM_EXPONENTS
     first = max(least, ladder[0])
     for exponent in (first, *(higher for higher in ladder if higher > first)):
         digits = 2 * exponent + _GUARD_DIGITS

@@ -16,10 +16,8 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler.closed import top
+from taylor_verify.exact.euler.fixed_axis import FixedAxisRegime, kept_axis
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
-from taylor_verify.exact.euler.moments.washboard.balls import period
-from taylor_verify.exact.euler.moments.washboard.board import Washboard, WashboardRegime
-from taylor_verify.exact.euler.moments.washboard.turnings import regime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
@@ -67,31 +65,14 @@ _LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
     ),
 }
 
-
-_ALONG: Final = "Three different moments of inertia and a constant moment along a principal axis: "
-_CHANGED: Final = "Not conserved: T changes by the work of the moment, H by its impulse."
-_INVARIANT: Final = (
-    "Conserved: 2T J - |H|^2, with J the moment of inertia about the axis of the moment."
-)
-_BEAD: Final[Mapping[WashboardRegime, tuple[str, ...]]] = {
-    WashboardRegime.STEADY: (
+_KEPT_AXIS_STORY: Final[Mapping[FixedAxisRegime, tuple[str, ...]]] = {
+    FixedAxisRegime.STEADY: (
         "The gyroscopic moment of a steady rotation balances the constant moment: omega is constant.",
     ),
-    WashboardRegime.STRAIGHT: (
-        f"{_ALONG}omega lies along it too, and grows evenly for ever.",
-        _CHANGED,
-    ),
-    WashboardRegime.SWING: (
-        f"{_ALONG}a bead on a tilted washboard that is caught between two walls. The spin about that "
-        "axis changes its sign twice a period, and omega recurs.",
-        _INVARIANT,
-        _CHANGED,
-    ),
-    WashboardRegime.RUN: (
-        f"{_ALONG}a bead on a tilted washboard that turns back once, in the past or in the future, "
-        "and then runs down for ever: the spin about that axis grows.",
-        _INVARIANT,
-        _CHANGED,
+    FixedAxisRegime.STRAIGHT: (
+        "Three different moments of inertia and a constant moment along a principal axis: omega lies "
+        "along it too, and grows evenly for ever.",
+        _WORK,
     ),
 }
 
@@ -117,10 +98,10 @@ def story(spin: FreeSpin) -> str:
 
 def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Return the elements of a body under a constant moment; T' = M.omega, so T is not conserved."""
+    kept = kept_axis(FreeSpin(body.inertia, omega), body.moment)
+    if kept is not None:
+        return Elements(kept[0].value, (), _KEPT_AXIS_STORY[kept[0]])
     try:
-        free = FreeSpin(body.inertia, omega)
-        if free.discriminant or not any(tensors.plus(free.torque, body.moment)):
-            return _washboard(Washboard(body.inertia, body.moment, omega), digits)
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:
         story = (
@@ -130,30 +111,6 @@ def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
         return Elements(NO_CLOSED_FORM, (), (story, _WORK))
     numbers = settled(lambda _: _circle(spin), digits)
     return Elements(spin.regime.value, numbers, (_LOADED_STORY[spin.regime], _WORK))
-
-
-def _washboard(board: Washboard, digits: int) -> Elements:
-    """Return the elements of a washboard motion. Raises NoClosedForm too near to a separatrix."""
-    kind = regime(board)
-    numbers = () if board.keeps_axis else settled(lambda _: _bead(board, kind), digits)
-    return Elements(kind.value, numbers, _BEAD[kind])
-
-
-# The numbers of each regime, at the ambient precision.
-
-_PERIOD: Final = "period :: time :: omega recurs in body axes, under the moment :: 2 int dsigma/nu"
-_DIFFERENCE: Final = """
-    2TJ-H2 :: angular momentum^2 :: 2T J - |H|^2, J the moment of inertia about the axis of M, \
-conserved :: omega.I (J - I) omega
-"""
-
-
-def _bead(board: Washboard, kind: WashboardRegime) -> list[Element]:
-    """The period of a swing, and what is conserved."""
-    is_swing = kind is WashboardRegime.SWING
-    numbers = described(_PERIOD, [period(board)]) if is_swing else []
-    (conserved,) = described(_DIFFERENCE, [mp.convert(board.conserved)])
-    return [*numbers, replace(conserved, size=mp.convert(board.momentum_squared))]
 
 
 _CIRCLE: Final = """

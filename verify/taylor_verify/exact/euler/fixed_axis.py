@@ -7,6 +7,7 @@ omega = w0 + a t with a along w0, or either of them zero. With a vector n along 
 
 from __future__ import annotations
 
+from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Final, final
 
@@ -16,6 +17,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.orbit import converted
+from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.euler.rotations import OneByOne, Rotation, RotationBalls, Rows, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside, unchanged
@@ -24,6 +26,13 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.motion import Quaternion
 
 _GUARD_DIGITS: Final = 8
+
+
+class FixedAxisRegime(StrEnum):
+    """The motions of a triaxial body under a moment that have a closed form; the words of ``regime``."""
+
+    STEADY = "steady-moment"  # the gyroscopic moment balances M: omega is constant
+    STRAIGHT = "straight-moment"  # omega and M along one principal axis: the spin grows evenly
 
 
 class FixedAxis:
@@ -53,6 +62,21 @@ class FixedAxis:
             return _GUARD_DIGITS
         furthest = max(abs(self.turned(t)) for t in (longest, -longest))
         return _GUARD_DIGITS + decades(1 + furthest**2 / self.axis_squared) / 2
+
+
+def kept_axis(spin: FreeSpin, moment: Vector) -> tuple[FixedAxisRegime, FixedAxis] | None:
+    """The motion of a body that keeps its axis under a moment (not zero); None where it does not.
+
+    A straight motion of a body with two equal moments of inertia is left to its own regimes.
+    """
+    if not any(tensors.plus(spin.torque, moment)):
+        return FixedAxisRegime.STEADY, FixedAxis(spin.omega)
+    pushed = tensors.apply(tensors.inverse(spin.inertia), moment)
+    if spin.discriminant == 0 or any(tensors.cross(pushed, moment)):
+        return None
+    if any(tensors.cross(spin.omega, moment)):
+        return None
+    return FixedAxisRegime.STRAIGHT, FixedAxis(spin.omega, pushed)
 
 
 def in_balls(regime: str, axis: FixedAxis, attitude: Quaternion | None) -> RotationBalls:

@@ -72,7 +72,6 @@ class RotationBalls(Enclosed):
     regime: str
     set_up: Callable[[], BallCourse]
     attitude: motion.Quaternion | None = None
-    by_quadrature: bool = False
     _courses: dict[int, BallCourse] = field(default_factory=dict, init=False)
 
     def enclose(self, elapsed: Sequence[Time], bits: int) -> Enclosure:

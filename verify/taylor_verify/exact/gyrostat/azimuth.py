@@ -11,10 +11,13 @@ G = sigma N c + rho f is on the curve, and another one where G is its conjugate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
+from flint import acb, arb
+
+from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
 from taylor_verify.exact.rotation import cross, rotation_matrix, scalar_product
@@ -22,20 +25,12 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Vector, dot
 
 
-class Arithmetic(NamedTuple):
-    """Real and complex numbers of one library: from a rational, from two real ones, and the square root."""
-
-    real: Callable[[Fraction], Any]
-    complex: Callable[[Any, Any], Any]
-    sqrt: Callable[[Any], Any]
-
-
 class Pole(NamedTuple):
     """A pole of phi': sigma, and Weierstrass's p and p' of its argument."""
 
     sigma: int
-    p: Any
-    slope: Any
+    p: acb
+    slope: acb
 
 
 class Frame(NamedTuple):
@@ -57,49 +52,46 @@ def _frames() -> Iterator[Frame]:
 FRAMES: Final = tuple(_frames())
 
 
-def poles(free: FreeGyrostat, place: PointMap, frame: Frame, numbers: Arithmetic) -> list[Pole]:
+def poles(free: FreeGyrostat, place: PointMap, frame: Frame) -> list[Pole]:
     """Return one pole of each pair of conjugates; ZeroDivisionError for a frame that has too few.
 
-    ``place`` is the point map of the motion in the same arithmetic.
+    ``place`` is the point map of the motion in balls.
     """
-    real = numbers.real
-    a, b, c = (tuple(map(real, axis)) for axis in frame)
-    K = tuple(tuple(map(real, row)) for row in free.K)
-    g = tuple(map(real, free.g))
-    N = numbers.sqrt(real(free.n))
-    f = [numbers.complex(p, q) for p, q in zip(a, b, strict=True)]
+    a, b, c = map(balls, frame)
+    K, g = [balls(row) for row in free.K], balls(free.g)
+    N = ball(free.n).sqrt()
+    f = [acb(p, q) for p, q in zip(a, b, strict=True)]
     result = []
     for sigma in (1, -1):
-        for rho in _feet(free, frame, sigma, N, numbers):
+        for rho in _feet(free, frame, sigma, N):
             point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
             omega = [scalar_product(row, point) - entry for row, entry in zip(K, g, strict=True)]
             result.append(Pole(sigma, *place.at(point, cross(point, omega))))
     return result
 
 
-def _feet(free: FreeGyrostat, frame: Frame, sigma: int, N: Any, numbers: Arithmetic) -> list[Any]:
+def _feet(free: FreeGyrostat, frame: Frame, sigma: int, N: arb) -> list[acb]:
     """Return all rho for which sigma N c + rho f is a point of the orbit's curve."""
-    real = numbers.real
 
-    def along_f(vector: Vector) -> Any:
-        return numbers.complex(real(dot(vector, frame.a)), real(dot(vector, frame.b)))
+    def along_f(vector: Vector) -> acb:
+        return acb(ball(dot(vector, frame.a)), ball(dot(vector, frame.b)))
 
     if free.is_circle:
         nu = free.osculating_plane
-        away = real(dot(nu, free.momentum)) - sigma * N * real(dot(nu, frame.c))
+        away = ball(dot(nu, free.momentum)) - sigma * N * ball(dot(nu, frame.c))
         return [away / along_f(nu)]
     images = [tensors.apply(free.K, axis) for axis in frame]
     K_a, K_b, K_c = images
-    lead = numbers.complex(real(dot(frame.a, K_a) - dot(frame.b, K_b)), real(2 * dot(frame.a, K_b)))
+    lead = acb(ball(dot(frame.a, K_a) - dot(frame.b, K_b)), ball(2 * dot(frame.a, K_b)))
     half = sigma * N * along_f(K_c) - along_f(free.g)
-    last = real(free.n * dot(frame.c, K_c) - free.E) - 2 * sigma * N * real(dot(free.g, frame.c))
-    root = numbers.sqrt(half * half - lead * last)
+    last = ball(free.n * dot(frame.c, K_c) - free.E) - 2 * sigma * N * ball(dot(free.g, frame.c))
+    root = (half * half - lead * last).sqrt()
     # The smaller rho from the product of both: where lead is small it would be a difference.
     larger = half + root if abs(half + root) > abs(half - root) else half - root
     return [-larger / lead, -last / larger]
 
 
-def rate_at_start(free: FreeGyrostat, c: Vector, N: Any, real: Callable[[Fraction], Any]) -> Any:
+def rate_at_start(free: FreeGyrostat, c: Vector, N: arb) -> arb:
     """phi' at the start: N times a rational number."""
     G, w = free.momentum, free.omega
-    return N * real((dot(G, w) - dot(G, c) * dot(w, c)) / (free.n - dot(G, c) ** 2))
+    return N * ball((dot(G, w) - dot(G, c) * dot(w, c)) / (free.n - dot(G, c) ** 2))

@@ -1,11 +1,9 @@
-"""The closed forms of a gyrostat: of the free motion alone, in every regime.
-
-Each function imports what it needs: the two routes load different libraries.
-"""
+"""The closed form of a gyrostat: of the free motion alone, in every regime, in balls."""
 
 from __future__ import annotations
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+from taylor_verify.exact.gyrostat.sigma import free_rotation
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Quaternion, Spin
@@ -14,16 +12,11 @@ from taylor_verify.scenes.scene import Scene
 
 def enclosed(scene: Scene) -> Solution:
     """Return the motion in balls; raises NoClosedForm for a moment on the body."""
-    from taylor_verify.exact.gyrostat.sigma import free_rotation
-
     return free_rotation(*free_gyrostat(scene))
 
 
-def closed_form(scene: Scene) -> Solution:
-    """Return the motion in mpmath; raises NoClosedForm likewise."""
-    from taylor_verify.exact.gyrostat.jacobi import free_rotation
-
-    return free_rotation(*free_gyrostat(scene))
+def closed_form(scene: Scene) -> None:
+    """The motion in mpmath: there is none."""
 
 
 def free_gyrostat(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:

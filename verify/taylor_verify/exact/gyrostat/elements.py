@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil
+from contextlib import suppress
 from typing import Final
 
-from mpmath import mp
+from flint import arb, ctx
+from mpmath import mp, mpf
 
+from taylor_verify.exact.balls import Undecidable, midpoint
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.gyrostat.closed import free_gyrostat
-from taylor_verify.exact.gyrostat.jacobi import Azimuth, Swing, digits_beside_multiple_root
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
+from taylor_verify.exact.gyrostat.sigma import best_azimuth
 from taylor_verify.exact.gyrostat.spins import steady_spins
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes.scene import Scene
 
@@ -45,6 +47,8 @@ _CANCELLED: Final = (
     "makes it.",
 )
 _PENCIL: Final = "invariants of the pencil of |H|^2 and T"
+_GUARD_BITS: Final = 40
+_ATTEMPTS: Final = 8
 
 
 def elements(scene: Scene, digits: int) -> Elements:
@@ -65,27 +69,39 @@ def _numbers(free: FreeGyrostat) -> list[Element]:
     """The elements of the orbit itself, at the ambient precision."""
     if free.outer is not None:
         return _turning(free)
-    swing = Swing(free)
     if free.regime is Regime.SEPARATRIX:
         meaning = "rate at which omega leaves the steady spin and returns to it, as e^{s t}"
-        return [Element("saddle_rate", 2 * swing.rate, "1/time", meaning, _PENCIL)]
+        rate = 2 * mp.sqrt(3 * mp.convert(free.double_root))
+        return [Element("saddle_rate", rate, "1/time", meaning, _PENCIL)]
     if free.regime is Regime.CUSP:
         return []
     # R recurs but for a turn about H: phi of any body axis, which differ by whole turns.
-    with mp.workdps(mp.dps + ceil(digits_beside_multiple_root(free))):
-        turned = Azimuth(free, Swing(free)).per_period
+    turned, period, *parameters = _recurring(free)
     angle = turned - 2 * mp.pi * mp.floor(turned / (2 * mp.pi))
     meaning = "angle about H by which the attitude differs after a period, less whole turns"
     elements = [
-        Element("period", swing.period, "time", "omega recurs in body axes", _PENCIL),
+        Element("period", period, "time", "omega recurs in body axes", _PENCIL),
         Element("precession", angle, "radians", meaning, "", size=2 * mp.pi),
     ]
-    if swing.m is not None:
-        elements += [
-            Element("m", swing.m, "", "parameter k^2 of the elliptic functions", _PENCIL),
-            Element("m_prime", swing.m_prime, "", "1 - m", _PENCIL),
-        ]
+    meanings = ("parameter k^2 of the elliptic functions", "1 - m")
+    for name, value, words in zip(("m", "m_prime"), parameters, meanings, strict=False):
+        elements.append(Element(name, value, "", words, _PENCIL))
     return elements
+
+
+def _recurring(free: FreeGyrostat) -> list[mpf]:
+    """The turn about H in a period, the period, m and m' where they are, to mpmath's precision."""
+    bits = mp.prec + _GUARD_BITS
+    for _ in range(_ATTEMPTS):
+        with ctx.workprec(bits), suppress(Undecidable):
+            curve, azimuth = best_azimuth(free)
+            sizes = [curve.period, *(curve.parameters or ())]
+            turned = azimuth.per_period
+            is_sharp = all(number.rel_accuracy_bits() >= mp.prec for number in sizes)
+            if is_sharp and turned.rad() <= arb(2) ** -mp.prec:
+                return [midpoint(number) for number in (turned, *sizes)]
+        bits *= 2
+    raise Unsettled(f"the period is not known with {bits // 2} bits")
 
 
 def _turning(free: FreeGyrostat) -> list[Element]:

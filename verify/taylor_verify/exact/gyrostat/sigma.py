@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache, cached_property, partial
-from typing import Final, NamedTuple, final
+from typing import NamedTuple, final
 
 from flint import acb, arb, arb_mat
 
@@ -21,7 +21,6 @@ from taylor_verify.exact.balls import Undecidable, ball, balls, balls_of
 from taylor_verify.exact.euler.rotations import BallCourse, Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
-    Arithmetic,
     Frame,
     poles,
     rate_at_start,
@@ -41,8 +40,6 @@ from taylor_verify.exact.rotation import (
 from taylor_verify.exact.solution import Time
 from taylor_verify.numbers.tensors import Vector, dot
 from taylor_verify.scenes.motion import Quaternion
-
-_BALLS: Final = Arithmetic(ball, acb, lambda z: z.sqrt())
 
 
 def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> RotationBalls:
@@ -141,12 +138,18 @@ class Azimuth:
         self._lattice, self._c = curve, balls(frame.c)
         self._N = ball(free.n).sqrt()
         self._factors = []
-        self._rate = rate_at_start(free, frame.c, self._N, ball)
-        for pole in poles(free, place.converted(ball), frame, _BALLS):
+        self._rate = rate_at_start(free, frame.c, self._N)
+        for pole in poles(free, place.converted(ball), frame):
             argument = curve.argument(pole.p, pole.slope)
             value, slope = curve.jet(-argument, order=1)
             self._factors.append(_Factor(argument, value, pole.sigma))
             self._rate -= pole.sigma * (slope / value).imag
+
+    @property
+    def per_period(self) -> arb:
+        """phi after a period, less whole turns: each of an even number of factors changes its sign."""
+        assert self._lattice.period is not None
+        return self._rate * self._lattice.period
 
     @property
     def distance(self) -> float:
@@ -182,6 +185,12 @@ class _Factor(NamedTuple):
     argument: acb
     scale: acb
     sigma: int
+
+
+def best_azimuth(free: FreeGyrostat) -> tuple[Lattice, Azimuth]:
+    """Return the lattice of a motion and its azimuth in the best frame, at the ambient precision."""
+    curve = lattice(*free.invariants)
+    return curve, Azimuth(free, point_map(free), _best_frame(free), curve)
 
 
 def _best_frame(free: FreeGyrostat) -> Frame:

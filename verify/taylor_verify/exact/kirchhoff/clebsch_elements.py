@@ -19,7 +19,7 @@ from typing import Final
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, settled
-from taylor_verify.exact.kirchhoff.degenerate import Carrier
+from taylor_verify.exact.kirchhoff.carrier import Carrier
 from taylor_verify.exact.kirchhoff.general import conserved, recurring
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
@@ -27,12 +27,11 @@ from taylor_verify.exact.kirchhoff.quartic import (
     derivative,
     value,
 )
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime, turning_points
+from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime, turning_points
 from taylor_verify.numbers import tensors
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-_ELLIPTIC: Final = ("four-roots", "two-roots", "cubic")
 _SOURCE: Final = "Hydromechanics 49 (8)"
 _AXIAL: Final = "Hydromechanics 49 (25)"
 _CONSERVED: Final = (
@@ -105,17 +104,26 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
     elif kind == "steady":
         yield from _disturbance(nutation)
     elif kind != "rest":
-        values = NutatingBody(kind, nutation, start).elements(working)
+        values = _wave(kind, nutation, start, working)
         period = "period of nutation: x3 and the shape of (x, y) recur"
         yield from recurring(values, _WAVE, period, _SOURCE)
         if kind in ("hyperbolic", "heteroclinic"):
             yield _approach(kind, nutation)
         yield from _range(kind, nutation, working)
-        if kind in _ELLIPTIC:
+        if kind in ELLIPTIC:
             meaning = "of f, exact, between -1 and 1: 0 where two roots agree, as on the separatrix"
             formula = "(g2^3 - 27 g3^2)/(|g2|^3 + 27 g3^2)"
             number = mp.convert(discriminant(nutation))
             yield Element("discriminant", number, "", meaning, formula)
+
+
+def _wave(kind: str, nutation: Nutation, start: Impulse, working: int) -> Mapping[str, mpf]:
+    """The period of nutation where x3 recurs, and the rate and the parameters of elliptic functions."""
+    if kind in ELLIPTIC:
+        return NutatingBody(kind, nutation, start).elements(working)
+    if kind == "trigonometric":
+        return {"period": 2 * mp.pi / mp.sqrt(mp.convert(-Carrier.of(nutation).A))}
+    return {}
 
 
 # Motions with x3 constant.
@@ -167,7 +175,7 @@ def _range(kind: str, nutation: Nutation, working: int) -> Iterator[Element]:
     F = mp.sqrt(mp.convert(nutation.F2))
     if kind == "heteroclinic":
         ends = [-F, F]
-    elif kind in _ELLIPTIC:
+    elif kind in ELLIPTIC:
         points = turning_points(nutation, working)
         ends = [mp.convert(points.z1), mp.convert(points.z2)]
     else:

@@ -19,11 +19,9 @@ from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
-from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar
-from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
+from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime
 from taylor_verify.exact.kirchhoff.solid import is_steady, solid
 from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
@@ -34,22 +32,22 @@ from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-Subject = Nutation | Plane | Impulse | FreeSpin | Curve
-"""The exact numbers of a case: of a body of revolution, a plane, a steady motion, a top, Weber's curve."""
+Subject = Nutation | Impulse | FreeSpin | Curve
+"""The exact numbers of a case: of a body of revolution, a steady motion, a top, Weber's curve."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A motion that has a closed form: what is left after the reductions, and its two routes.
+    """A motion that has a closed form: what is left after the reductions, and its routes.
 
-    Where ``floats`` is None, Taylor series are the second route.
+    ``floats`` is that of 49 (12) to (17), or of Euler's top. Where it is None, the second is Taylor.
     """
 
     regime: str
     reduced: Reduced
     subject: Subject
     balls: Callable[[], Solution]
-    floats: Callable[[], Solution] | None
+    floats: Callable[[], Solution] | None = None
 
 
 def enclosed(scene: Scene) -> Solution:
@@ -58,12 +56,10 @@ def enclosed(scene: Scene) -> Solution:
     return solved.reduced.carried_back(solved.balls())
 
 
-def closed_form(scene: Scene) -> Solution:
-    """The motion in mpmath; raises NoClosedForm likewise, and for Weber's case."""
+def closed_form(scene: Scene) -> Solution | None:
+    """The motion in mpmath, None where it has none; raises NoClosedForm likewise."""
     solved = case(scene)
-    if solved.floats is None:
-        raise NoClosedForm(f"the second route of the regime {solved.regime} is taylor")
-    return solved.reduced.carried_back(solved.floats())
+    return None if solved.floats is None else solved.reduced.carried_back(solved.floats())
 
 
 def case(scene: Scene) -> Case:
@@ -95,7 +91,7 @@ def revolution(whole: Reduced) -> Case | None:
     kind, axes, track = regime(nutation), nutation.axes, scene.track
     if kind in ("rest", "steady", "euler-top"):
         turn = Turning(kind, nutation.solid, start, track, nutation.turn_rate, axes.n)
-        return Case(kind, reduced, nutation, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
+        return Case(kind, reduced, nutation, lambda: TurningBody(turn))
     if not axes.is_upright:
         reduced, start = reduced.then(scene, out_of(axes, start)), at_rest_in_space(start)
     return Case(
@@ -103,23 +99,7 @@ def revolution(whole: Reduced) -> Case | None:
         reduced,
         nutation,
         lambda: weierstrass.NutatingBody(kind, nutation, start, track),
-        lambda: jacobi.NutatingBody(kind, nutation, start, track),
-    )
-
-
-def flat(whole: Reduced) -> Case | None:
-    """A motion in a plane of the body: that of the body of revolution that moves alike."""
-    reduced_plane = planar(whole)
-    if reduced_plane is None:
-        return None
-    reduced, place = reduced_plane
-    kind, back, alike = regime_in_plane(place), in_plane(place), of_revolution(reduced.scene, place)
-    return Case(
-        kind,
-        reduced,
-        place,
-        lambda: carried(enclosed(alike), back, kind),
-        lambda: carried(closed_form(alike), back, kind),
+        (lambda: jacobi.NutatingBody(kind, nutation, start, track)) if kind in ELLIPTIC else None,
     )
 
 
@@ -130,7 +110,7 @@ def steady(whole: Reduced) -> Case | None:
         return None
     kind = "steady" if any(start.moving) else "rest"
     turn = Turning(kind, body, start, whole.scene.track)
-    return Case(kind, whole, start, lambda: TurningBody(turn), lambda: jacobi.Screw(turn))
+    return Case(kind, whole, start, lambda: TurningBody(turn))
 
 
 def turning(whole: Reduced) -> Case | None:
@@ -166,8 +146,8 @@ def weber(whole: Reduced) -> Case | None:
         return None
     if whole.scene.track:
         raise NoClosedForm("attitude and centre of Weber's motion have no closed form")
-    return Case(WEBER, reduced, genus_two, lambda: WeberBalls(genus_two), None)
+    return Case(WEBER, reduced, genus_two, lambda: WeberBalls(genus_two))
 
 
-# Bodies of revolution and planes have words of their own for their steady motions.
-CASES: Final = (revolution, flat, steady, turning, weber)
+# Bodies of revolution have words of their own for their steady motions.
+CASES: Final = (revolution, steady, turning, weber)

@@ -24,6 +24,8 @@ _DOUBLINGS: Final = 12
 # Rationals near irrational constants have four times the digits asked for, and some more.
 _BITS_PER_DIGIT: Final = 14
 _MORE_BITS: Final = 256
+ELLIPTIC: Final = ("four-roots", "two-roots", "cubic")
+"""The kinds in which x3 swings between two simple roots of f."""
 # The kind of motion by the sign of the curvature of f where its root is repeated.
 _BY_CURVATURE: Final = {1: "hyperbolic", 0: "algebraic", -1: "trigonometric"}
 

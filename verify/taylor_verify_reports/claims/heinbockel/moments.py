@@ -91,7 +91,7 @@ _TIMES: Final = tuple(Fraction(k) for k in (1, 5, 20))
 
 def jacobi(moment: int = 0) -> Residual:
     """Jacobi's functions against a trajectory: the closed form of the free body with full tensor."""
-    from taylor_verify.exact.euler.closed import closed_form
+    from taylor_verify.exact.route import solution
 
     half, zero = Fraction(1, 2), Fraction(0)
     inertia = ((Fraction(3), half, zero), (half, Fraction(2), zero), (zero, zero, Fraction(4)))
@@ -99,7 +99,7 @@ def jacobi(moment: int = 0) -> Residual:
     loaded = RigidBody(inertia, (zero, zero, Fraction(moment)))
     orbit = trajectory(loaded, start, _TIMES)["omega"]
     free = scene_of(RigidBody(inertia), start, _TIMES)
-    closed = closed_form(free).motion(_TIMES, DIGITS)["omega"]
+    closed = solution(free, "mpmath").motion(_TIMES, DIGITS)["omega"]
     with mp.workdps(DIGITS + 5):
         size = max(
             mp.norm(list(a - b)) / mp.norm(list(b)) for a, b in zip(closed, orbit, strict=True)

@@ -1,6 +1,4 @@
-"""A rigid body under a constant moment in balls: the rigorous route beside fresnel.
-
-It shares the exact decisions of regime with that route, and no special function. Legend as in regime;
+"""A rigid body under a constant moment in balls. Legend as in regime;
 |n| phi = turning t + bending t^2, c = bending/|n|, b = turning/|n|. The moment's share of w_perp is
 (1/J_d) (Re Y + Im Y e x) M_perp with
 
@@ -21,7 +19,6 @@ from flint import acb, arb
 from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import ball, balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
-from taylor_verify.exact.euler.moments.power_series import SeriesTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.numbers import tensors
@@ -55,7 +52,7 @@ class _Course(OneByOne):
             self._factor = arb.pi().sqrt() / (2 * self._root)
         if line is not None:
             self._axis = [component / length for component in balls(spin.free.axis)]
-            self._turn = SeriesTurn(line) if line.is_weak else KummerTurn(line)
+            self._turn = KummerTurn(line)
 
     def at(self, t: Fraction, turned: bool) -> tuple[list[arb], Rows]:
         phi = ball(self._spin.phi(t)) / self._length

@@ -27,7 +27,7 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 
@@ -36,8 +36,6 @@ from taylor_verify.numbers.tensors import Matrix, Vector
 _MOST_TURNS: Final = 256
 # Angles since the instant at which the spin, or omega, would be least: each of their digits is lost.
 _LARGEST_ANGLE: Final = 10**600
-# Each of two parts of half the angle under a weak moment: a power series takes seconds for so many radians.
-_LARGEST_HALF_ANGLE: Final = 2**17
 
 
 class MomentRegime(StrEnum):
@@ -81,23 +79,6 @@ class Line:
         is_moderate = across**2 <= _MOST_TURNS**2 * 64 * self.pace
         return not (is_moderate and self.pace * self.lead**4 <= 4 * _LARGEST_ANGLE**2)
 
-    def restarted(self, t: Fraction) -> Line:
-        """Return the line with its times counted from t."""
-        return Line(tensors.plus(self.a, tensors.scaled(t, self.b)), self.b)
-
-    def is_short(self, t: Fraction, most: int) -> bool:
-        """True if neither |a| t/2 nor |b| t^2/4 is more than ``most``."""
-        size = tensors.dot(self.a, self.a)
-        return size * t**2 <= 4 * most**2 and self.pace * t**4 <= 16 * most**2
-
-    def check_reach(self, t: Fraction) -> None:
-        """Raise Unsettled where power series up to the time t would take minutes."""
-        if not self.is_short(t, _LARGEST_HALF_ANGLE):
-            raise Unsettled(
-                f"the attitude under a weak moment: expected at most {_LARGEST_HALF_ANGLE} radians up to "
-                "the times asked for"
-            )
-
 
 @dataclass(frozen=True)
 class LoadedSpin:
@@ -114,7 +95,9 @@ class LoadedSpin:
         if not any(self.moment):
             raise ValueError("expected a moment that is not zero, got 0 0 0 @ body.moment")
         if self.free.discriminant != 0:
-            raise NoClosedForm("a moment acts on a body with three different moments of inertia")
+            raise NoClosedForm(
+                "a moment acts on a body with three different moments of inertia, and omega keeps no axis"
+            )
         # The square of phi between t = 0 and the instant without spin, where that comes.
         if self.regime is MomentRegime.OBLIQUE and not (
             self.free.turning**4
@@ -173,4 +156,7 @@ class LoadedSpin:
         free = self.free
         gyration = tensors.scaled(free.ratio, free.along(self.omega))
         b = tensors.scaled(1 / free.double_moment, self.moment)
-        return Line(tensors.plus(self.omega, gyration), b)
+        line = Line(tensors.plus(self.omega, gyration), b)
+        if line.is_weak:
+            raise NoClosedForm("the attitude under so weak a moment")
+        return line

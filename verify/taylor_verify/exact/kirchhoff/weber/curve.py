@@ -29,7 +29,6 @@ from functools import cached_property, cmp_to_key
 from typing import Any, Final
 
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC, diagonal_family
-from taylor_verify.exact.kirchhoff.plane import plane
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
 from taylor_verify.exact.solution import NoClosedForm
@@ -165,14 +164,14 @@ class Curve:
 def curve(scene: Scene) -> Curve | None:
     """The curve of a motion of Weber's, or None for a body or a motion that is not of the family.
 
-    A motion in a plane of the body is left to the pendulum's formulas. Raises NoClosedForm, with the
-    reason, for what is of the family and has no theta functions of genus two.
+    Raises NoClosedForm, with the reason, for what is of the family and has no theta functions of genus two,
+    such as a motion in a plane of the body.
     """
     body, start = solid(scene)
     if not body.is_free or body.axis_of_symmetry is not None or not any(start.linear):
         return None
     family = diagonal_family(body)
-    if family is None or family[0] not in ("neumann", "clebsch2") or plane(scene) is not None:
+    if family is None or family[0] not in ("neumann", "clebsch2"):
         return None
     if tensors.dot(start.linear, start.angular) != 0:
         raise NoClosedForm(_ORTHOGONAL)
