@@ -10,8 +10,8 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
 
 NO_MOMENTA: Final = (
-    "the momentum of body and wheels is not judged: that of the wheels is no sum of multiples of own states "
-    "that the scene tracks"
+    "the momentum of body and wheels is not judged: that of the wheels is no sum of multiples of own "
+    "states that the scene tracks"
 )
 NOTHING_CONSERVED: Final = (
     "no quantity was found that these loads conserve, so no conserved quantity is gated"
