@@ -23,7 +23,7 @@ from mpmath import mp, mpf
 from taylor_verify import check
 from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_CONVENTIONS
-from taylor_verify.judge.load_notes import NO_BALANCES, NOTHING_CONSERVED
+from taylor_verify.judge.load_notes import NOTHING_CONSERVED
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
@@ -228,27 +228,14 @@ def test_work_and_precision_are_measured_under_loads() -> None:
     assert fine.accuracy.drift < 100 * fine.error
 
 
-def test_balances_are_left_out_where_a_row_does_not_begin_a_motion(tmp_path: Path) -> None:
-    """Loads that read the quaternion read its sign, which is no part of an attitude; a note says so."""
-    scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
-    with mp.workdps(40):
-        rows = [Evaluated(scene).start()]
-        rows += [end_of(scene, time, 20, 3).state for time in scene.clock.elapsed[1:]]
-    judged = check(scene, written(tmp_path / "right.csv", scene, rows), partial=True)
-    assert judged.passed
-    assert NO_BALANCES in judged.remarks
-    assert NOTHING_CONSERVED in judged.remarks
-    names = {verdict.quantity for verdict in judged.verdicts}
-    assert "T" in names
-    assert names.isdisjoint(("H2", "H_space"))
-
-
-def test_energy_without_balance_is_the_exact_work(tmp_path: Path) -> None:
-    """T against T of the exact motion fails where the work is wrong, though no arc can begin at a row."""
+def test_work_and_impulse_without_arcs_are_those_of_the_exact_motion(tmp_path: Path) -> None:
+    """T and H fail where work and impulse are wrong, though no arc can begin at a row: q has a sign."""
     scene = with_rows(euler(["-q1/4 - w1/5", "-q2/4 - w2/5", "-q3/4 - w3/5"], "2"), 3)
     right = written(tmp_path / "right.csv", scene, by_steps(scene, of_text(scene)))
     wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, of_text(wrong_sign(scene))))
-    assert check(scene, right, partial=True, tolerance=TOLERANCE).passed
+    answer = check(scene, right, partial=True, tolerance=TOLERANCE)
+    assert answer.passed
+    assert NOTHING_CONSERVED in answer.remarks
     failed, causes = failures(scene, wrong)
-    assert "T" in failed
+    assert {"T", "H2", "H_space"} <= failed
     assert causes == []

@@ -67,7 +67,7 @@ LATE = states("1/4", '["l1", "l2"]', f'l = {{ every = "1/4", start = [0, 0], val
 # By the fault: the scene that the faulty program follows, what fails, and what passes all the same.
 TWINS: Mapping[str, tuple[Scene, set[str], set[str]]] = {
     "sampled at another rate": (
-        satellite(states("1/8")), {"omega", "attitude", "m", "i", "T"}, {"m law"},
+        satellite(states("1/8")), {"omega", "attitude", "m", "i", "T", "H_space"}, {"m law"},
     ),
     "one sample late": (satellite(LATE), {"omega", "m", "i", "m law"}, set()),
     "another law": (
@@ -116,7 +116,7 @@ def test_a_right_file_passes_by_the_arithmetic_alone(tmp_path: Path) -> None:
     answer = judged(tmp_path, RIGHT, partial=True)
     assert answer.passed, str(answer)
     names = {v.quantity for v in answer.verdicts}
-    assert {"initial state", "omega", "attitude", "m", "i", "m law", "T"} <= names
+    assert {"initial state", "omega", "attitude", "m", "i", "m law", "T", "H2", "H_space"} <= names
     assert all((v.bound or 1.0) < 1e-13 for v in answer.verdicts if v.is_compared)
 
 

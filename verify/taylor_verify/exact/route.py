@@ -75,7 +75,7 @@ def _closed_form(scene: Scene, route: str) -> Solution:
         return _damped(scene, route)
     module = f"{kind_of(scene.body).room}.closed"
     if scene.body.loads is not None:
-        module = "taylor_verify.exact.euler.heavy"
+        module = "taylor_verify.exact.euler.libration"
     try:
         closed: Solution | None = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     except Undecided as doubt:

@@ -9,16 +9,14 @@ from taylor_verify.exact.invariants import invariants
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
 
-NO_BALANCES: Final = (
-    "the momenta are not judged by balances, and of the energy only its value: the loads depend on more "
-    "than a row determines (the centre, the sign of a quaternion, states of the scene's own)"
+NO_MOMENTA: Final = (
+    "the momentum of body and wheels is not judged: that of the wheels is no sum of multiples of own "
+    "states that the scene tracks"
 )
 NOTHING_CONSERVED: Final = (
     "no quantity was found that these loads conserve, so no conserved quantity is gated"
 )
 _HOLD: Final = "hold"
-# One quantity of each model that every balance comes with.
-_BALANCED: Final = ("H2", "F2")
 
 
 def breaks_of(scene: Scene) -> str:
@@ -42,5 +40,5 @@ def load_notes(scene: Scene, verdicts: Sequence[Verdict]) -> Iterator[str]:
         return
     if not any(invariant.is_conserved for invariant in invariants(scene)):
         yield NOTHING_CONSERVED
-    if not any(verdict.quantity in _BALANCED for verdict in verdicts):
-        yield NO_BALANCES
+    if scene.body.loads.rotor and not any(verdict.quantity == "H2" for verdict in verdicts):
+        yield NO_MOMENTA

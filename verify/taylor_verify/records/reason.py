@@ -135,8 +135,8 @@ _MEANINGS: Final = {
     Carried.START: "one rounding of each component of the start on the rung",
     Carried.ROW: "a rounding of the input and one of the row",
     Carried.WORK: (
-        "T of the exact motion, at the start and with the work of all loads since; attainable = |dT/dz| x "
-        "the floor of the momenta z"
+        "this quantity Q of the exact motion, at the start and with the work or impulse of all loads "
+        "since; attainable = |dQ/dz| x the floor of the state z"
     ),
     Carried.LAW: (
         "on the instants of this state, the value in the row against its law at the state of the same row; "

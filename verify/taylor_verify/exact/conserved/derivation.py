@@ -37,7 +37,7 @@ Row = list[Polynomial]
 
 # Powers up to this one are written out.
 _MOST_POWER: Final = 4
-_ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
+ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
     "+": add,
     "-": sub,
     "*": multiplied,
@@ -212,8 +212,8 @@ class Derivation:
 
     def _written_out(self, step: Step, operands: Row) -> Polynomial | None:
         """The polynomial of a step; None of a step that is none. Raises TooLong."""
-        if step.operation in _ARITHMETIC:
-            return _ARITHMETIC[step.operation](*operands)
+        if step.operation in ARITHMETIC:
+            return ARITHMETIC[step.operation](*operands)
         if step.operation == "/" and operands[1].is_constant() and not operands[1].is_zero():
             return operands[0] / operands[1].leading_coefficient()
         if step.operation == "power" and step.number in range(2, _MOST_POWER + 1):

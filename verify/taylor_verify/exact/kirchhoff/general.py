@@ -90,7 +90,7 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
     family = family_of(scene)
 
     def numbers(working: int) -> list[Element]:
-        own = [] if solved is None else _own(solved, working)
+        own = [] if solved is None else own_elements(solved, working)
         return [*own, *conserved(body, start)]
 
     unsolved = _UNSOLVED if family is None else _UNBUILT
@@ -103,7 +103,7 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
     return Elements(kind, settled(numbers, digits), tuple(sentences))
 
 
-def _own(solved: Case, working: int) -> list[Element]:
+def own_elements(solved: Case, working: int) -> list[Element]:
     """The elements of x and y in one of the cases."""
     match solved.subject:
         case Curve() as curve:

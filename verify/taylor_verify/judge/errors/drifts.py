@@ -8,8 +8,8 @@ between two samples,
 Where Q is conserved, Q(flow(state)) = Q(state), and the sum telescopes to Q(state_n) - Q(start). With loads
 Q(flow(state)) - Q(state) is the work or impulse along the arc, and the sum is the balance.
 
-Where no arc can begin at a sample, as under loads that read the sign of a quaternion, T is compared with
-that of the exact motion, which holds the work of all loads.
+Where no arc can begin at a sample, as under loads that read the sign of a quaternion or states of one's
+own, Q is compared with that of the exact motion, which holds the work and the impulse of all loads.
 
 For a damped body without loads Q is evaluated at e^{ct} times the momenta: T e^{2ct}, |H|^2 e^{2ct} and so
 on are conserved. With loads or wheels they are not conserved, and Q itself has a balance.

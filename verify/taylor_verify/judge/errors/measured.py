@@ -54,8 +54,6 @@ BLOCK: Final = 4096
 BLOCK_OF_SERIES: Final = 32768
 # The names of a state's quantities in a sensitivity, where they differ.
 _BLOCKS: Final = {"omega": "momentum"}
-# The quantity whose change is the work of all loads.
-_ENERGY: Final = "T"
 # Shifts of time are searched on at most this many evenly chosen rows, and on the worst rows.
 MOST_SHIFTED: Final = 4096
 
@@ -205,16 +203,20 @@ class Comparison:
             invariant
             for invariant in every
             if has.issuperset(blocks := invariant.sensitivity(start).keys())
-            and (invariant.is_conserved or self._has_balance(blocks) or invariant.name == _ENERGY)
+            and (invariant.is_conserved or self._has_balance(blocks) or self._has_loads)
         ]
 
     def _worked(self, conserved: Collection[Invariant], start: Motion) -> frozenset[str]:
-        """Return the name of T where it changes and no arc shows by how much."""
+        """Return the names of what changes under written loads, where no arc shows by how much."""
         return frozenset(
             each.name
             for each in conserved
             if not (each.is_conserved or self._has_balance(each.sensitivity(start).keys()))
         )
+
+    @property
+    def _has_loads(self) -> bool:
+        return self.scene.body.loads is not None
 
     def _has_balance(self, blocks: Collection[str]) -> bool:
         """Return True if a quantity that depends on these blocks is known at the end of an arc."""
