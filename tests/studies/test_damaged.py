@@ -15,6 +15,7 @@ from builders.verdicts import MIXED, RECORD
 from taylor_verify.batch.report import read_report
 from taylor_verify.cli import main
 from taylor_verify.records import store
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.site import pages
 from taylor_verify_reports.studies.source import Report
 
@@ -89,6 +90,18 @@ def test_damaged_verdicts_are_refused(damage: str, report: Path, capsys: Capture
     assert fault in message
     assert "Error" not in message
     assert "sys." not in message
+
+
+def test_a_scene_renamed_in_all_files_is_refused(report: Path, capsys: Captured) -> None:
+    """The digest of a shipped scene names it, whatever the sums say; a file may be a copy of it."""
+    rows = [verdict for verdict in MIXED if verdict.scene == "euler/generic"]
+    for name, status in (("euler/soyuz", 2), ("copy.toml", 0)):
+        provenance = {**rows[0].provenance, "scene": load("euler/apollo").digest}
+        renamed = [replace(row, scene=name, provenance=provenance) for row in rows]
+        store.write(report, renamed, [])
+        done, message = published(report, capsys)
+        assert done == status
+        assert ("expected the scene euler/apollo" in message) is bool(status)
 
 
 @pytest.mark.parametrize("is_deleted", [False, True])

@@ -11,6 +11,7 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import index
+from taylor_verify.scenes.library import names_by_digest
 from taylor_verify.words.entry import Page
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.accuracy import quoted
@@ -36,7 +37,7 @@ def publish(folder: Path | str) -> list[Path]:
     else.
     """
     place = Path(folder)
-    verdicts = store.load(place)
+    verdicts = _with_own_names(place)
     texts = {name: text for study in STUDIES for name, text in study.pages(place).items()}
     texts |= index(place, verdicts, entries(place, texts))
     texts = _with_caution(place, texts)
@@ -50,9 +51,26 @@ def publish_index(folder: Path | str) -> list[Path]:
     Returns the files written. Raises the errors of `publish`.
     """
     place = Path(folder)
-    verdicts = store.load(place)
+    verdicts = _with_own_names(place)
     texts = _with_caution(place, index(place, verdicts, entries(place)))
     return [*replace_files(place, texts), *_requote(place, verdicts)]
+
+
+def _with_own_names(place: Path) -> tuple[Verdict, ...]:
+    """Return the verdicts; raise ValueError for a shipped scene under the name of another one.
+
+    A name that ends in .toml is that of a file, which may be a copy.
+    """
+    verdicts, own = store.load(place), names_by_digest()
+    for k, verdict in enumerate(verdicts):
+        name = own.get(verdict.provenance["scene"], verdict.scene)
+        if verdict.scene != name and not verdict.scene.endswith(".toml"):
+            file = place / store.FOLDER / store.VERDICTS
+            expected = f"expected the scene {name}, whose digest this is"
+            raise ValueError(
+                f"{expected}, got {verdict.scene!r:.60} @ verdicts[{k}].scene @ {file}"
+            )
+    return verdicts
 
 
 def _with_caution(place: Path, texts: Mapping[str, str]) -> dict[str, str]:

@@ -38,11 +38,26 @@ def attitude(table: Table) -> Vector | None:
 
 
 def _quaternion(table: Table) -> Vector | None:
+    if len(three := table.peek("attitude")) == 3:
+        table.take("attitude", "4 numbers")
+        table.fault("4 numbers, scalar first", shown(three), "attitude", _of_three(three))
+        return None
     entries = table.vector("attitude", length=4)
     if entries is not None and not any(entries):
         table.fault("a quaternion that is not zero", shown(list(entries)), "attitude")
         return None
     return entries
+
+
+def _of_three(entries: list[object]) -> str:
+    """Return the lines to write for three numbers, or rows, that stand in place of a quaternion."""
+    if any(isinstance(entry, list) for entry in entries):
+        return "a matrix is written as its quaternion, or as `rotation_vector = [..]`"
+    numbers = f"[{', '.join(map(shown, entries))}]"
+    return (
+        f'yaw, pitch and roll are `euler = {{ sequence = "zyx", degrees = {numbers} }}`, a rotation '
+        f"vector is `rotation_vector = {numbers}`, Rodrigues parameters are `mrp = {numbers}`"
+    )
 
 
 def _rodrigues(table: Table) -> Vector | None:

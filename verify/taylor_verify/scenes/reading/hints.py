@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from decimal import Decimal
 from types import MappingProxyType
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.records.faults import shown
 
@@ -67,8 +67,10 @@ force: a force does not turn a body; write its moment, in body axes, as `moment`
 current: a fluid is `model = "kirchhoff"`, there as `current`
 mass_matrix added_mass fluid_added_mass fluid_density: a body in a fluid is `model = "kirchhoff"`, there
   as `mass_matrix`
-wheels reaction_wheels: write `rotor`, the momentum of all wheels: numbers, or text in t and the
-  scene's own states, such as "h1" with `h = { start = [0, 0, 0], rate = [..] }` in [states]
+wheels reaction_wheels rw wheel_momentum wheels_momentum momentum_wheel rw_momentum rw_h h_rw h_w
+  h_wheel h_wheels hw h rw_speed rw_speeds wheel_speed wheel_speeds: write `rotor`, the momentum of
+  all wheels: numbers, or text in t and the scene's own states, such as "h1" with `h = { start = [0,
+  0, 0], rate = [..] }` in [states]
 angular_damping linear_damping damping_coefficient: write `damping`, the rate at which the momentum
   decays
 drag friction viscosity: write `moment = ["-0.1*abs(w1)*w1", 0, 0]`, with "-0.1*w1" where it is linear
@@ -114,6 +116,8 @@ t t0 time: the time of the initial state is `start` in [time]
 _EULER_INITIAL: Final = (
     _INITIAL
     + """\
+rw rw_speed rw_speeds wheel_speed wheel_speeds wheel_momentum rw_momentum h_rw h_w hw: write `rotor` in
+  [body], the momentum of all wheels in body axes: their inertia times their speed relative to the body
 p r w rates angular_velocity angular_rate spin: write `omega`, in body axes: radians per unit of
   time, or text such as "2 deg/s"
 angular_momentum: write `omega`: the angular momentum is I omega
@@ -127,6 +131,8 @@ _KIRCHHOFF_INITIAL: Final = (
 velocity u v w twist speed nu: write `linear_velocity`, of the origin in body axes, together with
   `angular_velocity`
 omega rates p r angular_rate: write `angular_velocity`, in body axes, together with `linear_velocity`
+eta: write `centre = [x, y, z]` and `euler = { sequence = "zyx", radians = [psi, theta, phi] }`: eta is
+  x y z phi theta psi
 position center x0 origin location: write `centre`, the body's origin in space
 impulse momentum momenta linear_momentum angular_momentum: write `linear_impulse` and `angular_impulse`,
   or the two velocities
@@ -195,7 +201,7 @@ def advice(part: str, model: str = "") -> Callable[[str, object], str]:
 
     def advise(key: str, value: object) -> str:
         if sentence := sentences.get(key.lower()):
-            return sentence + _first(value) * (part == "initial" and "attitude" in sentence)
+            return sentence + (_lines(key.lower(), value) if part == "initial" else "")
         here = f"[{part}]" if part else "at the top"
         places = [place for place, keys in _PLACES.items() if key in keys and place != here]
         return f"write `{key}` {'in ' * places[0].startswith('[')}{places[0]}" if places else ""
@@ -203,14 +209,23 @@ def advice(part: str, model: str = "") -> Callable[[str, object], str]:
     return advise
 
 
-def _first(value: object) -> str:
-    """Return the line for four numbers of which the last is the largest, so the scalar as a rule."""
-    numbers = value if isinstance(value, list) and len(value) == 4 else []
-    if not all(isinstance(n, int | Decimal) for n in numbers) or not numbers:
+def _lines(key: str, value: object) -> str:
+    """Return the lines with the numbers of a start in other people's order; empty for any other."""
+    numbers = value if isinstance(value, list) else []
+    if not all(isinstance(n, int | Decimal) for n in numbers):
         return ""
-    if abs(numbers[3]) <= max(map(abs, numbers[:3])):
+    if len(numbers) == 6 and key == "eta":
+        place, angles = _array(numbers[:3]), _array(numbers[:2:-1])
+        return f': `centre = {place}`, `euler = {{ sequence = "zyx", radians = {angles} }}`'
+    if len(numbers) == 6 and key == "nu":
+        lines = _array(numbers[:3]), _array(numbers[3:])
+        return ": `linear_velocity = {}`, `angular_velocity = {}`".format(*lines)
+    # The largest of four numbers is the scalar as a rule.
+    if len(numbers) != 4 or abs(numbers[3]) <= max(map(abs, numbers[:3])):
         return ""
-    last = ", ".join(shown(entry) for entry in (numbers[3], *numbers[:3]))
-    return (
-        f"; where the scalar stands last in your file, it stands first here: `attitude = [{last}]`"
-    )
+    last = _array([numbers[3], *numbers[:3]])
+    return f"; where the scalar stands last in your file, it stands first here: `attitude = {last}`"
+
+
+def _array(numbers: list[Any]) -> str:
+    return f"[{', '.join(map(shown, numbers))}]"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -38,7 +38,9 @@ class Acting:
 class Sample:
     """A body with its start and sampling; v is omega, or U and Omega; ``digits`` are printed.
 
-    ``lines`` belong to [body] of its scene and ``tables`` follow; ``acting`` says the same in numbers.
+    ``lines`` belong to [body] of its scene and ``tables`` follow; ``acting`` says the same in numbers. A
+    ``solid`` in a fluid may be stated by keys of [body] in place of its mass matrix, which is that of the
+    ``dry`` solid and its added mass. A ``current`` changes the place alone: v is relative to the fluid.
     """
 
     sort: str
@@ -52,6 +54,9 @@ class Sample:
     lines: tuple[str, ...] = ()
     tables: tuple[str, ...] = ()
     acting: Acting = Acting()
+    solid: Mapping[str, Any] = field(default_factory=dict)
+    dry: Floats = field(default_factory=lambda: np.zeros((6, 6)))
+    current: Floats = field(default_factory=lambda: np.zeros(3))
 
     @property
     def n(self) -> int:
@@ -65,8 +70,9 @@ class Sample:
     @property
     def text(self) -> str:
         """The text of the scene."""
-        n, rows = self.n, [[f"{x:.17g}" for x in row] for row in self.mass]
-        body = [f"{'inertia' if n == 3 else 'mass_matrix'} = {rows}".replace("'", '"')]
+        n = self.n
+        solid = self.solid or {"inertia" if n == 3 else "mass_matrix": self.mass}
+        body = [f"{name} = {_texts(numbers)}" for name, numbers in solid.items()]
         if np.any(self.load):
             body.append(f"moment = {_texts(self.load)}")
         if np.any(self.rotor):
@@ -87,8 +93,13 @@ class Sample:
         return "\n".join(lines) + "\n"
 
 
-def _texts(vector: Floats) -> str:
-    return str([f"{x:.17g}" for x in vector]).replace("'", '"')
+def _texts(numbers: Floats | Mapping[str, Floats]) -> str:
+    """Return a number, a vector, a matrix or a table as a scene has it."""
+    if isinstance(numbers, Mapping):
+        return f"{{ {', '.join(f'{name} = {_texts(x)}' for name, x in numbers.items())} }}"
+    if np.ndim(numbers) == 0:
+        return f'"{float(numbers):.17g}"'
+    return f"[{', '.join(map(_texts, numbers))}]"
 
 
 def sample(sort: str, draw: np.random.Generator) -> Sample:

@@ -41,21 +41,23 @@ def plain(sort: str, draw: Draw, loaded: Loaded | None = None) -> Sample:
     return loaded(body, draw) if loaded else body
 
 
-def _numbers(draw: Draw, low: float, high: float, count: int = 3) -> Floats:
+def numbers(draw: Draw, low: float, high: float, count: int = 3) -> Floats:
+    """Draw multiples of 1/64."""
     return on_grid(draw.uniform(low, high, count))
 
 
-def _texts(lines: list[str]) -> str:
+def texts(lines: list[str]) -> str:
+    """Return texts as a scene has them."""
     return "[" + ", ".join(f'"{line}"' for line in lines) + "]"
 
 
 def _moment(lines: list[str]) -> tuple[str, ...]:
-    return (f"moment = {_texts(lines)}",)
+    return (f"moment = {texts(lines)}",)
 
 
 def timed(body: Sample, draw: Draw) -> Sample:
     """A moment that is a function of time."""
-    size, rate = _numbers(draw, 0.1, 0.5), _numbers(draw, 0.5, 2)
+    size, rate = numbers(draw, 0.1, 0.5), numbers(draw, 0.5, 2)
     lines = [f"{a}*sin({b}*t)" for a, b in zip(size, rate, strict=True)]
     acting = Acting(load=lambda t, v, q, own: size * np.sin(rate * t))
     return replace(body, lines=_moment(lines), acting=acting)
@@ -63,7 +65,7 @@ def timed(body: Sample, draw: Draw) -> Sample:
 
 def braked(body: Sample, draw: Draw) -> Sample:
     """A moment against the angular velocity and its cube."""
-    linear, cubic = _numbers(draw, 0.05, 0.3), _numbers(draw, 0.05, 0.3)
+    linear, cubic = numbers(draw, 0.05, 0.3), numbers(draw, 0.05, 0.3)
     lines = [f"-{linear[i]}*w{i + 1} - {cubic[i]}*w{i + 1}^3" for i in range(3)]
     acting = Acting(load=lambda t, v, q, own: -linear * v - cubic * v**3)
     return replace(body, lines=_moment(lines), acting=acting)
@@ -71,7 +73,7 @@ def braked(body: Sample, draw: Draw) -> Sample:
 
 def heavy(body: Sample, draw: Draw) -> Sample:
     """A weight at a point of the body, written as a moment."""
-    arm = _numbers(draw, -0.4, 0.4)
+    arm = numbers(draw, -0.4, 0.4)
     a, b, c = (float(x) for x in arm)
     lines = [f"{b}*d3 - {c}*d2", f"{c}*d1 - {a}*d3", f"{a}*d2 - {b}*d1"]
     down = np.array([0.0, 0.0, -1.0])
@@ -81,7 +83,7 @@ def heavy(body: Sample, draw: Draw) -> Sample:
 
 def feedback(body: Sample, draw: Draw) -> Sample:
     """A moment by the attitude and the angular velocity."""
-    kp, kd = (float(x) for x in _numbers(draw, 0.2, 0.8, 2))
+    kp, kd = (float(x) for x in numbers(draw, 0.2, 0.8, 2))
     lines = [f"-{kp}*q{i}*q0 - {kd}*w{i}" for i in (1, 2, 3)]
     acting = Acting(load=lambda t, v, q, own: -kp * q[1:] * q[0] - kd * v)
     return replace(body, lines=_moment(lines), acting=acting)
@@ -89,7 +91,7 @@ def feedback(body: Sample, draw: Draw) -> Sample:
 
 def pulsed(body: Sample, draw: Draw) -> Sample:
     """A moment about each axis until it is switched off."""
-    size = _numbers(draw, 0.2, 0.6)
+    size = numbers(draw, 0.2, 0.6)
     off = float(body.times[len(body.times) // 2] + 1 / (2 * GRID))
     lines = [f"{a} if t < {off} else 0" for a in size]
     acting = Acting(load=lambda t, v, q, own: size * (t < off), switches=(off,))
@@ -98,9 +100,9 @@ def pulsed(body: Sample, draw: Draw) -> Sample:
 
 def lagging(body: Sample, draw: Draw) -> Sample:
     """An own state: the moment follows what a controller asks for with a lag."""
-    kp, kd, pace = (float(x) for x in _numbers(draw, 0.3, 0.9, 3))
+    kp, kd, pace = (float(x) for x in numbers(draw, 0.3, 0.9, 3))
     lines = [f"{pace}*(-{kp}*q{i} - {kd}*w{i} - m{i})" for i in (1, 2, 3)]
-    tables = ("[states]", f"m = {{ start = [0, 0, 0], rate = {_texts(lines)} }}")
+    tables = ("[states]", f"m = {{ start = [0, 0, 0], rate = {texts(lines)} }}")
     acting = Acting(
         load=lambda t, v, q, own: own,
         start=np.zeros(3),
@@ -111,10 +113,10 @@ def lagging(body: Sample, draw: Draw) -> Sample:
 
 def sampled(body: Sample, draw: Draw) -> Sample:
     """An own state: a controller that takes its moment some times in each row and keeps it."""
-    kp, kd = (float(x) for x in _numbers(draw, 0.3, 0.9, 2))
+    kp, kd = (float(x) for x in numbers(draw, 0.3, 0.9, 2))
     every = float(body.times[1]) / int(draw.choice([1, 2]))
     lines = [f"-{kp}*q{i} - {kd}*w{i}" for i in (1, 2, 3)]
-    tables = ("[states]", f'm = {{ every = "{every}", value = {_texts(lines)} }}')
+    tables = ("[states]", f'm = {{ every = "{every}", value = {texts(lines)} }}')
     acting = Acting(
         load=lambda t, v, q, own: own,
         start=np.zeros(3),
@@ -126,13 +128,13 @@ def sampled(body: Sample, draw: Draw) -> Sample:
 
 def driven(body: Sample, draw: Draw) -> Sample:
     """A solid in a fluid with thrust and a drag on all velocities."""
-    thrust, drag = float(_numbers(draw, 0.1, 0.4, 1)[0]), _numbers(draw, 0.05, 0.3, 6)
+    thrust, drag = float(numbers(draw, 0.1, 0.4, 1)[0]), numbers(draw, 0.05, 0.3, 6)
     names = ("u1", "u2", "u3", "w1", "w2", "w3")
     lines = [f"-{drag[i]}*{names[i]}" for i in range(6)]
     lines[0] += f" + {thrust}"
     push = np.array([thrust, 0, 0, 0, 0, 0])
     acting = Acting(load=lambda t, v, q, own: push - drag * v)
-    both = (f"force = {_texts(lines[:3])}", f"couple = {_texts(lines[3:])}")
+    both = (f"force = {texts(lines[:3])}", f"couple = {texts(lines[3:])}")
     return replace(body, lines=both, acting=acting)
 
 

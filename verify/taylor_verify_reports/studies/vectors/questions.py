@@ -19,6 +19,7 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.process.protocol import question
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+from taylor_verify_reports.studies.vectors.bodies_in_water import IN_WATER
 from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     OWN_STATES,
     WRITTEN,
@@ -31,7 +32,7 @@ from taylor_verify_reports.studies.vectors.bodies_under_loads import (
 
 DIGITS: Final = 17
 _ZEROS: Final = re.compile(r"\.?0*p")
-_LOADED: Final[dict[str, Loaded]] = {**WRITTEN, **OWN_STATES, "driven": driven}
+_LOADED: Final[dict[str, Loaded]] = {**WRITTEN, **OWN_STATES, "driven": driven, **IN_WATER}
 _SORTS: Final = {"free": "free", "wheels": "wheels", "moment": "moment", "fluid": "fluid"}
 _MANUFACTURED: Final = ("tones", "impulses")
 _NAMES: Final = {**COLUMNS, "attitude": ("q0", "q1", "q2", "q3")}
@@ -41,10 +42,14 @@ COUNTS: Final = {
     "moment": 10,
     **dict.fromkeys(WRITTEN, 4),
     **dict.fromkeys(OWN_STATES, 5),
-    "fluid": 14,
+    "fluid": 6,
     "driven": 4,
-    "tones": 5,
-    "impulses": 3,
+    "tones": 2,
+    "impulses": 2,
+    "vehicle": 4,
+    "current": 3,
+    "clebsch": 2,
+    "steered": 3,
 }
 
 
@@ -71,7 +76,7 @@ def _of_kind(kind: str, count: int, seed: int) -> Iterator[Question]:
             body = plain("free" if kind == "tones" else "fluid", draw)
             yield Question(name, kind, _manufactured(kind, body, draw), body)
             continue
-        sort = _SORTS.get(kind, "fluid" if kind == "driven" else "free")
+        sort = _SORTS.get(kind, "fluid" if kind in ("driven", *IN_WATER) else "free")
         body = plain(sort, draw, _LOADED.get(kind))
         yield Question(name, kind, body.text.replace("Sample", name), body)
 
@@ -143,7 +148,7 @@ def _numbers(asked: Question) -> dict[str, Any]:
             "angular_velocity": body.v0[3:],
             "attitude": body.q0,
         }
-        numbers = {"mass_matrix": body.mass}
+        numbers = dict(body.solid) or {"mass_matrix": body.mass}
     if asked.kind in _MANUFACTURED:
         start = {}
     return {
@@ -159,8 +164,9 @@ def _further(scene: Scene) -> dict[str, Any]:
     return {key: given[key] for key in ("loads", "states", "manufactured") if key in given}
 
 
-def both(values: Floats) -> dict[str, Any]:
+def both(values: Any) -> dict[str, Any]:
     """Return numbers as exact text and as hexadecimal: they are doubles and short decimals."""
+    values = np.atleast_1d([*values.values()] if isinstance(values, dict) else values)
     return {"text": _nested(values, repr), "hex": _nested(values, _hexadecimal)}
 
 

@@ -20,6 +20,10 @@ from taylor_verify_reports.studies.causes.kinds import FLUID, KINDS, RIGID, Kind
 from taylor_verify_reports.studies.causes.simulated import integrated, law
 from taylor_verify_reports.studies.vectors.bodies_under_loads import OWN_STATES, WRITTEN
 from taylor_verify_reports.studies.vectors.expected_words import family, forbidden
+from taylor_verify_reports.studies.vectors.faults_in_water import (
+    NOT_KNOWN_IN_WATER,
+    WATER_KINDS,
+)
 from taylor_verify_reports.studies.vectors.loaded_kinds import (
     FILE_FAULTS,
     LOADED_KINDS,
@@ -126,19 +130,27 @@ def _makers() -> list[Maker]:
     rigid = [partial(_of_kind, kind, RIGID) for kind in KINDS if set(kind.sorts) & set(RIGID)]
     general = ("times", "frames", "starts")
     moved = [k for k in KINDS if family(k.name) in general and k.name not in _BY_NUMBERS]
-    moved_in_fluid = [
-        partial(_of_kind, kind, ("fluid",))
-        for kind in (*(kind for kind in KINDS if kind.sorts == FLUID), *moved)
+    in_water = [
+        *(partial(_of_kind, kind, kind.sorts) for kind in WATER_KINDS),
+        *(partial(_of_kind, kind, ("fluid",)) for kind in KINDS if kind.sorts == FLUID),
+        *(partial(_of_kind, kind, _WITHOUT_STATES) for kind in KINDS if _is_of_water(kind)),
     ]
     under = [partial(_of_kind, k, _LOADED) for k in moved if family(k.name) != "starts"]
     written = [partial(_of_kind, kind, kind.sorts) for kind in LOADED_KINDS]
     files = [partial(_of_file, fault) for fault in FILE_FAULTS]
-    shares = (rigid, 186), (moved_in_fluid, 4), (under, 16), (written, 36), (files, 58)
+    shares = (rigid, 95), (in_water, 95), (under, 16), (written, 36), (files, 58)
     return [maker for makers, count in shares for maker in islice(cycle(makers), count)]
 
 
 # These change the numbers of a body, which have another place in a written load.
 _BY_NUMBERS: Final = ("load from some time on", "tensor in space axes")
+# Of the bodies in water those that have no states of their own, which a new start would need too.
+_WITHOUT_STATES: Final = ("vehicle", "current", "clebsch")
+
+
+def _is_of_water(kind: Kind) -> bool:
+    """Return True for a fault of any body that may be in water too."""
+    return "fluid" in kind.sorts and kind.sorts != FLUID and kind.name not in _BY_NUMBERS
 
 
 def _of_kind(
@@ -156,7 +168,7 @@ def _of_kind(
         return None
     never = tuple(forbidden(kind.name, kind.words))
     answer = columns_of(rows, question.body.digits)
-    silence = not kind.words or kind.name in NOT_KNOWN
+    silence = not kind.words or kind.name in (*NOT_KNOWN, *NOT_KNOWN_IN_WATER)
     return Wrong(
         question.name, kind.name, family(kind.name), answer, "fail", kind.words, silence, never
     )

@@ -7,13 +7,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
-from taylor_verify.solvers.files.columns.spelling import Spelling
+from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
 from taylor_verify.solvers.files.columns.units import (
     OWN,
     Unit,
@@ -39,6 +39,23 @@ _OF_NO_STATE: Final = (
     "b dot euler angle wheel wheels rw rotor motor cmg joint prop thruster noise"
 )
 _NO_STATE: Final = frozenset(_OF_NO_STATE.split())
+# Words of the body, behind which q0 q1 q2 q3 are its quaternion.
+_OF_ATTITUDE: Final = frozenset(
+    ["attitude", "att", "orientation", "pose", "odometry", "odom", "base", "body", "quat"]
+)
+# Words for the frame that a motion is relative to. Of an angular velocity some may mean its axes.
+_FRAMES: Final[Mapping[str, Frame]] = {
+    **dict.fromkeys(["bi", "ib", "bn", "i2b", "b2i"], Frame.INERTIAL),
+    **dict.fromkeys(["bl", "lb", "bo", "ob"], Frame.LOCAL),
+    **dict.fromkeys(["be", "eb"], Frame.EARTH),
+}
+_FRAMES_OR_AXES: Final[Mapping[str, Frame]] = {
+    **dict.fromkeys(["inertial", "eci", "j2000", "icrf", "gcrf", "eme2000"], Frame.INERTIAL),
+    **dict.fromkeys(["ned", "enu", "lvlh", "orbit", "orbital", "hill", "rtn"], Frame.LOCAL),
+    **dict.fromkeys(["ecef", "itrf"], Frame.EARTH),
+}
+_IN_BODY_AXES: Final = "b"
+_VELOCITIES: Final = ("omega", "linear_velocity")
 
 
 class Reading(NamedTuple):
@@ -134,13 +151,27 @@ class Name:
             matched |= {reading.spelling.group for reading in every}
             if matched and path.endswith("_"):
                 break
-        return tuple(readings.values())
+        return (*readings.values(), *self._between_frames())
+
+    def _between_frames(self) -> tuple[Reading, ...]:
+        """Return the readings of a name that has a frame in its middle: ``q_eci_w``."""
+        words = re.split("_", self._parts[0])
+        frames = [word for word in words[1:] if word in _FRAMES or word in _FRAMES_OR_AXES]
+        if not frames:
+            return ()
+        bare = "_".join(word for word in words if word not in (*frames, _IN_BODY_AXES))
+        return tuple(
+            reading._replace(spelling=_relative(reading.spelling, frames), path="_".join(frames))
+            for reading in self._of("", bare)
+            if reading.spelling.group not in _VELOCITIES or frames[0] in _FRAMES
+        )
 
     def _of(self, path: str, name: str) -> Iterator[Reading]:
         brackets = self._parts[1]
+        words = re.split(r"[^a-z0-9]+", path)
         for spelling, component in _places(name, path):
             unit = OWN if brackets is None else in_brackets(brackets, spelling.group)
-            yield Reading(spelling, component, path, unit)
+            yield Reading(_relative(spelling, words), component, path, unit)
         for stem, end in _without_units(name) if brackets is None else ():
             for spelling, component in _places(stem, path):
                 if unit := as_suffix(end, spelling.group):
@@ -164,6 +195,8 @@ def _is_after(spelling: Spelling, key: str, path: str) -> bool:
     The w1 of motor.w1 is no angular velocity, nor the x of acceleration.x a position.
     """
     is_terse = _TERSE.fullmatch(key) is not None and not spelling.whose
+    if spelling.group == "quaternion" and is_terse:
+        is_terse = _OF_ATTITUDE.isdisjoint(re.split(r"[^a-z]+", path))
     return not spelling.is_behind and not (path and (spelling.is_whole or is_terse))
 
 
@@ -174,6 +207,20 @@ def _is_behind(spelling: Spelling, key: str, path: str) -> bool:
     is_terse = spelling.is_whole or (_TERSE.fullmatch(key) is not None and key[0] != "q")
     is_state = spelling.group != "time" and not spelling.doubt and not is_terse
     return is_state and _NO_STATE.isdisjoint(re.split(r"[^a-z]+", path))
+
+
+@cache
+def _known_relative(spelling: Spelling, frame: Frame) -> Spelling:
+    return replace(spelling, frame=frame)
+
+
+def _relative(spelling: Spelling, words: Sequence[str]) -> Spelling:
+    """Return a spelling with the frame that words beside it say, where it has none of its own."""
+    known = _FRAMES if spelling.group in _VELOCITIES else {**_FRAMES, **_FRAMES_OR_AXES}
+    frames = [known[word] for word in words if word in known]
+    if not frames or spelling.group == "time" or spelling.frame is not Frame.UNSAID:
+        return spelling
+    return _known_relative(spelling, frames[0])
 
 
 def _tails(name: str) -> Iterator[tuple[str, str]]:
