@@ -29,7 +29,7 @@ class Python(Launcher):
 
     comment = "#"
     pin = "=="
-    pinned = re.compile(r"([A-Za-z0-9_.-]+)(==\d+(\.\d+)*| @ \S+)")
+    pinned = re.compile(r"([A-Za-z0-9_.-]+)(==\d+(\.\d+)*((a|b|rc)\d+)?| @ \S+)")
     version = re.compile(r"\d+(\.\d+)*((a|b|rc)\d+)?(\.(post|dev)\d+)*")
 
     def unavailable(self) -> str:

@@ -1,7 +1,8 @@
 """A script in solvers/outside, and what its block of inline metadata (PEP 723) says.
 
 In with_NAME.mjs the lines begin with // instead of #, packages are pinned as "cannon-es@0.20.0", and
-requires-node = ">=20" says which node is needed. `cases/README.md`, *To add an engine*, explains the tables
+requires-node = ">=20" says which node is needed; in with_NAME.cpp they are those of Debian,
+"libode-dev=2:0.16.2-1". `cases/README.md`, *To add an engine*, explains the tables
 `[tool.taylor-verify]`, its `methods` and its `settings`.
 """
 
@@ -19,11 +20,12 @@ import msgspec
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.engines.launcher import Launcher
+from taylor_verify.solvers.engines.native import Native
 from taylor_verify.solvers.engines.node import Node
 from taylor_verify.solvers.engines.python import Python
 
 # The launcher of scripts by the ending of their names.
-_LAUNCHERS: Final[Mapping[str, Launcher]] = {".py": Python(), ".mjs": Node()}
+_LAUNCHERS: Final[Mapping[str, Launcher]] = {".py": Python(), ".mjs": Node(), ".cpp": Native()}
 _PREFIX: Final = "with_"
 
 
@@ -31,7 +33,7 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """The table `[tool.taylor-verify]` of a script.
 
     A version that is asked for replaces the pin of ``package``, else of the first dependency, and of those
-    ``alike``. A default of ``settings`` is a number, the name of another setting, or a list of words.
+    ``alike``; ``flags`` are those of a compiler. A default of ``settings`` is a number, the name of another setting, or a list of words.
     """
 
     title: str
@@ -42,6 +44,7 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     loads: bool | Literal["written"] = True
     data: Literal["inverse", "tensor"] = "inverse"
     serves: bool = False
+    flags: str = ""
     methods: Mapping[str, str] = {}
     settings: Mapping[str, float | str | list[str]] = {}
 
@@ -66,6 +69,13 @@ class Script:
     @property
     def library(self) -> str:
         return self.path.stem.removeprefix(_PREFIX)
+
+    @property
+    def version(self) -> str:
+        """The version of its package that it requires; empty if there is none."""
+        start = f"{self.package}{self.launcher.pin}"
+        pins = (pin for pin in self.requirements if pin.startswith(start))
+        return next((pin.removeprefix(start) for pin in pins), "")
 
     @property
     def package(self) -> str:

@@ -30,11 +30,9 @@ _ALIKE = [
     *("sqrt", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "atan2"),
     *("sinh", "cosh", "tanh", "floor"),
 ]
+_INFIX = ("+", "-", "*")
 FUNCTIONS: dict[str, Callable[..., float]] = {
     **{name: getattr(math, name) for name in _ALIKE},
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
     "/": lambda a, b: a / b,
     "pi": lambda: math.pi,
     "abs": abs,
@@ -63,6 +61,7 @@ class Piece:
         self.begin = -math.inf if piece["from"] is None else float(Fraction(piece["from"]))
         self.end = math.inf if piece["to"] is None else float(Fraction(piece["to"]))
         self._steps = [_prepared(step) for step in piece["steps"]]
+        self._programs: dict[tuple[int, ...], Callable[[Mapping[str, float]], list[float]]] = {}
         self.moment: list[int] = piece.get("moment", [])
         self.wrench: list[int] = [*piece.get("force", []), *piece.get("couple", [])]
         self.rates: list[int] = piece.get("rates", [])
@@ -71,22 +70,27 @@ class Piece:
 
     def values(self, places: Sequence[int], known: Mapping[str, float]) -> list[float]:
         """Return the values of the steps at some places; ``known`` has the inputs by name."""
-        done: list[float] = []
-        for word, numbers, operands in self._steps[: max(places, default=-1) + 1]:
-            try:
-                if word == "number":
-                    done += numbers
-                elif word == "choose":
-                    condition, first, second = operands
-                    done.append(done[first] if done[condition] >= 0 else done[second])
-                elif word in FUNCTIONS:
-                    done.append(FUNCTIONS[word](*(done[k] for k in operands), *numbers))
-                else:
-                    done.append(known.get(word, math.nan))
-            except (ArithmeticError, ValueError):
-                # What has no value may be a branch that is not chosen.
-                done.append(math.nan)
-        return [done[place] for place in places]
+        return self._program(tuple(places))(known)
+
+    def _program(self, places: tuple[int, ...]) -> Callable[[Mapping[str, float]], list[float]]:
+        """Return the steps as one function of Python, ten times as fast as one by one."""
+        if places not in self._programs:
+            lines = [f" v{k} = {_text(self._steps[k])}" for k in self._needed(places)]
+            values = ", ".join(f"v{place}" for place in places)
+            names: dict[str, Any] = {"nan": math.nan, "inf": math.inf, "at": _at}
+            # The names in the text are those of the protocol, and quoted.
+            exec("\n".join(["def program(known):", *lines, f" return [{values}]"]), names)  # noqa: S102
+            self._programs[places] = names["program"]
+        return self._programs[places]
+
+    def _needed(self, places: Sequence[int]) -> list[int]:
+        """Return the places of all steps that some places need."""
+        needed, waiting = set[int](), [*places]
+        while waiting:
+            if (place := waiting.pop()) not in needed:
+                needed.add(place)
+                waiting += self._steps[place][2]
+        return sorted(needed)
 
 
 def _prepared(step: Sequence[Any]) -> tuple[str, list[float], list[int]]:
@@ -98,6 +102,29 @@ def _prepared(step: Sequence[Any]) -> tuple[str, list[float], list[int]]:
         return word, [], rest
     *operands, _, number = rest
     return word, [float.fromhex(number)], operands
+
+
+def _text(step: tuple[str, list[float], list[int]]) -> str:
+    """Return a step as an expression of Python."""
+    word, numbers, operands = step
+    of = [f"v{k}" for k in operands]
+    if word == "number":
+        return repr(numbers[0])
+    if word in _INFIX:
+        return f" {word} ".join(of)
+    if word == "choose":
+        return f"{of[1]} if {of[0]} >= 0 else {of[2]}"
+    if word in FUNCTIONS:
+        return f"at({', '.join([repr(word), *of, *map(repr, numbers)])})"
+    return f"known.get({word!r}, nan)"
+
+
+def _at(word: str, *values: float) -> float:
+    """Return a function at a point; what has no value may be a branch that is not chosen."""
+    try:
+        return FUNCTIONS[word](*values)
+    except (ArithmeticError, ValueError):
+        return math.nan
 
 
 class Acting:
@@ -113,6 +140,7 @@ class Acting:
         self._inertia, self._constant = floats(body["inertia"]), floats(body["moment"])
         self._wheels = floats(body["rotor"]) if "rotor" in body else [0.0] * 3
         self._damping = floats(body["damping"]) if "damping" in body else 0.0
+        self._inverse = floats(body["inverse_inertia"])
         self._pieces = list(map(Piece, question.get("loads", {}).get("pieces", [])))
         self._values = {name: floats(s["start"]) for name, s in initial.items() if s["start"]}
         # A quaternion and its negative are one attitude; loads read the one that goes on from the scene's.
@@ -140,28 +168,51 @@ class Acting:
         self.move_to(self._target if self._left == 1 else self.t + step)
 
     def move_to(self, t: float) -> None:
-        """Note that the engine has gone on to this time; one's own states follow, by Heun's method."""
-        before, ahead = self.t, self._advanced(t - self.t)
+        """Note that the engine has gone on to this time; one's own states are there, too."""
+        before, ahead = self.t, self._ahead(t)
+        self._values |= ahead
         self.t = t
-        if self._moving:
-            after = self._piece.values(self._piece.rates, self._known(t, self._state(), ahead))
-            for name, a, b in zip(self._moving, self._rates, after, strict=True):
-                self._values[name] += (t - before) * (a + b) / 2
         self._arrive(before)
 
     def moment(self, t: float, state: Vector) -> list[float]:
         """Return the moment in body axes, of all that acts: I w' = I w x w + this."""
-        omega = state[:3]
-        momentum = [sum(a * w for a, w in zip(row, omega, strict=True)) for row in self._inertia]
+        return self._moment(t, state, self._known(t, state, self._ahead(t)))
+
+    def _moment(self, t: float, state: Vector, known: Mapping[str, float]) -> list[float]:
+        omega, momentum = state[:3], _times(self._inertia, state[:3])
         moment = [M - self._damping * H for M, H in zip(self._constant, momentum, strict=True)]
         if not self._pieces:
             return _plus(moment, _cross(self._wheels, omega))
-        known = self._known(t, state, self._advanced(t - self.t))
         moment = _plus(moment, self._piece.values(self._piece.moment, known))
         if not self._piece.rotor:
             return _plus(moment, _cross(self._wheels, omega))
-        wheels, reaction = self._turning(t, state, known)
+        wheels, reaction = self._turning(t, known)
         return _plus(_plus(moment, _cross(wheels, omega)), reaction)
+
+    def _ahead(self, t: float) -> dict[str, float]:
+        """Return one's own continuous states at a time within the step.
+
+        They depend on the motion, which goes on from the state of the engine at the begin of the step by
+        the classical method of Runge and Kutta: of the motion itself nothing reaches the engine.
+        """
+        if not self._moving or t == self.t:
+            return {}
+        if t not in self._foreseen:
+            start = [*self._begin, *(self._values[name] for name in self._moving)]
+            end = _runge_kutta(self._rates, self.t, start, t - self.t)
+            self._foreseen[t] = dict(zip(self._moving, end[7:], strict=True))
+        return self._foreseen[t]
+
+    def _rates(self, t: float, y: Vector) -> list[float]:
+        """Return the rates of omega, the attitude and one's own states, y in this order."""
+        omega, (p, *v) = y[:3], y[3:7]
+        known = self._known(t, y[:7], dict(zip(self._moving, y[7:], strict=True)))
+        gyroscopic = _cross(_times(self._inertia, omega), omega)
+        spin_up = _times(self._inverse, _plus(gyroscopic, self._moment(t, y[:7], known)))
+        turn = _plus([p * w for w in omega], _cross(v, omega))
+        attitude = [-sum(a * w for a, w in zip(v, omega, strict=True)), *turn]
+        own = self._piece.values(self._piece.rates, known)
+        return [*spin_up, *(entry / 2 for entry in attitude), *own]
 
     def _arrive(self, before: float) -> None:
         """Take the values that are due, all of them before any is set, and begin what begins here."""
@@ -180,26 +231,13 @@ class Acting:
             values = self._piece.values(self._piece.taken, self._known(self.t, state, {}))
             taken = dict(zip(self._held, values, strict=True))
             self._values |= {name: taken[name] for name in due}
-        if self._moving:
-            known = self._known(self.t, state, {})
-            self._rates = self._piece.values(self._piece.rates, known)
-
-    def _advanced(self, step: float) -> dict[str, float]:
-        """Return one's own continuous states a step later, as their rates say now."""
-        if not self._moving:
-            return {}
-        return {
-            name: self._values[name] + step * rate
-            for name, rate in zip(self._moving, self._rates, strict=True)
-        }
+        self._begin, self._foreseen = [*map(float, state[:3]), *self._attitude], {}
 
     def _known(self, t: float, state: Vector, own: Mapping[str, float]) -> dict[str, float]:
         attitude = continued(state[3:], self._attitude)
         return {"t": t, **inputs([*state[:3], *attitude]), **self._values, **own}
 
-    def _turning(
-        self, t: float, state: Vector, known: Mapping[str, float]
-    ) -> tuple[Vector, Vector]:
+    def _turning(self, t: float, known: Mapping[str, float]) -> tuple[Vector, Vector]:
         """Return the momentum of wheels whose momentum changes, and what its change does to the body."""
         piece = self._piece
         rates = dict(zip(self._moving, piece.values(piece.rates, known), strict=True))
@@ -210,6 +248,22 @@ class Acting:
 
         ends = zip(at(_MOMENTARY), at(-_MOMENTARY), strict=True)
         return at(0.0), [(b - a) / (2 * _MOMENTARY) for a, b in ends]
+
+
+def _runge_kutta(
+    rates: Callable[[float, Vector], Vector], t: float, y: Vector, h: float
+) -> list[float]:
+    """Return y a step h later, by the classical method."""
+    k1 = rates(t, y)
+    k2 = rates(t + h / 2, _moved(y, h / 2, k1))
+    k3 = rates(t + h / 2, _moved(y, h / 2, k2))
+    k4 = rates(t + h, _moved(y, h, k3))
+    slopes = zip(k1, k2, k3, k4, strict=True)
+    return _moved(y, h / 6, [a + 2 * b + 2 * c + d for a, b, c, d in slopes])
+
+
+def _moved(y: Vector, h: float, slopes: Vector) -> list[float]:
+    return [a + h * b for a, b in zip(y, slopes, strict=True)]
 
 
 def inputs(state: Vector) -> dict[str, float]:
@@ -228,6 +282,10 @@ def continued(attitude: Vector, before: Vector) -> list[float]:
     """Return the quaternion or its negative, whichever is nearer to the one before."""
     is_near = sum(a * b for a, b in zip(attitude, before, strict=True)) >= 0
     return [entry if is_near else -entry for entry in attitude]
+
+
+def _times(matrix: Sequence[Vector], v: Vector) -> list[float]:
+    return [sum(a * b for a, b in zip(row, v, strict=True)) for row in matrix]
 
 
 def _cross(a: Vector, b: Vector) -> list[float]:

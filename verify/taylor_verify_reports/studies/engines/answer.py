@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,8 +35,6 @@ _STANDINGS: Final = {
     Outcome.UNSUITED: Standing.UNSUITED,
 }
 _MOST_CHARACTERS: Final = 300
-# A pinned requirement of pip or npm: numpy==2.4.6, @scope/name@1.0.0.
-_PINNED: Final = re.compile(r"(.+?)(?:==|@)(\d[^@=]*)")
 
 
 @dataclass(frozen=True)
@@ -182,11 +179,7 @@ def _programs(solver: str) -> list[Path]:
 def _pinned(solver: str) -> str:
     """Return the version of its package that an engine's script requires; empty if there is none."""
     engine = engines().get(solver.removeprefix(PREFIX)) if solver.startswith(PREFIX) else None
-    for requirement in engine.script.requirements if engine else ():
-        pinned = _PINNED.fullmatch(requirement)
-        if engine and pinned and pinned[1] == engine.script.package:
-            return pinned[2]
-    return ""
+    return engine.script.version if engine else ""
 
 
 def _reason(trajectory: Trajectory) -> str:
