@@ -141,7 +141,7 @@ def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Err
     worst = 0.0
     for group, scale in zip(of.groups, _scales(of, errors), strict=True):
         for piece in pieces.each:
-            columns = [enumerate(piece.sizes(column)) for column in group]
+            columns = [enumerate(piece.sizes[column]) for column in group]
             lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
             worst = max(worst, hypot(*lost) * 2.0**-53 / scale)
     return worst

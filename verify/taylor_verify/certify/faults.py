@@ -69,7 +69,7 @@ def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Nod
             continue
         values = [(before.value(c, after.begin), after.value(c, after.begin)) for c in group]
         jump = hypot(*(float(q - p) for p, q in values))
-        size = sum(sum(piece.sizes(c)) for piece in (before, after) for c in group)
+        size = sum(sum(piece.sizes[c]) for piece in (before, after) for c in group)
         slope = np.array([_slope(after, c) for c in group])
         error, derived = _ends(right, -1)
         yield Node(
