@@ -165,6 +165,9 @@ def test_gaps_are_named_with_their_places() -> None:
     assert short.bound["omega"] <= 1e-3
     assert not short.passed
     assert short.is_undecided
+    outside = certify(SCENE, PPoly(SPLINE.c, NODES + 200))
+    assert [(gap.kind, gap.at, gap.end) for gap in outside.gaps] == [(GapKind.NOT_COVERED, 0, END)]
+    assert outside.is_undecided
 
 
 @pytest.mark.parametrize("name", ["kirchhoff/displaced-origin", "loads/pd-wheels"])
@@ -213,6 +216,12 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
             "terms below 1e100",
         ),
         ({**DOCUMENT, "breaks": 5}, {}, "expected a list of numbers, got 5 @ breaks$"),
+        ({**DOCUMENT, "quantities": {"w1": [[[1.0]] * 3] * 32}}, {}, "1 component in each piece"),
+        (
+            {"breaks": [0, 4], "quantities": {"omega": [[[1], [], [1]]]}},
+            {},
+            r"a list of 0 @ .*\[1\]",
+        ),
         ({**DOCUMENT, "breaks": [1]}, {}, "expected two breaks at least, got 1 @ breaks"),
         ({**DOCUMENT, "quantities": [1]}, {}, "for each quantity, got .1. @ quantities"),
         (

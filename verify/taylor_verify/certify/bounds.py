@@ -100,8 +100,10 @@ def _settled(
 
 
 def _reached(scene: Scene, pieces: Pieces, last: Fraction) -> Fraction:
-    """The end of the span, or that of the pieces where they end before."""
+    """The end of the span, or that of the pieces where they end before; the start where none is."""
     begin = scene.clock.start
+    if not pieces.between(*sorted((begin, last))):
+        return begin
     if last >= begin:
         return max(begin, min(last, pieces.each[-1].end))
     return min(begin, max(last, pieces.each[0].begin))

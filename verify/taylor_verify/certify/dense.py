@@ -212,7 +212,8 @@ def _columns(scene: Scene, name: str, count: int) -> Sequence[str]:
     if name == "impulse":
         columns = tuple(column for group in MOMENTA["kirchhoff"] for column in COLUMNS[group])
     if len(columns) != count:
-        raise refusal(f"{len(columns)} components", count, name)
+        many = "1 component" if len(columns) == 1 else f"{len(columns)} components"
+        raise refusal(f"{many} in each piece", count, name)
     return columns
 
 
@@ -249,7 +250,7 @@ def _of_quantity(
     place, many = f"quantities.{name}", f"{count} pieces, one between two breaks"
     each = _list(pieces, many, place, faults, count if count > 0 else _length(pieces))
     names = _columns(scene, name, _length(each[0])) if each else ()
-    components = f"{len(names)} components, each a list of coefficients"
+    components = f"{len(names)} lists of coefficients, one for each component"
     rows = []
     for k, piece in enumerate(each):
         parts = _list(piece, components, f"{place}[{k}]", faults, len(names))
@@ -269,14 +270,16 @@ def _list(value: Any, expected: str, place: str, faults: Faults, count: int) -> 
     """Return a list of so many entries; an empty one, and a fault, for anything else."""
     if isinstance(value, _LISTS) and len(value) == count:
         return value
-    faults.add(expected, f"{len(value)}" if isinstance(value, _LISTS) else brief(value), place)
+    got = f"a list of {len(value)}" if isinstance(value, _LISTS) else brief(value)
+    faults.add(expected, got, place)
     return ()
 
 
 def _numbers(values: Any, place: str, faults: Faults) -> list[Fraction]:
     """Return the numbers of a list, those of each fault left out."""
     numbers = []
-    for k, value in enumerate(_list(values, "a list of numbers", place, faults, _length(values))):
+    many = _length(values) or 1
+    for k, value in enumerate(_list(values, "a list of numbers", place, faults, many)):
         try:
             numbers.append(_exact(value))
         except (ValueError, OverflowError):

@@ -114,14 +114,15 @@ def findings(
     scales: Mapping[str, Sequence[float]],
 ) -> tuple[InterpolantFinding, ...]:
     """Return the faults that the errors at the nodes show."""
-    faults = []
+    faults: dict[tuple[str, Fault], InterpolantFinding] = {}
     for m in measured:
         name = m.quantity.name
         for k, scale in enumerate(scales[name]):
             each = nodes[name, k]
             if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                faults.append(InterpolantFinding(name, fault, _at_nodes(each) / scale, bound[name]))
-    return tuple(dict.fromkeys(faults))
+                size = _at_nodes(each) / scale
+                faults.setdefault((name, fault), InterpolantFinding(name, fault, size, bound[name]))
+    return tuple(faults.values())
 
 
 def _at_nodes(nodes: Sequence[Node]) -> float:

@@ -29,8 +29,9 @@ _CHECKED: Final = (Fraction(1, 97), Fraction(52, 97), Fraction(95, 97))
 def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) -> Pieces:
     """Return the pieces between the rows of a file."""
     if interpolation not in INTERPOLATIONS:
-        expected = f"interpolation ({', '.join(INTERPOLATIONS)})"
-        raise refusal(expected, brief(interpolation), "interpolation")
+        got = "none" if interpolation is None else brief(interpolation)
+        expected = f"what its program makes of the rows ({', '.join(INTERPOLATIONS)})"
+        raise refusal(expected, got, "interpolation")
     values = {
         column: [exact(row[k]) for row in rows]
         for group, rows in file.groups.items()
