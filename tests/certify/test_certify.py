@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicHermiteSpline, CubicSpline, PPoly, make_interp_spline
+from scipy.interpolate import BPoly, CubicHermiteSpline, CubicSpline, PPoly, make_interp_spline
 
 from taylor_verify.certify import bounds, certify
 from taylor_verify.certify.answer import pieces_of
@@ -89,13 +89,14 @@ def _double(pieces: Any, time: float) -> list[float]:
     ("answer", "more"),
     [
         ({"omega": SPLINE}, {}),
+        (BPoly.from_power_basis(PPoly(SPLINE.c, NODES)), {}),
         (DOCUMENT, {}),
         (lambda t: SPLINE(t), {"degree": 3, "nodes": NODES}),
         (TABLE, {"interpolation": "hermite"}),
         # heyoka's continuous output: powers of the time since each step began.
         (SimpleNamespace(times=NODES, tcs=np.moveaxis(SPLINE.c[::-1], 0, 2)), {}),
     ],
-    ids=["by name", "pieces", "callable", "samples", "Taylor series"],
+    ids=["by name", "Bernstein", "pieces", "callable", "samples", "Taylor series"],
 )
 def test_one_interpolant_has_one_bound(answer: Any, more: dict[str, Any]) -> None:
     """However the same cubics are handed over, the bound is the same but for the rounding of doubles."""
@@ -164,6 +165,9 @@ def test_gaps_are_named_with_their_places() -> None:
     assert short.bound["omega"] <= 1e-3
     assert not short.passed
     assert short.is_undecided
+    outside = certify(SCENE, PPoly(SPLINE.c, NODES + 200))
+    assert [(gap.kind, gap.at, gap.end) for gap in outside.gaps] == [(GapKind.NOT_COVERED, 0, END)]
+    assert outside.is_undecided
 
 
 @pytest.mark.parametrize("name", ["kirchhoff/displaced-origin", "loads/pd-wheels"])
@@ -199,6 +203,8 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
     [
         (lambda t: SPLINE(t), {}, "degree and nodes with a callable"),
         (lambda t: SPLINE(t), {"degree": 2, "nodes": NODES}, "a polynomial of degree 2"),
+        (lambda t: SPLINE(t), {"degree": 3, "nodes": [0]}, "two nodes at least"),
+        (lambda t: SPLINE(t), {"degree": 3, "nodes": [0, "x"]}, "finite numbers, got 'x' @ nodes"),
         (lambda t: SPLINE(t), {"degree": 61, "nodes": NODES}, "a degree from 0 to 60"),
         ({**DOCUMENT, "breaks": NODES[::-1].tolist()}, {}, "breaks that rise"),
         ({**DOCUMENT, "quantities": {"omega": [[[1.0]]] * 32}}, {}, "3 components"),
@@ -210,6 +216,12 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
             "terms below 1e100",
         ),
         ({**DOCUMENT, "breaks": 5}, {}, "expected a list of numbers, got 5 @ breaks$"),
+        ({**DOCUMENT, "quantities": {"w1": [[[1.0]] * 3] * 32}}, {}, "1 component in each piece"),
+        (
+            {"breaks": [0, 4], "quantities": {"omega": [[[1], [], [1]]]}},
+            {},
+            r"a list of 0 @ .*\[1\]",
+        ),
         ({**DOCUMENT, "breaks": [1]}, {}, "expected two breaks at least, got 1 @ breaks"),
         ({**DOCUMENT, "quantities": [1]}, {}, "for each quantity, got .1. @ quantities"),
         (

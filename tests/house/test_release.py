@@ -35,9 +35,11 @@ def project() -> dict[str, Any]:
 
 
 def test_the_version_is_one() -> None:
-    """The package, the citation and the archive say the same."""
+    """The package, the citation, the archive, the recipe and the newest change say the same."""
     assert str(read(ROOT / "CITATION.cff")["version"]) == __version__
     assert json.loads(text_of(".zenodo.json"))["version"] == __version__
+    assert read(ROOT / "recipe" / "recipe.yaml")["context"]["version"] == __version__
+    assert f"\n## [{__version__}] - " in text_of("CHANGELOG.md")
 
 
 def test_the_citation_is_one() -> None:

@@ -117,7 +117,7 @@ def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixt
         (["growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
         (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
         (["--periods", "1e4"], "expected --periods with `publish growth`, got it with no study"),
-        (["prices", "--long"], "expected --long with `publish growth`, got it with prices"),
+        (["hard", "--long"], "expected --long with `publish growth`, got it with hard"),
         (["growth", "--period", "3"], "expected an option, got --period; did you mean --periods?"),
         (["growth", "--period=3"], "expected an option, got --period; did you mean --periods?"),
         (["--lon", "growth"], "expected an option, got --lon; did you mean --long?"),

@@ -9,12 +9,10 @@ from pathlib import Path
 import pytest
 from builders import reports
 from builders.studies.hard import study as hard_study
-from builders.studies.prices import study as prices_study
 
 from taylor_verify_reports.studies import registry
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.prices.document import PRICES
 
 
 @cache
@@ -23,7 +21,6 @@ def measured_report() -> Path:
     place = reports.folder()
     reports.write_growth(place)
     HARD.write(place, hard_study())
-    PRICES.write(place, prices_study())
     return place
 
 
@@ -57,7 +54,7 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
 
 
-@pytest.mark.parametrize("name", ["growth", "prices", "hard"])
+@pytest.mark.parametrize("name", ["growth", "hard"])
 def test_what_is_remade_is_page_and_sheet(name: str) -> None:
     """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
     (study,) = registry.find([name])

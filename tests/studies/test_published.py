@@ -49,7 +49,6 @@ from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.pack import pack
-from taylor_verify_reports.studies.prices.document import PRICES
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
 from taylor_verify_reports.studies.source import Report
@@ -203,7 +202,6 @@ def test_data_are_laid_out_as_the_code_writes_them() -> None:
         growth.GROWTH,
         growth.LONG,
         HARD,
-        PRICES,
         ENCLOSURE,
         CONTROLS,
         claims_page.CLAIMS,

@@ -100,8 +100,10 @@ def _settled(
 
 
 def _reached(scene: Scene, pieces: Pieces, last: Fraction) -> Fraction:
-    """The end of the span, or that of the pieces where they end before."""
+    """The end of the span, or that of the pieces where they end before; the start where none is."""
     begin = scene.clock.start
+    if not pieces.between(*sorted((begin, last))):
+        return begin
     if last >= begin:
         return max(begin, min(last, pieces.each[-1].end))
     return min(begin, max(last, pieces.each[0].begin))
@@ -141,7 +143,7 @@ def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Err
     worst = 0.0
     for group, scale in zip(of.groups, _scales(of, errors), strict=True):
         for piece in pieces.each:
-            columns = [enumerate(piece.sizes(column)) for column in group]
+            columns = [enumerate(piece.sizes[column]) for column in group]
             lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
             worst = max(worst, hypot(*lost) * 2.0**-53 / scale)
     return worst

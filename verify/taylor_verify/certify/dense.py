@@ -8,9 +8,9 @@ from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
-from flint import fmpq_poly
+from flint import fmpq, fmpq_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, merged, polynomial, rational
+from taylor_verify.certify.pieces import Piece, Pieces, fraction, merged, polynomial, rational
 from taylor_verify.records.faults import Faults, Refused, brief, cut, near, refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.reading.table import exact_number
@@ -41,13 +41,14 @@ def columns_of(scene: Scene, count: int) -> list[str]:
 
 
 def is_piecewise(answer: Any) -> bool:
-    """Return True for SciPy's polynomials on pieces, and its splines."""
-    return hasattr(answer, "c") and (hasattr(answer, "x") or hasattr(answer, "k"))
+    """Return True for SciPy's polynomials on pieces, and its splines, in one variable."""
+    breaks = getattr(answer, "t" if hasattr(answer, "k") else "x", None)
+    return hasattr(answer, "c") and isinstance(breaks, np.ndarray)
 
 
 def named(names: Sequence[str], breaks: Sequence[Any], rows: Iterator[Polynomials]) -> Pieces:
     """Return pieces between breaks, with a row of polynomials for each."""
-    times = [_number(t, "breaks") for t in breaks]
+    times = [finite_number(t, "breaks") for t in breaks]
     pairs = zip(pairwise(times), rows, strict=True)
     return Pieces.of(_piece(names, *ends, row) for ends, row in pairs)
 
@@ -58,7 +59,7 @@ def _piece(names: Sequence[str], begin: Fraction, end: Fraction, row: Polynomial
     return piece if begin <= end else piece.shifted(end, begin)
 
 
-def _number(value: Any, place: str) -> Fraction:
+def finite_number(value: Any, place: str) -> Fraction:
     try:
         return Fraction(float(value))
     except (TypeError, ValueError, OverflowError):
@@ -137,43 +138,54 @@ def of_taylor(answer: Any, scene: Scene) -> Pieces:
 
 
 def of_scipy(answer: Any, names: Sequence[str]) -> Pieces:
-    """Return the pieces of a PPoly, or of a spline by its knots, with a column for each component."""
+    """Return the pieces of a PPoly, a BPoly or a spline, with a column for each component."""
     if hasattr(answer, "k"):
         return _of_spline(answer, names)
     c = np.asarray(answer.c, dtype=float)
-    c = c.reshape(*c.shape[:2], -1)
-    rows = ([polynomial(p[::-1]) for p in c[:, k].T.tolist()] for k in range(c.shape[1]))
-    return named(names, np.asarray(answer.x).tolist(), rows)
+    columns = c.reshape(*c.shape[:2], -1).transpose(1, 2, 0).tolist()
+    breaks = np.asarray(answer.x).tolist()
+    if hasattr(answer, "from_power_basis"):
+        lengths = [Fraction(b) - Fraction(a) for a, b in pairwise(breaks)]
+        pairs = zip(columns, lengths, strict=True)
+        return named(names, breaks, ([_bernstein(p, h) for p in row] for row, h in pairs))
+    return named(names, breaks, ([polynomial(p[::-1]) for p in row] for row in columns))
+
+
+def _bernstein(coefficients: Sequence[float], length: Fraction) -> fmpq_poly:
+    """The polynomial of Bernstein's coefficients on a piece, by de Casteljau's recursion."""
+    x = polynomial([0, 1], length)
+    rows = [polynomial([c]) for c in coefficients]
+    while len(rows) > 1:
+        rows = [p + x * (q - p) for p, q in pairwise(rows)]
+    return rows[0]
 
 
 def _of_spline(answer: Any, names: Sequence[str]) -> Pieces:
-    k, t = int(answer.k), [Fraction(x) for x in np.asarray(answer.t).tolist()]
+    k, t = int(answer.k), [rational(x) for x in np.asarray(answer.t).tolist()]
     c = np.asarray(answer.c, dtype=float)
-    columns = c.reshape(len(c), -1).T.tolist()
+    columns = [[rational(x) for x in row] for row in c.reshape(len(c), -1).T.tolist()]
     places = [j for j in range(k, len(t) - k - 1) if t[j] < t[j + 1]]
     return Pieces.of(
-        Piece(
-            t[j],
-            t[j + 1],
-            dict(zip(names, [_de_boor(t, col, k, j) for col in columns], strict=True)),
-        )
+        Piece(fraction(t[j]), fraction(t[j + 1]), dict(zip(names, row, strict=True)))
         for j in places
+        for row in [_de_boor(t, columns, k, j)]
     )
 
 
-def _de_boor(t: Sequence[Fraction], c: Sequence[float], k: int, j: int) -> fmpq_poly:
-    """The polynomial of a spline between two knots, by de Boor's recursion."""
-    d = [polynomial([c[i]]) for i in range(j - k, j + 1)]
+def _de_boor(t: Sequence[fmpq], columns: Sequence[Sequence[fmpq]], k: int, j: int) -> Polynomials:
+    """The polynomials of a spline between two knots, by de Boor's recursion."""
+    rows = [[fmpq_poly([c]) for c in column[j - k : j + 1]] for column in columns]
     for r in range(1, k + 1):
         for i in range(k, r - 1, -1):
             low, high = t[i + j - k], t[i + 1 + j - r]
-            share = polynomial([(t[j] - low) / (high - low), 1 / (high - low)])
-            d[i] = d[i - 1] + share * (d[i] - d[i - 1])
-    return d[k]
+            share = fmpq_poly([t[j] - low, 1]) / (high - low)
+            for d in rows:
+                d[i] = d[i - 1] + share * (d[i] - d[i - 1])
+    return [d[k] for d in rows]
 
 
 def components(answer: Any) -> int:
-    """Return the number of components of a PPoly or a spline."""
+    """Return the number of components of a piecewise polynomial or a spline."""
     shape = np.asarray(answer.c).shape
     return int(np.prod(shape[1:] if hasattr(answer, "k") else shape[2:], dtype=int))
 
@@ -200,7 +212,8 @@ def _columns(scene: Scene, name: str, count: int) -> Sequence[str]:
     if name == "impulse":
         columns = tuple(column for group in MOMENTA["kirchhoff"] for column in COLUMNS[group])
     if len(columns) != count:
-        raise refusal(f"{len(columns)} components", count, name)
+        many = "1 component" if len(columns) == 1 else f"{len(columns)} components"
+        raise refusal(f"{many} in each piece", count, name)
     return columns
 
 
@@ -237,7 +250,7 @@ def _of_quantity(
     place, many = f"quantities.{name}", f"{count} pieces, one between two breaks"
     each = _list(pieces, many, place, faults, count if count > 0 else _length(pieces))
     names = _columns(scene, name, _length(each[0])) if each else ()
-    components = f"{len(names)} components, each a list of coefficients"
+    components = f"{len(names)} lists of coefficients, one for each component"
     rows = []
     for k, piece in enumerate(each):
         parts = _list(piece, components, f"{place}[{k}]", faults, len(names))
@@ -257,14 +270,16 @@ def _list(value: Any, expected: str, place: str, faults: Faults, count: int) -> 
     """Return a list of so many entries; an empty one, and a fault, for anything else."""
     if isinstance(value, _LISTS) and len(value) == count:
         return value
-    faults.add(expected, f"{len(value)}" if isinstance(value, _LISTS) else brief(value), place)
+    got = f"a list of {len(value)}" if isinstance(value, _LISTS) else brief(value)
+    faults.add(expected, got, place)
     return ()
 
 
 def _numbers(values: Any, place: str, faults: Faults) -> list[Fraction]:
     """Return the numbers of a list, those of each fault left out."""
     numbers = []
-    for k, value in enumerate(_list(values, "a list of numbers", place, faults, _length(values))):
+    many = _length(values) or 1
+    for k, value in enumerate(_list(values, "a list of numbers", place, faults, many)):
         try:
             numbers.append(_exact(value))
         except (ValueError, OverflowError):

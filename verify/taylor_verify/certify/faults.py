@@ -69,7 +69,7 @@ def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Nod
             continue
         values = [(before.value(c, after.begin), after.value(c, after.begin)) for c in group]
         jump = hypot(*(float(q - p) for p, q in values))
-        size = sum(sum(piece.sizes(c)) for piece in (before, after) for c in group)
+        size = sum(sum(piece.sizes[c]) for piece in (before, after) for c in group)
         slope = np.array([_slope(after, c) for c in group])
         error, derived = _ends(right, -1)
         yield Node(
@@ -114,14 +114,15 @@ def findings(
     scales: Mapping[str, Sequence[float]],
 ) -> tuple[InterpolantFinding, ...]:
     """Return the faults that the errors at the nodes show."""
-    faults = []
+    faults: dict[tuple[str, Fault], InterpolantFinding] = {}
     for m in measured:
         name = m.quantity.name
         for k, scale in enumerate(scales[name]):
             each = nodes[name, k]
             if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                faults.append(InterpolantFinding(name, fault, _at_nodes(each) / scale, bound[name]))
-    return tuple(dict.fromkeys(faults))
+                size = _at_nodes(each) / scale
+                faults.setdefault((name, fault), InterpolantFinding(name, fault, size, bound[name]))
+    return tuple(faults.values())
 
 
 def _at_nodes(nodes: Sequence[Node]) -> float:

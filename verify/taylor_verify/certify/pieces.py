@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Final
 
@@ -30,16 +31,21 @@ class Piece:
     def value(self, column: str, time: Fraction) -> Fraction:
         return fraction(self.polynomials[column](rational(time - self.begin)))
 
-    def sizes(self, column: str) -> list[float]:
-        """The sizes of the terms at the end of the piece."""
-        whole = self.polynomials[column](fmpq_poly([0, rational(self.end - self.begin)]))
-        return [abs(float(fraction(entry))) for entry in whole.coeffs()]
+    @cached_property
+    def _terms(self) -> Mapping[str, list[fmpq]]:
+        """The terms of each polynomial at the end of the piece."""
+        whole = fmpq_poly([0, rational(self.end - self.begin)])
+        return {column: p(whole).coeffs() for column, p in self.polynomials.items()}
+
+    @cached_property
+    def sizes(self) -> Mapping[str, list[float]]:
+        """The sizes of the terms of each column at the end of the piece."""
+        return {name: [abs(int(c.p) / int(c.q)) for c in row] for name, row in self._terms.items()}
 
     @property
     def is_huge(self) -> bool:
         """True for a term whose square no double would have."""
-        whole = fmpq_poly([0, rational(self.end - self.begin)])
-        terms = (c for p in self.polynomials.values() for c in p(whole).coeffs())
+        terms = (c for row in self._terms.values() for c in row)
         return any(int(c.p).bit_length() - int(c.q).bit_length() > _HUGE_BITS for c in terms)
 
     def shifted(self, begin: Fraction, end: Fraction) -> Piece:
@@ -48,8 +54,8 @@ class Piece:
         return Piece(begin, end, {name: p(inner) for name, p in self.polynomials.items()})
 
 
-def rational(value: Fraction) -> fmpq:
-    return fmpq(value.numerator, value.denominator)
+def rational(value: Fraction | float) -> fmpq:
+    return fmpq(*value.as_integer_ratio())
 
 
 def fraction(value: fmpq) -> Fraction:
@@ -58,10 +64,10 @@ def fraction(value: fmpq) -> Fraction:
 
 def polynomial(coefficients: Iterable[Any], unit: Fraction = Fraction(1)) -> fmpq_poly:
     """Return the polynomial of exact numbers, or of binary ones as they are, in powers of u/unit."""
-    entries, power = [], Fraction(1)
+    entries, power, factor = [], fmpq(1), rational(unit)
     for coefficient in coefficients:
-        entries.append(rational(Fraction(coefficient) / power))
-        power *= unit
+        entries.append(rational(coefficient) / power)
+        power *= factor
     return fmpq_poly(entries)
 
 

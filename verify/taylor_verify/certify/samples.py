@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from flint import fmpq_poly
 
-from taylor_verify.certify.dense import columns_of, named, of_scipy
+from taylor_verify.certify.dense import columns_of, finite_number, named, of_scipy
 from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, fraction, polynomial, rational
 from taylor_verify.certify.slopes import slopes_of
 from taylor_verify.records.faults import brief, refusal
@@ -29,8 +29,9 @@ _CHECKED: Final = (Fraction(1, 97), Fraction(52, 97), Fraction(95, 97))
 def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) -> Pieces:
     """Return the pieces between the rows of a file."""
     if interpolation not in INTERPOLATIONS:
-        expected = f"interpolation ({', '.join(INTERPOLATIONS)})"
-        raise refusal(expected, brief(interpolation), "interpolation")
+        got = "none" if interpolation is None else brief(interpolation)
+        expected = f"what its program makes of the rows ({', '.join(INTERPOLATIONS)})"
+        raise refusal(expected, got, "interpolation")
     values = {
         column: [exact(row[k]) for row in rows]
         for group, rows in file.groups.items()
@@ -93,7 +94,9 @@ def of_callable(answer: Callable[..., Any], scene: Scene, degree: Any, nodes: An
         raise refusal("degree and nodes with a callable", "none", "answer")
     if not isinstance(degree, int) or not 0 <= degree <= MOST_DEGREE:
         raise refusal(f"a degree from 0 to {MOST_DEGREE}", brief(degree), "degree")
-    times = sorted(Fraction(float(t)) for t in nodes)
+    times = sorted(finite_number(t, "nodes") for t in np.ravel(nodes).tolist())
+    if len(times) < 2:
+        raise refusal("two nodes at least", len(times), "nodes")
     names: list[str] = []
     rows: list[list[fmpq_poly]] = []
     for k, (begin, end) in enumerate(pairwise(times)):

@@ -33,10 +33,12 @@ def slopes_of(
     elapsed = [time - scene.clock.start for time in times]
     rates = system(scene, loads, max(elapsed, key=abs), orders=1)
     needed = _state_columns(scene, rates.size)
-    missing = [column for column in needed if column not in names]
-    if rates.begin is not None or missing:
-        got = ", ".join(missing) or "a rotor of texts"
-        raise refusal("all states of the scene for slopes by its equations", got, "interpolation")
+    if rates.begin is not None:
+        mend = "slopes by its equations would need the rates of these texts"
+        raise refusal("linear or cubic for a rotor of texts", "hermite", "interpolation", mend)
+    if missing := [column for column in needed if column not in names]:
+        expected = "a column for each state of the scene, as hermite takes slopes by its equations"
+        raise refusal(expected, f"none for {' '.join(missing)}", "interpolation")
     slopes = []
     with ctx.workprec(_BITS):
         for time, row in zip(elapsed, rows, strict=True):

@@ -19,7 +19,6 @@ from taylor_verify_reports.studies.gallery.study import STUDY as GALLERY
 from taylor_verify_reports.studies.growth.study import STUDY as GROWTH
 from taylor_verify_reports.studies.hard.study import STUDY as HARD
 from taylor_verify_reports.studies.portraits.study import STUDY as PORTRAITS
-from taylor_verify_reports.studies.prices.study import STUDY as PRICES
 from taylor_verify_reports.studies.reference.study import STUDY as REFERENCE
 from taylor_verify_reports.studies.study import Study
 from taylor_verify_reports.studies.tradeoff.study import STUDY as TRADEOFF
@@ -32,7 +31,6 @@ STUDIES: Final[list[Study[Any]]] = [
     ENGINES,
     SATELLITE,
     UNDERWATER,
-    PRICES,
     HARD,
     GROWTH,
     CLAIMS,

@@ -125,30 +125,25 @@ def compiled(
     rung: Rung,
     tolerance: Fraction | None,
     is_optimised: bool,
-    literals: tuple[Fraction, ...] | None = None,
     kinks: tuple[Kink, ...] = (),
 ) -> Any:
     """Return the one compiled integrator of a form, rung and tolerance; the rest is filled in per problem.
 
-    Parameters cost what literals cost, and serve every body: literals are for measuring that. Optimised
-    loops compute the same as others to the last bit. Optimised straight-line code of doubles does not,
-    because it fuses products with sums. ``kinks`` are those that `smooth` has taken out of the form.
+    Parameters cost what literals cost, and serve every body. Optimised loops compute the same as others to
+    the last bit. Optimised straight-line code of doubles does not, because it fuses products with sums.
+    ``kinks`` are those that `smooth` has taken out of the form.
     """
     import heyoka as hy
 
     numbers = arithmetic(rung)
     zero = numbers.number(Fraction(0))
-    if literals is None:
-        coefficients = [hy.par[i] for i in range(len(form.parameters))]
-    else:
-        coefficients = [hy.expression(numbers.number(value)) for value in literals]
+    coefficients = [hy.par[i] for i in range(len(form.parameters))]
     system = equations(form, coefficients)
-    passed = len(form.parameters) if literals is None else 0
     is_straight_line = numbers.is_quick_plain or len(system) <= _LARGEST_STRAIGHT_LINE
     options = {
         "state": np.array([zero] * len(system), dtype=numbers.fp_type),
         "time": zero,
-        "pars": np.array([zero] * passed, dtype=numbers.fp_type),
+        "pars": np.array([zero] * len(coefficients), dtype=numbers.fp_type),
         "fp_type": numbers.fp_type,
         "compact_mode": numbers.is_software or not is_straight_line,
         # Code of level 3 computes the same, runs no faster, and compiles up to twice as long.

@@ -1,1 +1,0 @@
-"""The computing time that each option of a scene costs."""
