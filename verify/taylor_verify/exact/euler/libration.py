@@ -74,12 +74,13 @@ def enclosed(scene: Scene) -> Solution:
     return _from_orbit(closed.enclosed(pitch.scene), pitch, arb.cos, arb.sin)
 
 
-def closed_form(scene: Scene) -> Solution:
-    """The motion in mpmath; raises NoClosedForm likewise."""
+def closed_form(scene: Scene) -> Solution | None:
+    """The motion in mpmath, None where it has none; raises NoClosedForm likewise."""
     pitch = pitch_of(scene)
     if pitch is None:
         return heavy.closed_form(scene)
-    return _from_orbit(closed.closed_form(pitch.scene), pitch, mp.cos, mp.sin)
+    inner = closed.closed_form(pitch.scene)
+    return None if inner is None else _from_orbit(inner, pitch, mp.cos, mp.sin)
 
 
 def _from_orbit(

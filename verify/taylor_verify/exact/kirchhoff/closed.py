@@ -19,6 +19,8 @@ from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
+from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar
+from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime
@@ -32,8 +34,8 @@ from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-Subject = Nutation | Impulse | FreeSpin | Curve
-"""The exact numbers of a case: of a body of revolution, a steady motion, a top, Weber's curve."""
+Subject = Nutation | Plane | Impulse | FreeSpin | Curve
+"""The exact numbers of a case: of a body of revolution, a plane, a steady motion, a top, Weber's curve."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,28 @@ def revolution(whole: Reduced) -> Case | None:
     )
 
 
+def flat(whole: Reduced) -> Case | None:
+    """A motion in a plane of the body: that of the body of revolution that moves alike."""
+    reduced_plane = planar(whole)
+    if reduced_plane is None:
+        return None
+    reduced, place = reduced_plane
+    kind, back = regime_in_plane(place), in_plane(place)
+    alike = case(of_revolution(reduced.scene, place))
+    balls, floats = alike.balls, alike.floats
+
+    def made(route: Callable[[], Solution]) -> Solution:
+        return carried(alike.reduced.carried_back(route()), back, kind)
+
+    return Case(
+        kind,
+        reduced,
+        place,
+        lambda: made(balls),
+        None if floats is None else lambda: made(floats),
+    )
+
+
 def steady(whole: Reduced) -> Case | None:
     """A motion with constant x and y, of any body and under any constant loads: a screw."""
     body, start = solid(whole.scene)
@@ -149,5 +173,5 @@ def weber(whole: Reduced) -> Case | None:
     return Case(WEBER, reduced, genus_two, lambda: WeberBalls(genus_two))
 
 
-# Bodies of revolution have words of their own for their steady motions.
-CASES: Final = (revolution, steady, turning, weber)
+# Bodies of revolution and planes have words of their own for their steady motions.
+CASES: Final = (revolution, flat, steady, turning, weber)

@@ -18,6 +18,7 @@ from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff.closed import Case
 from taylor_verify.exact.kirchhoff.displaced import centred, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import family_of
+from taylor_verify.exact.kirchhoff.plane import Plane, swing
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
@@ -30,6 +31,7 @@ from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
+_PENDULUM: Final = "(2 alpha)'' = -omega0^2 sin 2 alpha"
 _CURVE: Final = "H. Weber, Math. Ann. 14 (1878) 173"
 _THREE: Final = (
     "Conserved: the kinetic energy T, F^2 = x.x and FG = x.y; in space axes the linear impulse and "
@@ -63,6 +65,7 @@ _SCREW: Final = """
     advance :: length/time :: velocity along the axis of the screw :: U.Omega/|Omega|
     pitch :: length :: the advance in one turn :: 2 pi U.Omega/Omega^2
 """
+_SWING: Final = ("period", "rate", "m", "k", "m_prime")
 # Unit and meaning of the elements of a closed form.
 _WORDS: Final[Mapping[str, tuple[str, str]]] = {
     "nutation_frequency": ("radians/time", "frequency of nutation"),
@@ -76,6 +79,14 @@ _STORY: Final[Mapping[str, str]] = {
     "steady": (
         "x and y are constant: the body turns about one line, fixed in it and in space, and advances "
         "along it, as a screw."
+    ),
+    "planar-steady": "x and y are constant: the body moves straight on, or not at all.",
+    "planar-uniform": "The body turns in a plane at a constant rate.",
+    "planar-swing": "The body swings in a plane about the position broadside on, as a pendulum.",
+    "planar-turn": "The body turns over and over in a plane, as a pendulum with enough speed.",
+    "planar-front": (
+        "The body turns over once in a plane, from end on to end on (heteroclinic); there is no "
+        "period."
     ),
     WEBER: (
         "x and y are functions of two angles that grow evenly, by theta functions of two variables "
@@ -106,6 +117,8 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
 def own_elements(solved: Case, working: int) -> list[Element]:
     """The elements of x and y in one of the cases."""
     match solved.subject:
+        case Plane() as place:
+            return [*recurring(swing(place), _SWING, "x and y recur in body axes", _PENDULUM)]
         case Curve() as curve:
             return _weber_rates(curve, working)
         case FreeSpin() as spin:
