@@ -39,7 +39,7 @@ FLUID = (
     ),
     *("kirchhoff/two-real-roots", "kirchhoff/cubic", "kirchhoff/trigonometric"),
     *("kirchhoff/algebraic", "kirchhoff/falling-away", "kirchhoff/onto-the-axis"),
-    *("kirchhoff/planar-swing", "kirchhoff/planar-turn", "kirchhoff/pendulum-front"),
+    *("kirchhoff/planar-swing", "kirchhoff/planar-turn"),
     *("kirchhoff/oblate-about-axis-1", "kirchhoff/remus-100", "kirchhoff/weber"),
 )
 NEAR = [Fraction(3, 2), Fraction(-1, 3), Fraction(0)]

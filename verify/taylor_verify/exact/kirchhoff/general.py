@@ -48,7 +48,7 @@ _FAMILIES: Final[Mapping[str, str]] = {
 _UNBUILT: Final = "The energy is not of Clebsch's form about any axis: no closed form is built."
 _UNSOLVED: Final = (
     "The energy is not of Clebsch's form about any axis: no closed form is built, and for a body "
-    "with three invariants alone none is known."
+    "with three invariants alone none is known of its general motion."
 )
 _BALANCED: Final = (
     "The loads balance the gyroscopic terms. Not conserved: the linear impulse in space axes and the "
