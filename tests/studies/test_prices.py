@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from pathlib import Path
 from random import Random
 from typing import Any
 
 import pytest
 from builders.studies.prices import named, study
-from builders.studies.stored import publish_document
 
 from taylor_verify.models.general import in_general_form
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.taylor.pace import Pace
-from taylor_verify.words.cells import figure
-from taylor_verify_reports.studies.prices.document import PRICES, PricesStudy
-from taylor_verify_reports.studies.prices.study import STUDY
+from taylor_verify_reports.studies.prices.document import PricesStudy
 from taylor_verify_reports.studies.prices.variants import variants
 
 F64 = rung("f64")
@@ -69,21 +65,3 @@ def test_rows_count_what_is_built(measured: PricesStudy) -> None:
         assert {k: getattr(row, k) for k in ("sums", "products", "quotients")} == form.operations()
         median, low, high = row.step_ratio
         assert 0 < low <= median <= high
-
-
-def test_page_is_made_of_what_was_stored(tmp_path: Path, measured: PricesStudy) -> None:
-    """The page has every variant with its price, is the same when made again, and needs a measurement."""
-    assert STUDY.pages(tmp_path) == {}
-    stored, made, flat = publish_document(tmp_path, STUDY, PRICES, measured)
-    text = made.read_text(encoding="utf-8")
-    sheet = flat.read_text(encoding="utf-8")
-    assert STUDY.pages(tmp_path) == {STUDY.path: text, "tables/prices.csv": sheet}
-    assert PRICES.load(tmp_path) == measured
-    for row in measured.rows:
-        (line,) = [one for one in text.splitlines() if one.startswith(f"| {row.variant} ")]
-        cells = [cell.strip() for cell in line.split("|")]
-        assert cells[2:4] == [str(row.states), str(row.operations)]
-        assert cells[4].startswith(figure(row.step_ratio[0]))
-    stored.write_text('{"rows": 3}', encoding="utf-8")
-    with pytest.raises(ValueError, match=r"expected a list, got 3 @ rows @ .*prices\.json"):
-        STUDY.pages(tmp_path)
