@@ -18,8 +18,6 @@ from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
-pytest_plugins = ["pytester"]
-
 CODES = [0, None, "no licence"]
 
 
@@ -72,27 +70,3 @@ def test_a_script_whose_solver_leaves_comes_to_its_end() -> None:
         "sys.exit(0 if judged.verdicts[0].verdict == 'pass' else 7)\n"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 7
-
-
-def test_sys_exit_in_a_test_fails_the_test_alone(pytester: pytest.Pytester) -> None:
-    """The plugin reports a failed solver with the line that left, and the session goes on."""
-    pytester.makepyfile(
-        """
-import sys
-
-
-def leaving(problem):
-    sys.exit(0)
-
-
-def test_it(verify_solver):
-    verify_solver("euler/rest", leaving)
-
-
-def test_next():
-    pass
-"""
-    )
-    result = pytester.runpytest_subprocess()
-    result.assert_outcomes(failed=1, passed=1)
-    result.stdout.fnmatch_lines(["*sys.exit(*", "*fail  * omega: *ended with an error*"])

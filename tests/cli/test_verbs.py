@@ -81,15 +81,3 @@ def test_nobody_takes_our_verbs(capsys: pytest.CaptureFixture[str]) -> None:
     out, error = capsys.readouterr()
     assert "the verb run of plugged is left out" in error
     assert "run" not in json.loads(out)["plugins"]["verbs"]
-
-
-def test_our_second_package_adds_its_verbs_as_others_do() -> None:
-    """publish and claims are entry points, and no module of the first package names the second."""
-    from importlib.metadata import entry_points
-
-    own = {e.name: e.value for e in entry_points(group="taylor_verify.verbs")}
-    assert own["claims"] == "taylor_verify_reports.verbs.claims"
-    assert own["publish"] == "taylor_verify_reports.verbs.publish"
-    package = Path(__file__).resolve().parents[2] / "verify" / "taylor_verify"
-    texts = (file.read_text(encoding="utf-8") for file in package.rglob("*.py"))
-    assert not any("taylor_verify_reports" in text for text in texts)

@@ -13,14 +13,12 @@ from builders.studies.stored import publish_document
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
-from taylor_verify.records import store
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.answers import ANSWERS
 from taylor_verify_reports.controls.defect import Defect
 from taylor_verify_reports.controls.defects import DEFECTS
-from taylor_verify_reports.studies import report
 from taylor_verify_reports.studies.controls import page as controls
 from taylor_verify_reports.studies.controls import proof
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
@@ -232,28 +230,6 @@ def test_table_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
     changed = CONTROLS.load(tmp_path)
     assert "**1.2e7**" in controls.page(changed)
     assert ",12500000.0," in controls.sheet(changed)
-
-
-def test_report_remakes_the_table_from_what_is_stored(tmp_path: Path) -> None:
-    """`run --out` and `publish` keep the table of controls: it is remade, and linked in front."""
-    made = publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
-    assert [path.name for path in made] == ["controls.json", "controls.md", "controls.csv"]
-    before = made[1].read_text(encoding="utf-8")
-    store.write(tmp_path, sight_of("one-ulp-over").sound.values(), [])
-    report.publish(tmp_path)
-    assert made[1].read_text(encoding="utf-8") == before
-    for page in ("README.md", "tables/README.md"):
-        assert "controls.md" in (tmp_path / page).read_text(encoding="utf-8")
-
-
-def test_stored_rows_that_are_none_are_refused(tmp_path: Path) -> None:
-    """A file without the verdicts of a defect is a fault that names the file, not an empty table."""
-    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("one-ulp-over")]))
-    file = tmp_path / "data" / "controls.json"
-    content = json.loads(file.read_text(encoding="utf-8"))
-    file.write_text(json.dumps({**content, "verdicts": []}), encoding="utf-8")
-    with pytest.raises(ValueError, match=r"one-ulp-over.*controls\.json"):
-        CONTROLS.load(tmp_path)
 
 
 def test_every_cell_says_what_the_verdict_says() -> None:

@@ -243,10 +243,3 @@ def test_what_a_call_returns_is_in_the_reference(call: str) -> None:
         kind = getattr(importlib.import_module(module), last)
         within = classes_in(getattr(kind, "__annotations__", {}).values(), module)
         assert within - referenced() - WORDS_ELSEWHERE == set()
-
-
-def test_a_name_that_is_new_is_missed(tmp_path: Path) -> None:
-    """A word in prose, or within a longer one, is no documentation of it."""
-    page = tmp_path / "page.md"
-    page.write_text("The key omega, `omegas`, `--omega-x`.\n\n```\nspin\n```\n", encoding="utf-8")
-    assert missing(["omega", "--omega", "spin", "omegas"], page) == ["--omega", "omega"]

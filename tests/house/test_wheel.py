@@ -122,18 +122,6 @@ def test_another_project_has_the_plugin_by_installing_the_wheel(
     assert "fail  euler/generic f64 omega: " in done.stdout
 
 
-def test_the_plugin_can_be_left_out(installed: Path, tmp_path: Path) -> None:
-    """`-p no:taylor-verify` leaves a session without the plugin, by the name it is installed as."""
-    (tmp_path / "test_alone.py").write_text(
-        "import sys\ndef test_it(): assert 'taylor_verify.testing.plugin' not in sys.modules\n"
-        "def test_none(verify_solver): pass\n"
-    )
-    options = ("-p", "no:cacheprovider", "-p", "no:taylor-verify")
-    done = launch(installed, tmp_path, sys.executable, "-m", "pytest", *options)
-    assert "1 passed, 1 error" in done.stdout
-    assert "fixture 'verify_solver' not found" in done.stdout
-
-
 SOMEBODYS = "OWNER = 'somebody else'\n"
 
 

@@ -150,23 +150,6 @@ def test_a_baseline_of_a_part_is_no_regression_of_the_whole(
 # The file to fill in.
 
 
-def test_question_prints_the_file_to_fill_in(tmp_path: Path, capsys: Captured) -> None:
-    """Its header and times, filled in with the exact motion, are a complete file."""
-    assert main(["question", SCENE, "--csv"]) == 0
-    header, *lines = capsys.readouterr().out.splitlines()
-    assert header == "t,w1,w2,w3,q0,q1,q2,q3"
-    assert lines[:3] == ["0,,,,,,,", "0.5,,,,,,,", "1,,,,,,,"]
-    scene = load(SCENE)
-    columns = columns_at(scene, scene.clock.instants)
-    rows = zip(*(columns[name] for name in header.split(",")[1:]), strict=True)
-    filled = [
-        ",".join([line.rstrip(","), *map(repr, row)]) for line, row in zip(lines, rows, strict=True)
-    ]
-    file = tmp_path / "mine.csv"
-    file.write_text("\n".join([header, *filled]))
-    assert complete(str(file)) is None
-
-
 @pytest.mark.parametrize("on", ["f32", "f64", "f128", "mp237"])
 def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
     """The question is the document of the protocol on that precision, with and without --json."""

@@ -353,24 +353,6 @@ def first_order(scene: str, rows: int) -> Columns:
 # Readings.
 
 
-def test_axes_are_the_24_rotations_of_a_cube() -> None:
-    """All are signed permutations of determinant 1, all are different, and none is a reflection."""
-    matrices = [axes.vectors(np.eye(3)).T for axes in AXES]
-    assert len({m.tobytes() for m in matrices}) == 24
-    for axes, P in zip(AXES, matrices, strict=True):
-        assert np.array_equal(P @ P.T, np.eye(3))
-        assert np.linalg.det(P) == pytest.approx(1)
-        assert np.allclose(rotations(np.array([axes.quaternion], dtype=float))[0], P, atol=1e-15)
-
-
-def test_renaming_both_frames_is_a_conjugation() -> None:
-    """left and right by P together are P R P^T, as renaming all axes asks for."""
-    R = rotations(np.array([[0.3, -0.5, 0.7, 0.2]]))
-    for axes in AXES:
-        P = axes.vectors(np.eye(3)).T
-        assert np.allclose(axes.left(axes.right(R))[0], P @ R[0] @ P.T, atol=1e-15)
-
-
 def test_renamed_quaternions_are_those_of_the_renamed_matrices() -> None:
     """A quaternion under other axes is that of Q R P^T, and keeps its length."""
     q = 0.5 * np.array([[0.3, -0.5, 0.7, 0.2]])
@@ -402,14 +384,6 @@ def test_first_reading_is_the_scenes_own() -> None:
         assert costs[0] == 0
     q = np.array([[2.0, 0.0, 0.0, 0.0]])
     assert np.array_equal(readings("quaternion")[0].read(q, q), q)
-
-
-def test_quaternion_of_the_tests_is_the_one_of_its_matrix() -> None:
-    """R(q(R)) = R, so that the files of these tests say what they mean."""
-    q = np.array([[0.1, -0.8, 0.5, 0.3]])
-    R = rotations(q)
-    again = rotations(np.array([[float(v) for v in quaternion(R[0])]]))
-    assert np.allclose(R, again, atol=1e-15)
 
 
 def test_accepting_says_what_was_corrected(tmp_path: Path) -> None:

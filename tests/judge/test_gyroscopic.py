@@ -20,7 +20,6 @@ from builders.trajectories import (
 from builders.turns import by_turns
 
 import taylor_verify
-from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.reading.reader import load
 
@@ -138,14 +137,3 @@ def test_the_other_sign_is_named(tmp_path: Path) -> None:
     turned = {"t": sound["t"], **{name: back[name] for name in OMEGA}}
     (cause,) = causes(tmp_path, "euler/with-attitude", turned)
     assert cause.startswith("gyroscopic term with the other sign; ")
-
-
-def test_the_command_names_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A constant omega is no unit of time and no slow clock: its engine lacks the gyroscopic term."""
-    columns = engine("euler/with-attitude", none, 0.5, 41)
-    file = write_csv(tmp_path / "mine.csv", columns)
-    assert main(["check", file, "--scene", "euler/with-attitude", "--accept-conventions"]) == 1
-    printed = capsys.readouterr().out
-    assert "no gyroscopic term" in printed
-    assert "nanoseconds" not in printed
-    assert "its clock runs" not in printed

@@ -13,9 +13,9 @@ from mpmath import mp, mpf
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Settled, Unsettled
 from taylor_verify.judge.errors.drifts import drifts
-from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, largest, state_errors
+from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, state_errors
 from taylor_verify.judge.floor.attainable import Floor, floor
-from taylor_verify.judge.gates import index_of_largest, judge
+from taylor_verify.judge.gates import judge
 from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Reason
@@ -74,18 +74,6 @@ def test_nan_fails_wherever_it_stands(place: int, other: float) -> None:
         finding = judge(errors_of(values), np.full(5, attainable), TERMS)
         assert finding.status is Status.FAIL
         assert finding.worst == place
-
-
-@given(st.lists(st.floats(0, 1e9), min_size=1), st.integers(0, 100))
-def test_largest_does_not_lose_a_nan(values: list[float], place: int) -> None:
-    """`largest` is max where all are numbers, and NaN where one is not, wherever it stands."""
-    numbers = [mpf(v) for v in values]
-    assert largest(numbers) == max(numbers)
-    assert values[index_of_largest(np.array(values))] == max(values)
-    numbers.insert(place % (len(numbers) + 1), mp.nan)
-    assert mp.isnan(largest(numbers))
-    doubles = np.array([float(number) for number in numbers])
-    assert np.isnan(doubles[index_of_largest(doubles)])
 
 
 def test_an_error_below_every_double_is_an_error() -> None:

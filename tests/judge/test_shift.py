@@ -293,29 +293,6 @@ def test_no_number_has_no_shift() -> None:
 # In a verdict.
 
 
-def late_answer(problem: Problem) -> Any:
-    """The exact motion half a millisecond late, in doubles."""
-    exact = solution(problem.given)
-    elapsed = [t - Fraction(1, 2000) for t in problem.given.clock.elapsed]
-    return exact.motion(elapsed, 20)["omega"].astype(float)
-
-
-def test_an_answer_that_conserves_everything_and_is_late_is_told_so() -> None:
-    """No conserved quantity sees half a millisecond; the state's gate says what to mend."""
-    result = check("euler/generic", late_answer)
-    initial, omega, *conserved = result.verdicts
-    assert {v.verdict for v in conserved} == {Status.PASS}
-    assert initial.verdict is omega.verdict is Status.FAIL
-    assert omega.shift == "constant"
-    assert omega.time_shift == pytest.approx(0.0005, abs=1e-15)
-    # What remains is the rounding to doubles, 2^-53 a component.
-    assert omega.residual <= 2.0**-52
-    assert "as a shift of time: late by 0.0005, constant; " in omega.because
-    assert result.record is not None
-    gate = result.record.gates[0]
-    assert gate.shifts == pytest.approx([0.0005] * len(gate.errors), rel=1e-3)
-
-
 def test_a_sound_answer_has_the_numbers_and_no_words() -> None:
     """The bound's reason stands alone if the gate passes; conserved quantities never have a shift."""
     result = run("euler/with-attitude", "taylor", "f64")

@@ -1,10 +1,7 @@
 """Pictures: every solver is told from the others, nothing false is joined, every line has a name."""
 
-import subprocess
-import sys
 from base64 import b64decode
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from itertools import combinations, pairwise
 from math import log10
 from pathlib import Path
@@ -164,36 +161,6 @@ def test_a_solver_looks_the_same_however_it_is_set(name: str, same: str) -> None
     assert kind_of(name) == kind_of(same)
 
 
-def test_a_program_of_ones_own_borrows_no_look() -> None:
-    """A command that names taylor or SciPy is still somebody's program."""
-    known = {(look.colour, look.marker) for look in (look_of(n, "f64") for n in OTHERS)}
-    known |= {(look_of_rung(rung).colour, look_of_rung(rung).marker) for rung in RUNGS}
-    for command in ("process:./taylor f64", "process:./scipy_rk45", "taylorseries.jl"):
-        look = look_of(command, "f64")
-        assert (look.colour, look.marker) not in known
-        assert kind_of(command) == "others"
-
-
-def test_an_unknown_look_is_the_same_in_every_process() -> None:
-    """Not even with another hash seed does an unknown name look different."""
-    code = (
-        "from taylor_verify.plotting.style import look_of;"
-        "print([look_of(f'solver {i}', 'f64') for i in range(9)])"
-    )
-    printed = {
-        subprocess.run(
-            [sys.executable, "-c", code],
-            env={"PYTHONHASHSEED": seed},
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        for seed in ("0", "1")
-    }
-    assert len(printed) == 1
-    assert "Look(" in printed.pop()
-
-
 # What is joined
 
 
@@ -313,11 +280,6 @@ def test_nothing_is_cut_off(kinds: list[str], panels: int) -> None:
         assert_all_is_on_the_page(figure)
 
 
-def test_nothing_of_many_is_cut_off(crowded: dict) -> None:
-    """Nothing is cut off in a picture with all solvers."""
-    assert_all_is_on_the_page(crowded["time"])
-
-
 def assert_all_is_on_the_page(figure: Figure) -> None:
     canvas = FigureCanvasAgg(figure)
     with plotting():
@@ -373,37 +335,6 @@ def test_a_notebook_shows_a_picture_with_its_words(tmp_path: Path) -> None:
     assert kind == "data:image/svg+xml;base64"
     assert b64decode(drawn) == svg.read_bytes()
     assert image.attrib["alt"] == picture.alt
-
-
-def test_settings_of_the_user_stay(tmp_path: Path) -> None:
-    """Drawing leaves matplotlib's settings as they were."""
-    before = dict(matplotlib.rcParams)
-    save([plain_picture()], tmp_path)
-    assert dict(matplotlib.rcParams) == before
-
-
-def test_a_picture_that_fails_leaves_the_old_files(tmp_path: Path) -> None:
-    """No picture is written if one of them cannot be drawn, and no temporary file stays."""
-
-    def broken() -> Figure:
-        raise ZeroDivisionError
-
-    save([plain_picture()], tmp_path)
-    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
-    sound = replace(plain_picture(), figure=lambda: Figure())
-    with pytest.raises(ZeroDivisionError):
-        save([sound, Picture("broken", "", "", broken)], tmp_path)
-    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
-
-
-def test_without_matplotlib_the_error_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The error is one sentence with the name of the extra, and no file is written."""
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=r"pip install 'taylor-verify\[plots\]'"):
-        save([plain_picture()], tmp_path / "there")
-    assert not (tmp_path / "there").exists()
 
 
 def test_the_alt_text_has_the_numbers() -> None:

@@ -157,11 +157,3 @@ def test_a_quaternion_with_its_scalar_last_is_written_the_other_way_round() -> N
     text += "quaternion = [0.1, 0.2, 0.3, 0.9]\n[time]\nend = 1\nsamples = 2\n"
     with pytest.raises(Refused, match=r"`attitude = \[0\.9, 0\.1, 0\.2, 0\.3\]`"):
         read(text, "a test")
-
-
-def test_a_unit_is_refused_with_the_number_to_write() -> None:
-    """Units are read for angular velocities alone."""
-    text = 'title = "x"\nmodel = "euler"\n[body]\ninertia = ["1 kg m^2", 2, 3]\n'
-    text += f"[initial]\n{STARTS['euler']}\n"
-    with pytest.raises(Refused, match=r"write 1, if kg m\^2 is its unit"):
-        read(text + "[time]\nend = 1\nsamples = 2\n", "a test")

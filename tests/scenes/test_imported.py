@@ -401,13 +401,6 @@ SEVERAL = f"""<robot name="r">
 </robot>"""
 
 
-def test_several_links_are_named(tmp_path: Path) -> None:
-    """Without --link, and for one that is not there, the answer lists those with an inertia."""
-    assert "(a, b)" in str(refusal(tmp_path, SEVERAL))
-    assert "known: a, b" in str(refusal(tmp_path, SEVERAL, "c"))
-    assert "got world without" in str(refusal(tmp_path, SEVERAL, "world"))
-
-
 REFUSED = {
     "a document type": ('<!DOCTYPE r [<!ENTITY e "x">]><robot>&e;</robot>', "document type"),
     "an external entity": (

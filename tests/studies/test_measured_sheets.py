@@ -6,11 +6,9 @@ import csv
 from functools import cache
 from pathlib import Path
 
-import pytest
 from builders import reports
 from builders.studies.hard import study as hard_study
 
-from taylor_verify_reports.studies import registry
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
 
@@ -52,14 +50,3 @@ def test_growth_has_a_row_for_every_exponent() -> None:
         assert numbers == [row.exponent, row.low, row.high, row.rms[-1]]
         assert tuple(number(cells[f"late{end}"]) for end in ("", "_low", "_high")) == row.late
         assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
-
-
-@pytest.mark.parametrize("name", ["growth", "hard"])
-def test_what_is_remade_is_page_and_sheet(name: str) -> None:
-    """`publish` makes both of what is stored, and the end of the page says what made it, and where."""
-    (study,) = registry.find([name])
-    pages = study.pages(measured_report())
-    assert {study.path, f"tables/{name}.csv"} <= set(pages)
-    end = "".join(pages[study.path].split("\n## ")[-2:])
-    assert "heyoka 7." in end or "Made with unknown versions" in end
-    assert "`taylor-verify publish" in end

@@ -229,28 +229,6 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     }
 
 
-@pytest.mark.parametrize(
-    ("text", "fault"),
-    [
-        ("{", "expected a JSON document"),
-        ("[]", "expected an object, got a list"),
-        ("{}", "expected a key versions, got none"),
-        (
-            '{"versions": {}, "verdicts": [{"scene": "a"}]}',
-            r"expected a key solver, got none @ verdicts\[0\]",
-        ),
-        ('{"versions": ' + 5000 * "9" + "}", "got 'a number of 5000 digits' @ versions"),
-    ],
-)
-def test_data_that_are_no_verdicts_are_refused(report: Path, text: str, fault: str) -> None:
-    """A file of something else raises ValueError with what was expected and where; tables stay."""
-    before = contents(report / "tables")
-    (report / "data" / "verdicts.json").write_text(text, encoding="utf-8")
-    with pytest.raises(ValueError, match=rf"{fault}.* @ .*verdicts\.json"):
-        publish(report)
-    assert contents(report / "tables") == before
-
-
 def test_publishing_imports_no_physics(report: Path) -> None:
     """Publishing, in a process of its own, loads no integrator and no arithmetic; of claims, its document.
 

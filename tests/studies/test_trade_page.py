@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,6 @@ from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.tradeoff.page import page
 from taylor_verify_reports.studies.tradeoff.stored import (
     Trades,
-    load,
     write,
 )
 from taylor_verify_reports.studies.tradeoff.study import STUDY
@@ -42,19 +40,6 @@ def line(text: str, *words: str) -> list[str]:
     """The cells of the only line that has all these words."""
     (matching,) = [row for row in text.splitlines() if all(word in row for word in words)]
     return [cell.strip() for cell in re.split(r"(?<!\\)\|", matching)[1:-1]]
-
-
-def test_what_was_stored_is_read_again(folder: Path) -> None:
-    """All rows are read back, with ratios and spreads."""
-    loaded = load(folder)
-    assert loaded is not None
-    (trade,) = loaded.trades
-    assert loaded == Trades(NUMBERS_MADE, TIMES_MADE)
-    assert trade.points == POINTS
-    assert trade.rows[1]["ratio"] == 1.0
-    assert trade.rows[1]["spread"] == pytest.approx(1.2 / 0.9)
-    assert trade.rows[-1]["ratio"] is None
-    assert json.dumps(trade.document(), allow_nan=False)
 
 
 def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:

@@ -320,19 +320,6 @@ def test_a_marker_that_would_judge_nothing_is_an_error(
     assert words in result.stdout.str()
 
 
-def test_a_fixture_of_the_same_name_is_left_alone(pytester: pytest.Pytester) -> None:
-    """A project whose own fixture is called verify_scene has that one."""
-    tests = """
-@pytest.fixture
-def verify_scene():
-    return 17
-
-def test_it(verify_scene):
-    assert verify_scene == 17
-"""
-    session(pytester, tests).assert_outcomes(passed=1)
-
-
 def test_a_test_that_judges_nothing_is_no_pass(pytester: pytest.Pytester) -> None:
     """To ask for a fixture and not to call it fails; a test that was skipped or failed is left so."""
     tests = """
