@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.processes import PATIENCE, interruptible
+from builders.written_loads import euler
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp
@@ -34,7 +35,7 @@ from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor import driver, way
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.taylor.numbers import arithmetic
-from taylor_verify.solvers.taylor.way import longest_step
+from taylor_verify.solvers.taylor.way import LEAST_STEPS, longest_step
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 RUNGS = (*LADDER, "mp24", "mp100", "mp1000")
@@ -433,6 +434,13 @@ def test_a_callback_changes_no_number(monkeypatch: pytest.MonkeyPatch, name: str
     without = Taylor().solve(problem)
     monkeypatch.setattr(way, "_RADIANS_AT_ONCE", {})
     assert_alike(without, Taylor().solve(problem))
+
+
+def test_a_motion_that_becomes_infinite_ends_on_a_wide_rung() -> None:
+    """A run whose steps no longer change the time is over: no number of MPFR overflows."""
+    trajectory = Taylor().solve(pose(euler(["3*w1^2", "0", "0"], "10"), rung("mp64")))
+    assert trajectory.outcome is Outcome.NON_FINITE
+    assert trajectory.steps < LEAST_STEPS
 
 
 def test_an_interrupt_is_heard_in_the_middle_of_a_long_run() -> None:

@@ -44,6 +44,8 @@ MOST_RADIANS: Final = 1e10
 # That takes about half a second where the processor has the arithmetic. A wide rung calls back after
 # each step instead, which costs a tenth of a microsecond: nothing beside its steps, but much here.
 _RADIANS_AT_ONCE = {"f32": 5e5, "f64": 5e5, "f80": 5e4}
+# A crossing of a kink may take a step of no length.
+_MOST_STANDING: Final = 8
 
 # A row of the states for each instant.
 Rows = np.ndarray[Any, Any]
@@ -152,14 +154,17 @@ class Way:
             return Ran(outcome, self._start[None], longest=0.0, steps=0, seconds=0.0)
         cap = self._longest / rate
         began = perf_counter()
+        callback = self._callback
         status, _, uncut, steps, _, rows = self._integrator.propagate_grid(
             instants,
             max_delta_t=self.numbers.double(cap),
             max_steps=most_steps(radians) * (_LOADED if self._is_loaded else 1),
-            callback=self._callback,
+            callback=callback,
         )
         seconds = perf_counter() - began
         outcome = outcome_of(status)
+        if callback is not None and callback.stands_still:
+            outcome = Outcome.NON_FINITE
         if outcome is Outcome.FINISHED and not _is_finite(rows):
             outcome = Outcome.NON_FINITE
         # Steps that were cut to the cap are left out of heyoka's longest.
@@ -177,9 +182,9 @@ class Way:
         return self._linearised.fastest(some) > rate
 
     @property
-    def _callback(self) -> Any:
-        """The callback that lets heyoka react to an interrupt."""
-        return None if self._problem.rung.name in _RADIANS_AT_ONCE else _go_on
+    def _callback(self) -> _Advance | None:
+        """The callback of a wide rung."""
+        return None if self._problem.rung.name in _RADIANS_AT_ONCE else _Advance()
 
     def _instants(self, pieces: int) -> tuple[np.ndarray[Any, Any], Places]:
         """Return the instants that heyoka is asked for, and where the samples are among them.
@@ -272,10 +277,27 @@ def _waypoints(after: Fraction, before: Fraction, gap: Fraction, rung: Rung) -> 
     return points[1:]
 
 
-def _go_on(integrator: Any) -> bool:
-    """Go on; heyoka returns to the interpreter for it, where an interrupt is waiting to be heard."""
-    del integrator
-    return True
+class _Advance:
+    """The callback of each step: heyoka returns to the interpreter, where an interrupt waits to be heard.
+
+    Where a motion becomes infinite, steps of a wide rung shrink until time stands still: no number of it
+    overflows. There it stops.
+    """
+
+    def __init__(self) -> None:
+        self._time: Any = None
+        self._standing = 0
+
+    @property
+    def stands_still(self) -> bool:
+        """True if the last steps have not changed the time."""
+        return self._standing >= _MOST_STANDING
+
+    def __call__(self, integrator: Any) -> bool:
+        time = integrator.time
+        self._standing = self._standing + 1 if time == self._time else 0
+        self._time = time
+        return not self.stands_still
 
 
 def _stretches(grid: np.ndarray[Any, Any], pieces: int) -> list[np.ndarray[Any, Any]]:
