@@ -78,7 +78,7 @@ TRIED = [
     ("euler", "body", "gravity_gradient", "I33 - I22"),
     ("euler", "body", "torque", "`moment`"),
     ("euler", "body", "Ixx", "`inertia`"),
-    ("euler", "body", "wheels", "write `rotor`"),
+    *(("euler", "body", key, "write `rotor`") for key in ("wheels", "rw_momentum")),
     ("kirchhoff", "body", "rotor", "wheels turn in a body of the model euler"),
     ("euler", "body", "angular_damping", "write `damping`"),
     ("euler", "initial", "angular_velocity", "`omega`"),
@@ -149,11 +149,25 @@ def test_the_lines_of_a_sentence_are_read(model: str, key: str) -> None:
     assert read(text, "a test").body.loads is not None or "current" in body[0]
 
 
-def test_a_quaternion_with_its_scalar_last_is_written_the_other_way_round() -> None:
-    """The sentence has the four numbers in the order of a scene."""
-    text = (
-        f'title = "x"\nmodel = "euler"\n[body]\n{BODIES["euler"]}\n[initial]\n{STARTS["euler"]}\n'
-    )
-    text += "quaternion = [0.1, 0.2, 0.3, 0.9]\n[time]\nend = 1\nsamples = 2\n"
-    with pytest.raises(Refused, match=r"`attitude = \[0\.9, 0\.1, 0\.2, 0\.3\]`"):
-        read(text, "a test")
+@pytest.mark.parametrize(
+    ("model", "line", "written"),
+    [
+        ("euler", "quaternion = [0.1, 0.2, 0.3, 0.9]", "attitude = [0.9, 0.1, 0.2, 0.3]"),
+        ("euler", "attitude = [10, 5, 0]", 'euler = { sequence = "zyx", degrees = [10, 5, 0] }'),
+        ("euler", "attitude = [10, 5, 0]", "rotation_vector = [10, 5, 0]"),
+        ("kirchhoff", "eta = [1, 2, 3, 0.4, 0.5, 0.6]", "centre = [1, 2, 3]"),
+        (
+            "kirchhoff",
+            "eta = [1, 2, 3, 0.4, 0.5, 0.6]",
+            'euler = { sequence = "zyx", radians = [0.6, 0.5, 0.4] }',
+        ),
+        ("kirchhoff", "nu = [1, 2, 3, 4, 5, 6]", "angular_velocity = [4, 5, 6]"),
+    ],
+)
+def test_a_start_in_the_order_of_others_is_written_in_ours(
+    model: str, line: str, written: str
+) -> None:
+    """The sentence has the numbers in the lines of a scene."""
+    text = f'title = "x"\nmodel = "{model}"\n[body]\n{BODIES[model]}\n[initial]\n{STARTS[model]}\n'
+    with pytest.raises(Refused, match=re.escape(f"`{written}`")):
+        read(f"{text}{line}\n[time]\nend = 1\nsamples = 2\n", "a test")

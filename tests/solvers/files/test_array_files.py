@@ -40,6 +40,19 @@ def test_groups_and_structs_are_dotted_names(tmp_path: Path) -> None:
     assert by_name["imu.omega[1]"] == by_name["imu.deep.q[1]"] == [1, 4, 7, 10]
 
 
+@pytest.mark.parametrize("clock", ["t", "simTime", "n"])
+def test_a_matrix_of_few_rows_may_be_wider_than_long(clock: str, tmp_path: Path) -> None:
+    """Its rows are those of a vector beside it, whatever that is called."""
+    matrix = np.arange(48.0).reshape(4, 12)
+    np.savez(tmp_path / "run.npz", simData=matrix, **{clock: np.arange(4.0)})
+    by_name = {
+        column.name: list(column.values) for column in read_table(tmp_path / "run.npz").columns
+    }
+    assert by_name == {clock: [0, 1, 2, 3]} | {
+        f"simData[{k}]": list(column) for k, column in enumerate(matrix.T)
+    }
+
+
 def test_several_trajectories_in_groups_are_asked_for(tmp_path: Path) -> None:
     """Times in two groups are two trajectories, and one of them has to be named."""
     with h5py.File(tmp_path / "run.h5", "w") as content:

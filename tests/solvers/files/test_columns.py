@@ -360,21 +360,6 @@ def test_letters_alone_need_company(names: str) -> None:
     assert set(made("t u v w p q r x y z").groups) == {"omega", "linear_velocity", "centre"}
 
 
-def test_p_beside_L_is_a_momentum(tmp_path: Path) -> None:
-    """px py pz beside Lx Ly Lz are the impulses of a solid in a fluid, and the notes say so."""
-    letters = dict(zip(("x1", "x2", "x3", "y1", "y2", "y3"), MOMENTA, strict=True))
-    columns = exact_columns("kirchhoff/algebraic")
-    motion = {name: columns[name] for name in ("t", *letters)}
-    file = write_csv(tmp_path / "mine.csv", renamed(motion, letters))
-    judgement = file_judgement(file, "kirchhoff/algebraic")
-    assert {v.verdict for v in judgement.verdicts if v.quantity in ("impulse", "FG")} == {
-        Status.PASS
-    }
-    note = "`px` `py` `pz` taken as x1 x2 x3, linear momentum beside Lx Ly Lz"
-    assert note in judgement.notes
-    assert "`Lx` `Ly` `Lz` taken as y1 y2 y3, angular momentum beside px py pz" in judgement.notes
-
-
 def test_a_name_of_any_length_is_read_at_once() -> None:
     """A million dots are no million paths, and blanks behind wx do not make it another name."""
     began = process_time()

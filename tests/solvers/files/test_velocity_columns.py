@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import (
-    VECTORS,
     Columns,
     columns_at,
     exact_columns,
@@ -44,7 +43,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded
 
 SCENE = "kirchhoff/whole-motion"
-OMEGA = VECTORS["omega"]
 VELOCITY = ("u1", "u2", "u3")
 F64 = rung("f64")
 
@@ -103,23 +101,6 @@ def test_impulses_are_made_exactly() -> None:
         back = momenta(body, velocities(body, state))
         for name, values in state.items():
             assert max(abs(e) for e in (back[name] - values).flat) < mp.mpf(10) ** -55
-
-
-def test_names_of_vehicles(tmp_path: Path) -> None:
-    """u v w p q r with degrees are the velocities of the origin and the rates."""
-    columns = sound()
-    spoken: dict[str, Any] = {
-        name: columns[name] for name in columns if name[0] in "tqc" and name != "q"
-    }
-    spoken |= dict(zip("uvw", (columns[name] for name in VELOCITY), strict=True))
-    for letter, name in zip("pqr", OMEGA, strict=True):
-        with mp.workdps(30):
-            spoken[f"{letter} [deg/s]"] = [mp.nstr(mp.degrees(v), 25) for v in columns[name]]
-    judgement = judged(tmp_path, spoken)
-    assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
-    notes = "\n".join(judgement.notes)
-    assert "`u` `v` `w` taken as u1 u2 u3, of the body's origin, in body axes" in notes
-    assert "`p [deg/s]` `q [deg/s]` `r [deg/s]` taken as w1 w2 w3" in notes
 
 
 def test_either_velocity_alone_is_judged_as_itself(tmp_path: Path) -> None:

@@ -20,7 +20,12 @@ from mpmath import libmp, mp
 
 from taylor_verify.numbers.precision import held_exactly
 from taylor_verify.records.faults import cut
-from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, exact_number, quantity
+from taylor_verify.scenes.reading.table import (
+    LARGEST_EXPONENT,
+    MOST_DIGITS,
+    exact_number,
+    quantity,
+)
 
 # A rational, or the NaN or infinity that the file has in its place.
 Value = Fraction | float
@@ -74,6 +79,9 @@ def _from_text(text: str) -> Value:
     try:
         return exact_number(text)
     except ValueError:
+        # The patterns below take the square of the length.
+        if len(text) > MOST_DIGITS:
+            raise
         fortran = _FORTRAN.fullmatch(text)
         if fortran and (fortran[2] or "." in text):
             return exact_number(f"{fortran[1]}e{fortran[2] or fortran[3]}")

@@ -17,7 +17,7 @@ from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Faults, cut, near, shown
 
 LARGEST_EXPONENT = 5000
-_MOST_DIGITS = 4000  # below the 4300 digits at which Python refuses to read an integer
+MOST_DIGITS = 4000  # below the 4300 digits at which Python refuses to read an integer
 _MOST_BITS = 16_600  # 10^5000 has 16610 bits
 _LONGEST_SENTENCE = 1000  # it stands in a cell of a table
 
@@ -271,8 +271,8 @@ def _from_decimal(value: Decimal) -> Fraction:
 
 
 def _from_text(text: str) -> Fraction:
-    if len(text) > _MOST_DIGITS:
-        raise ValueError(f"a number of at most {_MOST_DIGITS} digits")
+    if len(text) > MOST_DIGITS:
+        raise ValueError(f"a number of at most {MOST_DIGITS} digits")
     if match := _FRACTION.fullmatch(text):
         if int(match[2]) == 0:
             raise ValueError("a denominator that is not zero")
@@ -293,7 +293,7 @@ def is_numeral(text: str) -> bool:
 
 def quantity(value: object) -> tuple[str, str] | None:
     """Return number and unit of text such as ``"2 deg/s"``; None for a bare number and any other text."""
-    if not isinstance(value, str) or len(value) > _MOST_DIGITS:
+    if not isinstance(value, str) or len(value) > MOST_DIGITS:
         return None
     text = value.strip()
     if is_numeral(text):

@@ -55,6 +55,7 @@ _TELLING: Final = {
 # A motion of some bodies, or a fault of two parts, belongs to both families.
 _ALSO: Final = {
     "early clock": "starts",
+    "one row off": "starts",
     "a fault and Euler steps": _ELSE,
     "attitude backwards": "frames",
     "attitude on the wrong side": "frames",

@@ -18,7 +18,6 @@ from taylor_verify.records.faults import refusal
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
 
-_TIMES: Final = ("t", "time", "times", "tout", "timestamp")
 # Decimals in text are numbers too.
 _NUMBERS: Final = "fiuU"
 _SIGNALS: Final = ".signals.values"
@@ -41,7 +40,8 @@ class Array(NamedTuple):
 
     @property
     def is_time(self) -> bool:
-        return self.name.rpartition(".")[2].lower() in _TIMES
+        readings = Name(Column(self.name.rpartition(".")[2], ())).readings
+        return any(reading.spelling.group == "time" and not reading.path for reading in readings)
 
     @property
     def longest(self) -> int:
@@ -127,7 +127,9 @@ def _rows(arrays: Sequence[Array]) -> int:
     if times:
         return min(times, key=lambda array: array.name.count(".")).longest
     lengths = Counter(array.longest for array in arrays)
-    return max(lengths, key=lambda length: (lengths[length], length), default=0)
+    # A matrix of few rows may be wider than long.
+    shared = Counter(size for array in arrays for size in {*array.shape})
+    return max(lengths, key=lambda size: (lengths[size], shared[size], size), default=0)
 
 
 def _rows_of_one(array: Array, place: object) -> int:
