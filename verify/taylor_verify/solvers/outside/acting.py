@@ -79,7 +79,7 @@ class Piece:
             values = ", ".join(f"v{place}" for place in places)
             names: dict[str, Any] = {"nan": math.nan, "inf": math.inf, "at": _at}
             # The names in the text are those of the protocol, and quoted.
-            exec("\n".join(["def program(known):", *lines, f" return [{values}]"]), names)  # noqa: S102
+            exec("\n".join(["def program(known):", *lines, f" return [{values}]"]), names)
             self._programs[places] = names["program"]
         return self._programs[places]
 
