@@ -1,8 +1,8 @@
 """Environments of engines in C++: libraries of Debian, as apt-get downloads them, and a compiler.
 
-The packages are unpacked into a folder of the user's cache, where they need no rights, and `with_NAME.cpp` is
-compiled there to a library. solvers/outside/native.py loads it and answers. `flags` in the metadata are
-those of the compiler, with {root} in the place of the unpacked packages.
+The packages are unpacked into a folder of the user's cache, where they need no rights, and
+`with_NAME.cpp` is compiled there to a library. solvers/outside/native.py loads it and answers. `flags` in
+the metadata are those of the compiler, with {root} in the place of the unpacked packages.
 """
 
 from __future__ import annotations

@@ -33,7 +33,8 @@ class About(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """The table `[tool.taylor-verify]` of a script.
 
     A version that is asked for replaces the pin of ``package``, else of the first dependency, and of those
-    ``alike``; ``flags`` are those of a compiler. A default of ``settings`` is a number, the name of another setting, or a list of words.
+    ``alike``; ``flags`` are those of a compiler. A default of ``settings`` is a number, the name of
+    another setting, or a list of words.
     """
 
     title: str

@@ -193,6 +193,7 @@ class Acting {
         attitude_(floats(question["initial"]["attitude"])),
         sign_(floats(question["time"]["elapsed"]).back() < 0 ? -1 : 1),
         inertia_(floats(question["body"]["inertia"])),
+        inverse_(floats(question["body"]["inverse_inertia"])),
         constant_(floats(question["body"]["moment"])) {
     const Json &body = question["body"];
     if (body.has("rotor")) wheels_ = floats(body["rotor"]);
@@ -223,16 +224,11 @@ class Acting {
     return (target_ - t) / left_;
   }
 
-  // The engine has made this step; states of one's own follow, by Heun's method.
+  // The engine has made this step; states of one's own are there, too.
   void move(double step) {
-    const double before = t;
-    const Known ahead = advanced(step);
-    t = left_ == 1 ? target_ : t + step;
-    if (!moving_.empty()) {
-      const Vector after = piece_->values(piece_->rates, known(t, state_(), ahead));
-      for (std::size_t k = 0; k < moving_.size(); k++)
-        values_[moving_[k]] += (t - before) * (rates_[k] + after[k]) / 2;
-    }
+    const double after = left_ == 1 ? target_ : t + step;
+    for (const auto &[name, value] : ahead(after)) values_[name] = value;
+    t = after;
     arrive();
   }
 
@@ -242,12 +238,14 @@ class Acting {
   Vector attitude_;
   std::vector<std::string> moving_, held_;
   int sign_;
-  Vector inertia_, constant_, wheels_ = {0, 0, 0}, rates_, stops_;
+  Vector inertia_, inverse_, constant_, wheels_ = {0, 0, 0}, begin_, stops_;
   double damping_ = 0, target_ = 0;
   long left_ = 1;
   std::vector<Piece> pieces_;
   const Piece *piece_ = nullptr;
   Known values_;
+  // One's own continuous states at times within the step.
+  mutable std::map<double, Known> foreseen_;
   std::map<double, std::vector<std::string>> instants_;
 
   void add(const Json &one) {
@@ -257,16 +255,51 @@ class Acting {
   }
 
   // The moment in body axes, of all that acts: I w' = I w x w + this.
-  Vector acting(double at, const Vector &state) const {
-    const Vector omega(state.begin(), state.begin() + 3);
+  Vector acting(double at, const Vector &state) const { return acting(at, state, known(at, state, ahead(at))); }
+
+  Vector acting(double at, const Vector &state, const Known &now) const {
+    const Vector omega(state.begin(), state.begin() + 3), momentum = times(inertia_, omega);
     Vector made = constant_;
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) made[i] -= damping_ * inertia_[3 * i + j] * omega[j];
+    for (int i = 0; i < 3; i++) made[i] -= damping_ * momentum[i];
     if (pieces_.empty()) return plus(made, cross(wheels_, omega));
-    const Known now = known(at, state, advanced(at - t));
     made = plus(made, piece_->values(piece_->moment, now));
     if (piece_->rotor.empty()) return plus(made, cross(wheels_, omega));
     return plus(plus(made, cross(piece_->values(piece_->rotor, now), omega)), reaction(at, now));
+  }
+
+  // One's own continuous states at a time within the step. They depend on the motion, which goes on from the
+  // state of the engine by the classical method of Runge and Kutta: nothing of it reaches the engine.
+  Known ahead(double at) const {
+    if (moving_.empty() || at == t) return {};
+    if (!foreseen_.count(at)) {
+      const double h = at - t;
+      Vector y = begin_;
+      for (const std::string &name : moving_) y.push_back(values_.at(name));
+      const Vector k1 = rates(t, y), k2 = rates(t + h / 2, moved(y, h / 2, k1));
+      const Vector k3 = rates(t + h / 2, moved(y, h / 2, k2)), k4 = rates(at, moved(y, h, k3));
+      for (std::size_t i = 0; i < y.size(); i++) y[i] += h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+      foreseen_[at] = named(y);
+    }
+    return foreseen_.at(at);
+  }
+
+  // The rates of omega, the attitude and one's own states, y in this order.
+  Vector rates(double at, const Vector &y) const {
+    const Vector state(y.begin(), y.begin() + 7), omega(y.begin(), y.begin() + 3), v(y.begin() + 4, y.begin() + 7);
+    const Known now = known(at, state, named(y));
+    const Vector across = cross(v, omega), own = piece_->values(piece_->rates, now);
+    Vector made = times(inverse_, plus(cross(times(inertia_, omega), omega), acting(at, state, now)));
+    made.push_back(-std::inner_product(v.begin(), v.end(), omega.begin(), 0.0) / 2);
+    for (int i = 0; i < 3; i++) made.push_back((y[3] * omega[i] + across[i]) / 2);
+    made.insert(made.end(), own.begin(), own.end());
+    return made;
+  }
+
+  // One's own continuous states by name.
+  Known named(const Vector &y) const {
+    Known made;
+    for (std::size_t k = 0; k < moving_.size(); k++) made[moving_[k]] = y[7 + k];
+    return made;
   }
 
   // Take the values that are due, all of them before any is set, and begin what begins here.
@@ -281,14 +314,9 @@ class Acting {
       for (const std::string &name : instants_[t])
         values_[name] = values[std::find(held_.begin(), held_.end(), name) - held_.begin()];
     }
-    if (!moving_.empty()) rates_ = piece_->values(piece_->rates, known(t, state_(), {}));
-  }
-
-  // One's own continuous states a step later, as their rates say now.
-  Known advanced(double step) const {
-    Known made;
-    for (std::size_t k = 0; k < moving_.size(); k++) made[moving_[k]] = values_.at(moving_[k]) + step * rates_[k];
-    return made;
+    begin_.assign(state.begin(), state.begin() + 3);
+    begin_.insert(begin_.end(), attitude_.begin(), attitude_.end());
+    foreseen_.clear();
   }
 
   // All that steps may read, by name; the quaternion is unit.
@@ -323,6 +351,18 @@ class Acting {
     Vector made = wheels(-momentary);
     const Vector after = wheels(momentary);
     for (int i = 0; i < 3; i++) made[i] = (made[i] - after[i]) / (2 * momentary);
+    return made;
+  }
+
+  static Vector moved(Vector y, double h, const Vector &slopes) {
+    for (std::size_t i = 0; i < y.size(); i++) y[i] += h * slopes[i];
+    return y;
+  }
+
+  static Vector times(const Vector &matrix, const Vector &v) {
+    Vector made;
+    for (int i = 0; i < 3; i++)
+      made.push_back(matrix[3 * i] * v[0] + matrix[3 * i + 1] * v[1] + matrix[3 * i + 2] * v[2]);
     return made;
   }
 

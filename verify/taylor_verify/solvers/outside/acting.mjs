@@ -71,7 +71,7 @@ function prepared([word, ...rest]) {
 
 export class Acting {
   #state; #attitude; #sign; #inertia; #constant; #wheels; #damping; #pieces; #piece; #values = {}; #moving;
-  #held; #rates; #instants; #stops; #target; #left;
+  #held; #begin; #foreseen; #inverse; #instants; #stops; #target; #left;
 
   constructor({ body, initial, time, loads, states = [], instants = [] }, state) {
     this.t = 0;
@@ -80,6 +80,7 @@ export class Acting {
     this.#attitude = floats(initial.attitude);
     this.#sign = floats(time.elapsed).at(-1) < 0 ? -1 : 1;
     this.#inertia = floats(body.inertia);
+    this.#inverse = floats(body.inverse_inertia);
     this.#constant = floats(body.moment);
     this.#wheels = "rotor" in body ? floats(body.rotor) : [0, 0, 0];
     this.#damping = "damping" in body ? floats(body.damping) : 0;
@@ -107,30 +108,58 @@ export class Acting {
     return (this.#target - this.t) / this.#left;
   }
 
-  // The engine has made this step; states of one's own follow, by Heun's method.
+  // The engine has made this step; states of one's own are there, too.
   move(step) {
-    const [before, ahead] = [this.t, this.#advanced(step)];
-    this.t = this.#left === 1 ? this.#target : this.t + step;
-    if (this.#moving.length) {
-      const after = this.#piece.values(this.#piece.rates, this.#known(this.t, this.#state(), ahead));
-      this.#moving.forEach((name, k) => {
-        this.#values[name] += ((this.t - before) * (this.#rates[k] + after[k])) / 2;
-      });
-    }
+    const t = this.#left === 1 ? this.#target : this.t + step;
+    Object.assign(this.#values, this.#ahead(t));
+    this.t = t;
     this.#arrive();
   }
 
   // The moment in body axes, of all that acts: I w' = I w x w + this.
   moment(t, state) {
+    return this.#moment(t, state, this.#known(t, state, this.#ahead(t)));
+  }
+
+  #moment(t, state, known) {
     const omega = state.slice(0, 3);
-    const momentum = this.#inertia.map((row) => row[0] * omega[0] + row[1] * omega[1] + row[2] * omega[2]);
-    const moment = this.#constant.map((M, i) => M - this.#damping * momentum[i]);
+    const moment = times(this.#inertia, omega).map((H, i) => this.#constant[i] - this.#damping * H);
     if (!this.#pieces.length) return plus(moment, cross(this.#wheels, omega));
-    const known = this.#known(t, state, this.#advanced(t - this.t));
     const loaded = plus(moment, this.#piece.values(this.#piece.moment, known));
     if (!this.#piece.rotor.length) return plus(loaded, cross(this.#wheels, omega));
     const { wheels, reaction } = this.#turning(t, known);
     return plus(plus(loaded, cross(wheels, omega)), reaction);
+  }
+
+  // One's own continuous states at a time within the step. They depend on the motion, which goes on from the
+  // state of the engine by the classical method of Runge and Kutta: nothing of it reaches the engine.
+  #ahead(t) {
+    if (!this.#moving.length || t === this.t) return {};
+    if (!this.#foreseen.has(t)) {
+      const start = [...this.#begin, ...this.#moving.map((name) => this.#values[name])];
+      this.#foreseen.set(t, this.#named(rungeKutta((at, y) => this.#rates(at, y), this.t, start, t - this.t)));
+    }
+    return this.#foreseen.get(t);
+  }
+
+  // The rates of omega, the attitude and one's own states, y in this order.
+  #rates(t, y) {
+    const [w1, w2, w3, p, a, b, c] = y;
+    const [omega, v] = [[w1, w2, w3], [a, b, c]];
+    const known = this.#known(t, y.slice(0, 7), this.#named(y));
+    const turned = cross(times(this.#inertia, omega), omega);
+    const turn = plus(omega.map((w) => p * w), cross(v, omega));
+    const attitude = [-a * w1 - b * w2 - c * w3, ...turn].map((entry) => entry / 2);
+    return [
+      ...times(this.#inverse, plus(turned, this.#moment(t, y.slice(0, 7), known))),
+      ...attitude,
+      ...this.#piece.values(this.#piece.rates, known),
+    ];
+  }
+
+  // One's own continuous states by name.
+  #named(y) {
+    return Object.fromEntries(this.#moving.map((name, k) => [name, y[7 + k]]));
   }
 
   // Take the values that are due, all of them before any is set, and begin what begins here.
@@ -145,15 +174,8 @@ export class Acting {
       const values = this.#piece.values(this.#piece.taken, this.#known(this.t, this.#state(), {}));
       for (const name of due) this.#values[name] = values[this.#held.indexOf(name)];
     }
-    if (this.#moving.length)
-      this.#rates = this.#piece.values(this.#piece.rates, this.#known(this.t, this.#state(), {}));
-  }
-
-  // One's own continuous states a step later, as their rates say now.
-  #advanced(step) {
-    return Object.fromEntries(
-      this.#moving.map((name, k) => [name, this.#values[name] + step * this.#rates[k]]),
-    );
+    this.#begin = [...this.#state().slice(0, 3), ...this.#attitude];
+    this.#foreseen = new Map();
   }
 
   #known(t, state, own) {
@@ -188,6 +210,18 @@ function continued(attitude, before) {
   const product = attitude.reduce((sum, entry, i) => sum + entry * before[i], 0);
   return attitude.map((entry) => (product < 0 ? -entry : entry));
 }
+
+// The state a step h later, by the classical method.
+function rungeKutta(rates, t, y, h) {
+  const moved = (length, slopes) => y.map((entry, i) => entry + length * slopes[i]);
+  const k1 = rates(t, y);
+  const k2 = rates(t + h / 2, moved(h / 2, k1));
+  const k3 = rates(t + h / 2, moved(h / 2, k2));
+  const k4 = rates(t + h, moved(h, k3));
+  return moved(h / 6, k1.map((k, i) => k + 2 * k2[i] + 2 * k3[i] + k4[i]));
+}
+
+const times = (matrix, v) => matrix.map((row) => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 

@@ -1,10 +1,10 @@
 """Driver of an engine in C++ whose library stands as the first argument; settings follow, as for a script.
 
 The library has four functions and a number: ``begin(inertia, omega, attitude, step, settings)`` makes the
-body anew, ``push(torque)`` sets the torque of the next step, ``advance()`` makes a step, and ``state(row)``
-reads omega and the attitude. Omega and torques are in space axes, a quaternion is unit and scalar first,
-the tensor is nine doubles, and settings are text, NAME=VALUE between spaces. ``takes_moments`` is not 0 where
-the engine takes principal moments alone.
+body anew, ``push(torque)`` sets the torque of the next step, ``advance()`` makes a step, and
+``state(row)`` reads omega and the attitude. Omega and torques are in space axes, a quaternion is unit and
+scalar first, the tensor is nine doubles, and settings are text, NAME=VALUE between spaces.
+``takes_moments`` is not 0 where the engine takes principal moments alone.
 """
 
 from __future__ import annotations

@@ -14,8 +14,9 @@
 # ///
 """JaxSim: a body of one link, a full tensor, in float64, without gravity.
 
-A stretch between two samples is one compiled loop. Omega is in body axes, the quaternion scalar first. There
-is no damping, no sleep and no cap to switch off. The body is described as SDF.
+A stretch between two samples is one compiled loop. Omega is in body axes, the quaternion scalar first.
+There is no damping, no sleep and no cap to switch off. The body is described as SDF. Its third integrator,
+RungeKutta4Fast, ends with an exception for a body without joints.
 """
 
 from __future__ import annotations
