@@ -52,6 +52,8 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
+# Where another is exact, a family is tried that may be so as well.
+_ALIKE: Final = 0.3
 _FIT_ROWS: Final = 160
 _POLISHED: Final = 4
 _PROVEN: Final = 6
@@ -186,7 +188,7 @@ class _Dynamics:
         counts = [c.count for c in simple if self._is_exact(c)]
         for each in linear:
             family = each.family
-            if each.left > _LINEAR and family.kind != "clock":
+            if each.left > (_ALIKE if counts else _LINEAR) and family.kind != "clock":
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
