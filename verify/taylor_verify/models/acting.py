@@ -30,17 +30,22 @@ class Acting:
     ``state`` omega, or x and y; then q0..q3 and the centre where a text reads them; then the continuous
     components of the scene's own states. ``held`` are the held ones. All may have more axes in front, the
     same for all. Raises ValueError for a state that is too short, and for held values that are missing.
+    ``written`` are the loads as texts.
     """
 
     def __init__(self, scene: Scene, loads: Loads) -> None:
-        self._scene, self._loads, self._start = scene, loads, scene.clock.start
+        self._scene, self.written, self._start = scene, loads, scene.clock.start
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
         self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
 
+    def of(self, loads: Loads) -> Acting:
+        """Return other loads of the same scene."""
+        return Acting(self._scene, loads)
+
     def __reduce__(self) -> tuple[Any, ...]:
         # Code that was made here is made again there.
-        return Acting, (self._scene, self._loads)
+        return Acting, (self._scene, self.written)
 
     def loads(self, t: Any, state: Any, held: Any = None) -> Floats | tuple[Floats, Floats]:
         """Return the moment, or force and couple."""
@@ -72,7 +77,7 @@ class Acting:
         if state.ndim == 1 and elapsed.ndim == 0:
             return self._at(which, float(elapsed), state, held)
         elapsed = np.broadcast_to(elapsed, state.shape[:-1])
-        switches = [_not_before(switch) for switch in self._loads.switches]
+        switches = [_not_before(switch) for switch in self.written.switches]
         pieces = np.searchsorted(switches, elapsed, side="right")
         values: Floats | None = None
         for piece in np.unique(pieces):
@@ -90,7 +95,7 @@ class Acting:
         is_one = state.ndim == 1
         columns = state.tolist() if is_one else list(state.T)
         first = elapsed if is_one else elapsed[0]
-        piece = self._loads.piece(exact_value(first))
+        piece = self.written.piece(exact_value(first))
         code = self._code(which, piece, is_one)
         inputs = self._inputs(elapsed, columns) | self._held(held, is_one)
         if missing := code.names - inputs.keys():
@@ -114,17 +119,17 @@ class Acting:
         if held is None:
             return {}
         columns = held.tolist() if is_one else list(held.T)
-        return dict(zip(self._loads.held_values, columns, strict=True))
+        return dict(zip(self.written.held_values, columns, strict=True))
 
     def _inputs(self, elapsed: Any, columns: Sequence[Any]) -> dict[str, Any]:
-        n, own = 3 if self._is_euler else 6, len(self._loads.continuous)
-        needed = n + 4 * self._loads.reads_attitude + 3 * self._loads.reads_centre + own
+        n, own = 3 if self._is_euler else 6, len(self.written.continuous)
+        needed = n + 4 * self.written.reads_attitude + 3 * self.written.reads_centre + own
         if len(columns) < needed:
             raise ValueError(f"expected a state of {needed} numbers, got {len(columns)}")
         columns, last = columns[: len(columns) - own], columns[len(columns) - own :]
         moving, q, c = columns[:n], columns[n : n + 4], columns[n + 4 : n + 7]
         inputs = {"t": elapsed, **labelled("c", c)}
-        inputs |= dict(zip(self._loads.continuous, last, strict=True))
+        inputs |= dict(zip(self.written.continuous, last, strict=True))
         if self._is_euler:
             inputs |= labelled("w", moving)
         else:

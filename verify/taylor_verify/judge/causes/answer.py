@@ -288,7 +288,7 @@ class Answer:
         assert self.truth.q is not None
         if self.count < 2:
             return self.truth.q
-        spans, free = np.diff(self.times), replace(self.right, acting=None, reads=0)
+        spans, free = np.diff(self.times), replace(self.right, acting=None)
         turns = []
         for rows, sign in ((slice(None, -1), 1), (slice(1, None), -1)):
             one = np.zeros((4, self.count - 1))

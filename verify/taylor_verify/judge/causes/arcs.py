@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -39,12 +39,12 @@ def moved(
     arcs = begin.shape[2]
     parts = [(since, spans)]
     switches = equations.switches
-    if switches is not None:
+    if len(switches):
         parts = _parted(since, spans, switches)
     for at, span in parts:
         price = 1.0 if equations.acting is None else _TEXTS
         answer.budget.spend(price * steps * begin.shape[1] * (70 + 0.11 * sets * arcs))
-        rates = equations.rates if switches is None else _within(equations, at, span)
+        rates = _within(equations, at, span) if len(switches) else equations.rates
         begin = flow(rates, begin, at, span, steps)
     return begin
 
@@ -82,6 +82,13 @@ def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
         if largest < _ORDER:
             return steps
     return steps
+
+
+def _parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
+    """Yield sets that one flow may have; other texts have a flow each."""
+    for is_text, alike in itertools.groupby(sets, lambda changes: "acting" in changes):
+        part, most = [*alike], 1 if is_text else _SETS
+        yield from (part[k : k + most] for k in range(0, len(part), most))
 
 
 @dataclass(frozen=True)
@@ -140,7 +147,7 @@ class Arcs:
 
         Momenta have a further column: the first row against M nu of the scene's start.
         """
-        parts = [self._defects(sets[k : k + _SETS], steps) for k in range(0, len(sets), _SETS)]
+        parts = [self._defects(part, steps) for part in _parts_of(sets)]
         return np.concatenate(parts)
 
     @cached_property
@@ -150,7 +157,7 @@ class Arcs:
 
     def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
         answer, n = self.answer, self.answer.n
-        equations = answer.right.copies(sets)
+        equations = answer.right.copies(sets) if len(sets) > 1 else answer.right.changed(sets[0])
         ends = self.ends(equations, steps or self.steps, self.compared)
         defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
         if self.compared > n:

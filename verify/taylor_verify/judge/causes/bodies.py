@@ -134,6 +134,8 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
         return
     masses, moments = (_of_entries(mass, scale, places) for places in (diagonal[:3], diagonal[3:]))
     arm, entries = _of_arm(mass, scale[0, 3]), _of_entries(mass, scale, upper)
+    if right.added is not None:
+        yield from _of_parts(right, right.added)
     for name, numbers in (
         ("three masses", masses),
         ("three moments of inertia", moments),
@@ -173,6 +175,40 @@ def _entries_with(i: int, pair: tuple[int, int]) -> str:
     """Return the entries of the Coriolis matrix that have a product in row i: one, or two alike."""
     columns = [k for k in pair if i > 2 or k > 2]
     return " or ".join(f"C_{i + 1}{k + 1}" for k in columns)
+
+
+def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
+    """Yield other values of the keys of a rigid body beside its added mass: mass, and centre of mass."""
+    rigid = right.mass - added
+    heavy, arm = float(rigid[0, 0]), np.array([rigid[5, 1], rigid[3, 2], rigid[4, 0]]) / rigid[0, 0]
+    size = np.sqrt(np.trace(rigid[3:, 3:]) / heavy)
+    about_centre = rigid[3:, 3:] - _steiner(heavy, arm)
+
+    def changes(p: Floats, places: list[int]) -> Changes:
+        values = np.r_[heavy, arm]
+        values[places] = p
+        return {"mass": added + _rigid(values[0], about_centre, values[1:])}
+
+    values, scales = np.r_[heavy, arm], np.r_[heavy, size, size, size]
+    names = ("mass", *(f"centre_of_mass {i}" for i in (1, 2, 3)))
+    for name, places in (
+        *((each, [k]) for k, each in enumerate(names)),
+        ("centre_of_mass", [1, 2, 3]),
+    ):
+        labels = tuple(names[k] for k in places)
+        own = partial(changes, places=places)
+        yield Family(name, "part of the body", values[places], scales[places], own, labels)
+
+
+def _steiner(mass: float, arm: Floats) -> Floats:
+    """Return m (r.r 1 - r r^T), what a tensor about another point has more."""
+    return np.asarray(mass * (arm @ arm * np.eye(3) - np.outer(arm, arm)))
+
+
+def _rigid(mass: float, about_centre: Floats, arm: Floats) -> Floats:
+    """Return the mass matrix of a rigid body about a point from which its centre of mass is at ``arm``."""
+    turn = mass * np.cross(arm, np.eye(3))
+    return np.block([[mass * np.eye(3), turn], [turn.T, about_centre + _steiner(mass, arm)]])
 
 
 def _with_another_centre(mass: Floats, p: Floats) -> Changes:

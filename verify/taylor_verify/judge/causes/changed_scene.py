@@ -11,12 +11,17 @@ import numpy as np
 
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.texts import places
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.loads.vocabulary import VECTORS
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
 _NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late"})
 _NOTHING: Final = 1e-10
+# Names in the texts of loads whose values are those of another body if the mass changes.
+_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
 
 
 def changed_scene(right: Equations, changes: Changes) -> str:
@@ -24,6 +29,8 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if not changes or _NO_SCENE & set(changes):
         return ""
     other, lines, n = right.changed(changes), list[str](), right.size
+    if "acting" in changes:
+        lines += _changed_texts(right.loads, other.loads)
     if not _is_written(other, changes):
         return ""
     if "mass" in changes:
@@ -31,7 +38,7 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         lines.append(
             f"{key} = {_list([_list(map(number, row)) for row in _symmetric(other.mass)])}"
         )
-    if "rotor" in changes and np.any(right.rotor):
+    if "rotor" in changes and np.any([right.rotor, other.rotor]):
         lines.append(f"rotor = {_list(map(number, other.rotor))}")
     if "damping" in changes:
         lines.append(f"damping = {number(float(other.damping))}")
@@ -40,6 +47,24 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
             lines.append(f"{key} = {_list(texts[first : first + 3])}")
     return "; ".join(lines)
+
+
+def _changed_texts(right: Loads | None, other: Loads | None) -> list[str]:
+    """Return the keys of a scene whose numbers or texts are others, each with all of its entries."""
+    before, after = _entries_by_key(right), _entries_by_key(other)
+    return [f"{key} = {words}" for key, words in after.items() if before.get(key) != words]
+
+
+def _entries_by_key(loads: Loads | None) -> dict[str, str]:
+    entries: dict[str, list[str]] = {}
+    for place in () if loads is None else places(loads):
+        text = f'"{place.entry}"' if isinstance(place.entry, str) else number(float(place.entry))
+        key, bracket, _ = place.key.partition("[")
+        entries.setdefault(key + bracket, []).append(text)
+    return {
+        key.removesuffix("["): _list(texts) if key.endswith("[") else texts[0]
+        for key, texts in entries.items()
+    }
 
 
 def _symmetric(matrix: Floats) -> Floats:
@@ -77,14 +102,17 @@ def changed_body(body: Body, right: Equations, changes: Changes) -> Body | None:
 
 def _is_written(other: Equations, changes: Changes) -> bool:
     """Return True if texts can say what has changed: they name no other mass, and no weight is changed."""
+    loads = other.loads
+    if loads is None:
+        return True
     changes_loads = np.any(other.extra[:, other.basis.groups["loads"].start :])
-    is_other = "mass" in changes and other.names_mass
-    return not (is_other or (other.is_hung and changes_loads))
+    names_mass = not loads.inputs.isdisjoint(_OF_MASS)
+    return not (("mass" in changes and names_mass) or (loads.hung and changes_loads))
 
 
 def load_texts(other: Equations) -> list[str]:
     """Return each component of the loads as a number or the text of an expression."""
-    factors, words = _of_texts(other) if other.texts else _of_numbers(other)
+    factors, words = _of_numbers(other) if other.loads is None else _of_texts(other, other.loads)
     largest = float(np.max(np.abs(factors)))
     return [_text(row, words, largest) for row in factors]
 
@@ -100,9 +128,16 @@ def _of_numbers(other: Equations) -> tuple[Floats, tuple[str, ...]]:
     return extra[:, : len(basis.texts)], basis.texts
 
 
-def _of_texts(other: Equations) -> tuple[Floats, tuple[str, ...]]:
+def _of_texts(other: Equations, loads: Loads) -> tuple[Floats, tuple[str, ...]]:
     """Return the factors of each expression where the loads of the scene are texts."""
-    n, groups, texts, extra = other.size, other.basis.groups, other.texts, other.extra.copy()
+    n, groups, extra, vectors = (
+        other.size,
+        other.basis.groups,
+        other.extra.copy(),
+        dict(loads.vectors),
+    )
+    entries = (each for name in VECTORS[loads.model] for each in vectors.get(name, ZERO_VECTOR))
+    texts = [str(entry) for entry in entries]
     extra[:, groups["loads"]] += np.eye(n)
     turned = []
     for j in range(n):

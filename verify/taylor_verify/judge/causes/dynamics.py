@@ -27,6 +27,8 @@ from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
+from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
+from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
 from taylor_verify.words.causes import with_numbers
 
 # Error of float64 over a whole answer.
@@ -50,6 +52,8 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
+# Where another is exact, a family is tried that may be so as well.
+_ALIKE: Final = 0.3
 _FIT_ROWS: Final = 160
 _POLISHED: Final = 4
 _PROVEN: Final = 6
@@ -139,6 +143,7 @@ class _Dynamics:
     def _faults(self) -> Iterator[Candidate]:
         right = self.answer.right
         faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
+        faults += faults_of_angles(right)
         every = self.arcs.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))
@@ -149,6 +154,7 @@ class _Dynamics:
         """Yield the families of one number, of few and of many, while no candidate is exact."""
         sizes, right = Sizes.of(self.answer), self.few.right
         families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
+        families += [] if right.loads is None else [n.family(right) for n in numbers(right.loads)]
         for least, most in ((1, 1), (2, 3), (4, len(right.mass) ** 2)):
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
@@ -182,7 +188,7 @@ class _Dynamics:
         counts = [c.count for c in simple if self._is_exact(c)]
         for each in linear:
             family = each.family
-            if each.left > _LINEAR and family.kind != "clock":
+            if each.left > (_ALIKE if counts else _LINEAR) and family.kind != "clock":
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
@@ -342,10 +348,13 @@ class _Dynamics:
         proven.sort(key=lambda each: _simplest(each.candidate))
         best = proven[0].candidate
         as_well = max(BETTER * best.defects, 5 * self.floor, _NOTHING)
-        alike = [p.candidate for p in proven[1:] if p.candidate.defects <= as_well]
+        alike = [p for p in proven if p.candidate.defects <= as_well]
+        # What the scene writes is nearer to its user than a term of the equations.
+        alike.sort(key=lambda each: (each.candidate.count, each.candidate.kind != WRITTEN))
+        first, best = alike[0], alike[0].candidate
         text, changes = self._described(best)
-        others = tuple(self._described(each)[0] for each in alike)
-        return Cause(best.name, best.kind, proven[0].leaves, text, others, changes, best.method)
+        others = tuple(self._described(each.candidate)[0] for each in alike[1:])
+        return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
 
     def _described(self, candidate: Candidate) -> tuple[str, Changes]:
         """Return a candidate in words, with its changes; a body has the factor that changes the least."""

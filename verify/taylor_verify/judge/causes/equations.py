@@ -20,6 +20,7 @@ from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
+from taylor_verify.scenes.loads.loads import Loads
 
 Changes = Mapping[str, Any]
 
@@ -34,13 +35,11 @@ _FRAMED: Final = frozenset({"frame", "turned loads"})
 class Equations:
     """Parameters of the equations of motion.
 
-    ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts, of which each
-    piece between ``switches`` is smooth; they are read ``late`` by so much time, and their velocities are
-    those of ``scene_mass``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is
-    omega + ``ahead`` omega'. ``current`` moves the centre; ``clock`` multiplies all rates. ``in_world``
-    takes v for components in space axes, into which the loads are turned. ``texts`` are the entries of
-    the loads in the scene, beside a weight if ``is_hung``; they may name the inertia or the momenta.
-    ``added`` is the part of ``mass`` that the scene calls added mass.
+    ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts; they are read
+    ``late`` by so much time, their velocities are those of ``scene_mass``, and they read the values
+    ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
+    omega'; ``clock`` multiplies all rates. ``in_world`` takes v for components in space axes, into which
+    the loads are turned. ``added`` is the part of ``mass`` that the scene calls added mass.
     """
 
     mass: Floats
@@ -49,20 +48,15 @@ class Equations:
     extra: Floats
     has_momenta: bool = False
     acting: Acting | None = None
-    reads: int = 0
+    held: Floats | None = None
     scene_mass: Floats | None = None
     start: float = 0.0
-    current: Floats | None = None
-    switches: Floats | None = None
     damping: Any = 0.0
     clock: Any = 1.0
     turns: Floats | None = None
     ahead: Any = 0.0
     late: Any = 0.0
     in_world: bool = False
-    texts: tuple[str, ...] = ()
-    is_hung: bool = False
-    names_mass: bool = False
     added: Floats | None = None
 
     @classmethod
@@ -84,6 +78,27 @@ class Equations:
     def has_loads(self) -> bool:
         """True if the scene has loads, constant or written as texts."""
         return self.acting is not None or bool(np.any(self.load))
+
+    @property
+    def loads(self) -> Loads | None:
+        """The loads that the scene writes as texts."""
+        return None if self.acting is None else self.acting.written
+
+    @property
+    def reads(self) -> int:
+        """Number of components of attitude and centre that the texts read."""
+        loads = self.loads
+        return 0 if loads is None else 4 * loads.reads_attitude + 3 * loads.reads_centre
+
+    @property
+    def switches(self) -> Floats:
+        """The times between which the loads are smooth."""
+        return np.array([] if self.loads is None else self.loads.switches, dtype=float)
+
+    @property
+    def own(self) -> int:
+        """Number of components of the scene's own states that have rates."""
+        return 0 if self.loads is None else len(self.loads.continuous)
 
     @property
     def coupled(self) -> int:
@@ -160,15 +175,32 @@ class Equations:
         return factors if self.has_momenta else self.inverse @ factors
 
     def rates(self, time: Floats, z: Floats) -> Floats:
-        """Return the rates of states with or without a quaternion and a centre."""
-        n = self.size
-        nu = self.inverse @ z[:, :n] if self.has_momenta else z[:, :n]
+        """Return the rates of states with or without a quaternion, a centre, and the scene's own states."""
+        n, nu = self.size, self._velocities(time, z)
         moving = self._slopes @ self._expressions(time, z, nu)
+        if self.loads is not None and self.loads.rotor:
+            moving = moving + np.cross(self._wheels(time, z), nu, axis=1)
         out = np.empty((max(len(moving), len(z)), *z.shape[1:]))
         out[:, :n] = moving
         if z.shape[1] > n:
             self._put_frame_rates(out, z, nu, moving)
+        if self.own and z.shape[1] > n + 4:
+            out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)
+
+    def _velocities(self, time: Floats, z: Floats) -> Floats:
+        momenta = z[:, : self.size]
+        if not self.has_momenta:
+            return momenta
+        if self.loads is not None and self.loads.rotor:
+            momenta = momenta - self._wheels(time, z)
+        return np.asarray(self.inverse @ momenta)
+
+    def _wheels(self, time: Floats, z: Floats) -> Floats:
+        """Return the momentum of wheels that a text writes, of the scene's own states."""
+        assert self.acting is not None
+        when = np.broadcast_to(self.start + time, (len(z), len(time)))
+        return self.acting.rotor(when, z.transpose(0, 2, 1)).transpose(0, 2, 1)
 
     def _put_frame_rates(self, out: Floats, z: Floats, nu: Floats, moving: Floats) -> None:
         n, W = self.size, nu[:, -3:]
@@ -178,8 +210,10 @@ class Equations:
         q = parts(z[:, n : n + 4])
         for i, component in enumerate(self._turned(q, parts(W))):
             out[:, n + i] = component
-        if z.shape[1] > n + 4:
-            current = np.zeros(3) if self.current is None else self.current
+        if z.shape[1] > n + 4 + self.own:
+            current = (
+                np.zeros(3) if self.loads is None else np.array(self.loads.current, dtype=float)
+            )
             for i, component in enumerate(centre_rate(q, parts(nu[:, :3]))):
                 out[:, n + 4 + i] = component + current[i]
 
@@ -220,13 +254,21 @@ class Equations:
         constant = np.asarray(load if load.ndim == 3 else load[None, :, None], dtype=float)
         if self.acting is None:
             return constant
+        return np.asarray(constant + self._written("loads", time, z, nu))
+
+    def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
+        """Return the loads, or the rates of own states, that the scene writes as texts."""
         n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
         moving = nu if n == 3 or self.scene_mass is None else self.scene_mass @ nu
         state = np.concatenate([moving, z[:, n:]], axis=1).transpose(0, 2, 1)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
-        values = self.acting.loads(when, np.broadcast_to(state, (*when.shape, state.shape[2])))
-        stacked = values if n == 3 else np.concatenate(values, axis=-1)
-        return np.asarray(constant + np.asarray(stacked).transpose(0, 2, 1))
+        state = np.broadcast_to(state, (*when.shape, state.shape[2]))
+        held = self.held
+        if held is not None:
+            held = np.broadcast_to(held[:, None], (*when.shape, held.shape[-1]))
+        values = getattr(self.acting, what)(when, state, held)
+        stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
+        return np.asarray(stacked).transpose(0, 2, 1)
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
         right = attitude_rate(q, W)

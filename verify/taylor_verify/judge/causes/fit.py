@@ -21,6 +21,8 @@ _LONGEST: Final = 3.0
 # A fit ends early if so much is left after three rounds, or if a round gains less than a twentieth.
 _HOPELESS: Final = 0.3
 _GAIN: Final = 0.95
+# One number is fitted in a few rounds, each far better than the last.
+_GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
 # Defects above this are measured with the steps of derivatives.
 _COARSE: Final = 1e-3
@@ -88,7 +90,8 @@ def gauss_newton(arcs: Arcs, family: Family, begin: Floats | None = None) -> Fit
             break
         numbers, before, size = numbers + trials[best], size, float(sizes[best])
         is_hopeless = count == 2 and size > _HOPELESS * first
-        if is_hopeless or size < _NOTHING or (count > 1 and size > _GAIN * before):
+        is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
+        if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
     exact = arcs.defects([family.changes(numbers)])[0]
     return Fitted(numbers, float(_sizes(exact[None])[0]))

@@ -25,13 +25,10 @@ from taylor_verify.judge.conventions.readings import readings, rotations
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
 
@@ -40,8 +37,6 @@ if TYPE_CHECKING:
 
 _WITH_TERMS: Final = frozenset({"rotor"})
 MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
-# Names in the texts of loads whose values are those of another body if the mass changes.
-_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
 _DIGITS: Final = 20
 # Rates of attitudes need as many rows.
 _FEWEST_ATTITUDES: Final = 20
@@ -63,33 +58,14 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     n, loads = len(mass), given.body.loads
     constant = [entry for name in body.load_names() for entry in parts[name]]
     added = body.added_mass
-    equations = replace(
+    return replace(
         Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
         load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
         has_momenta=has_momenta,
         start=float(given.clock.start),
         damping=float(body.damping),
         added=None if added is None else np.array(added, dtype=float),
-    )
-    if loads is None:
-        return equations
-    return replace(
-        equations,
-        acting=Acting(given, loads),
-        texts=_texts(loads),
-        is_hung=bool(loads.hung),
-        names_mass=not loads.inputs.isdisjoint(_OF_MASS),
-        reads=4 * loads.reads_attitude + 3 * loads.reads_centre,
-        switches=np.array([float(s) for s in loads.switches]) if loads.switches else None,
-        current=np.array(loads.current, dtype=float) if any(loads.current) else None,
-    )
-
-
-def _texts(loads: Loads) -> tuple[str, ...]:
-    """Return the entries of the loads as texts."""
-    entries = dict(loads.vectors)
-    return tuple(
-        str(entry) for name in VECTORS[loads.model] for entry in entries.get(name, ZERO_VECTOR)
+        acting=None if loads is None else Acting(given, loads),
     )
 
 

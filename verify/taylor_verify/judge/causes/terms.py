@@ -99,12 +99,8 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     word = "gyroscopic term" if n == 3 else "Coriolis terms"
     title, extra = f"factor of the {word}", [factors(products=coriolis_of(right.mass))]
     yield family(title, "gyroscopic term", 1.0, [1], extra=extra, rotor=[right.rotor])
-    if np.any(right.rotor):
-        size, unit = float(np.linalg.norm(right.rotor)), np.eye(3)
-        yield family("factor of the wheels", "wheels", 1.0, [1], rotor=right.rotor[None])
-        for i in range(3):
-            yield family(f"wheel {i + 1}", "wheels", size, right.rotor[[i]], rotor=unit[[i]])
-        yield family("wheels", "wheels", size, right.rotor, rotor=unit)
+    if n == 3:
+        yield from _wheels(right, sizes)
     if right.has_loads:
         title = f"factor of the {'moment' if n == 3 else 'loads'}"
         yield family(title, "load", 1.0, [1], extra=[factors(loads=np.eye(n))])
@@ -117,6 +113,18 @@ def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
     for name, rows in _coriolis_terms(right):
         extra = [factors(products=rows)]
         yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
+
+
+def _wheels(right: Equations, sizes: Sizes) -> Iterator[Family]:
+    """Yield other wheels; a scene without them may lack some."""
+    unit, size = np.eye(3), float(np.linalg.norm(right.rotor))
+    if size:
+        yield linear(right, "factor of the wheels", "wheels", 1.0, [1], rotor=right.rotor[None])
+    size = size or float(np.max(sizes.load)) / sizes.pace
+    for i in range(3):
+        name = f"wheel {i + 1}"
+        yield linear(right, name, "wheels", size, right.rotor[[i]], rotor=unit[[i]])
+    yield linear(right, "wheels", "wheels", size, right.rotor, rotor=unit)
 
 
 def _loads(right: Equations, sizes: Sizes) -> Iterator[Family]:

@@ -1,0 +1,221 @@
+"""The numbers of a scene's texts, and the terms of its sums: each a number that may be another one."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from math import pi
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.fault import Fault
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.texts import Place, places
+from taylor_verify.scenes.loads.loads import Loads
+
+KIND: Final = "number"
+_LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_VELOCITY: Final = re.compile(r"\b[uw][123]\b")
+_NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
+_TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
+_ANGLES: Final = (("radians read as degrees", pi / 180), ("degrees read as radians", 180 / pi))
+_DIGITS: Final = 15
+_MOST: Final = 60
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the scene by its name and ``value``, and the loads with another ``put`` in its place."""
+
+    name: str
+    value: float
+    put: Callable[[float], Loads]
+    is_angle: bool = False
+
+    def changes(self, right: Equations, values: Floats) -> Changes:
+        """Return the change of the scene; raises ValueError where no scene has this number."""
+        assert right.acting is not None
+        return {"acting": right.acting.of(self.put(float(values[0])))}
+
+    def family(self, right: Equations) -> Family:
+        """Return the fault of another value."""
+        value = np.array([self.value])
+        changes = partial(self.changes, right)
+        return Family(self.name, KIND, value, np.abs(value), changes, (self.name,))
+
+
+def numbers(loads: Loads) -> list[Number]:
+    """Return the numbers of the loads that may be others, and the factors of the terms of sums."""
+    every = [*_of_places(loads), *_repeated(loads), *_of_terms(loads), *_of_drag(loads)]
+    return [number for number in every if _is_free(number)][:_MOST]
+
+
+def faults_of_angles(right: Equations) -> Iterator[Fault]:
+    """Yield the numbers of sines and cosines in degrees for radians, and the other way round."""
+    for number in () if right.loads is None else numbers(right.loads):
+        for words, factor in _ANGLES if number.is_angle else ():
+            changes = number.changes(right, np.array([factor * number.value]))
+            yield Fault(f"{number.name} {words}", KIND, changes)
+
+
+def _is_free(number: Number) -> bool:
+    """Return True if the number may have another value: an exponent often may not."""
+    try:
+        other = number.put(number.value * (1 + DIFFERENCE))
+        return next(other.faults(), None) is None
+    except ValueError:
+        return False
+
+
+def _of_places(loads: Loads) -> Iterator[Number]:
+    for place in places(loads):
+        if not isinstance(place.entry, str):
+            if place.entry:
+                yield Number(place.name, float(place.entry), partial(_put_number, place))
+            continue
+        if (value := _rational(place.entry)) is not None:
+            yield Number(place.name, float(value), partial(_put_number, place))
+            continue
+        for match in _LITERAL.finditer(place.entry):
+            if float(match.group()):
+                put = partial(_put_literal, place, place.entry, match.span())
+                name = f"`{match.group()}` in {place.name}, {place.entry},"
+                yield Number(name, float(match.group()), put, bool(_TURNS.search(place.entry)))
+
+
+def _rational(text: str) -> Fraction | None:
+    """Return the value of a text that is a number."""
+    try:
+        return Fraction(text) or None
+    except (ValueError, ZeroDivisionError):
+        return None
+
+
+def _put_number(place: Place, value: float) -> Loads:
+    return place.put(Fraction(f"{value:.{_DIGITS}g}"))
+
+
+def _put_literal(place: Place, text: str, span: tuple[int, int], value: float) -> Loads:
+    return place.put(f"{text[: span[0]]}{_written(value)}{text[span[1] :]}")
+
+
+def _written(value: float) -> str:
+    text = f"{value:.{_DIGITS}g}"
+    return f"({text})" if value < 0 else text
+
+
+def _repeated(loads: Loads) -> Iterator[Number]:
+    """Yield the numbers that several texts have, to be changed in all of them."""
+    texts = [place.entry for place in places(loads) if isinstance(place.entry, str)]
+    counts = Counter(match for text in texts for match in _LITERAL.findall(text))
+    for literal, count in counts.items():
+        if count > 1 and float(literal):
+            yield Number(f"every `{literal}`", float(literal), partial(_put_all, loads, literal))
+
+
+def _put_all(loads: Loads, literal: str, value: float) -> Loads:
+    def changed(match: re.Match[str]) -> str:
+        return _written(value) if match.group() == literal else match.group()
+
+    return _rewritten(loads, lambda text: _LITERAL.sub(changed, text))
+
+
+def _rewritten(loads: Loads, change: Callable[[str], str]) -> Loads:
+    """Return the loads with every text changed."""
+    keys = [place.key for place in places(loads) if isinstance(place.entry, str)]
+    for key in keys:
+        place = next(each for each in places(loads) if each.key == key)
+        loads = place.put(change(str(place.entry)))
+    return loads
+
+
+# Terms of sums.
+
+
+def terms(text: str) -> list[str]:
+    """Return the terms of a sum with their signs; their texts one behind the other are the sum."""
+    parts, depth, begin = list[str](), 0, 0
+    for k, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        before = text[begin:k].strip()
+        is_exponent = bool(re.search(r"\d[eE]$", before)) and letter in "+-"
+        if (
+            letter in "+-"
+            and not depth
+            and before
+            and before[-1] not in "*/^(,"
+            and not is_exponent
+        ):
+            parts.append(text[begin:k])
+            begin = k
+    return [*parts, text[begin:]]
+
+
+def _of_terms(loads: Loads) -> Iterator[Number]:
+    """Yield the factors of terms that have no number of their own."""
+    for place in places(loads):
+        if not isinstance(place.entry, str) or " if " in place.entry:
+            continue
+        parts = terms(place.entry)
+        for k, part in enumerate(parts):
+            if not _LITERAL.match(part.strip().lstrip("+-").strip()) and len(parts) > 1:
+                name = f"factor of the term {part.strip()} in {place.name}"
+                yield Number(name, 1.0, partial(_put_factor, place, parts, {k}))
+
+
+def _put_factor(place: Place, parts: list[str], which: set[int], value: float) -> Loads:
+    return place.put(_weighted(parts, which, value))
+
+
+def _weighted(parts: list[str], which: set[int], value: float) -> str:
+    """Return the sum of terms, of which some have a factor."""
+    words = []
+    for k, part in enumerate(parts):
+        sign, body = ("-", part.strip()[1:]) if part.strip()[0] == "-" else ("+", part.strip())
+        body = body.removeprefix("+").strip()
+        words.append(f"{sign} {_written(value)}*({body})" if k in which else f"{sign} {body}")
+    return " ".join(words).removeprefix("+ ")
+
+
+def _of_drag(loads: Loads) -> Iterator[Number]:
+    """Yield the factor of all terms that read velocities."""
+    moving = _moving_names(loads)
+    drag: dict[tuple[int, int], tuple[list[str], set[int]]] = {}
+    for k, (_, entries) in enumerate(loads.vectors):
+        for i, entry in enumerate(entries):
+            if not isinstance(entry, str) or " if " in entry:
+                continue
+            parts = terms(entry)
+            of_drag = {
+                j for j, part in enumerate(parts) if not moving.isdisjoint(_NAME.findall(part))
+            }
+            if of_drag:
+                drag[k, i] = parts, of_drag
+    if len(drag) > 1:
+        yield Number(
+            "factor of all terms with velocities (drag)", 1.0, partial(_put_drag, loads, drag)
+        )
+
+
+def _moving_names(loads: Loads) -> set[str]:
+    """Return the names of velocities, and of all definitions that read one."""
+    names = {f"{letter}{i}" for letter in "uw" for i in (1, 2, 3)}
+    for _ in loads.definitions:
+        for name, entry in loads.definitions:
+            if isinstance(entry, str) and not names.isdisjoint(_NAME.findall(entry)):
+                names.add(name)
+    return names
+
+
+def _put_drag(loads: Loads, drag: dict[Any, Any], value: float) -> Loads:
+    vectors = [(name, list(entries)) for name, entries in loads.vectors]
+    for (k, i), (parts, which) in drag.items():
+        vectors[k][1][i] = _weighted(parts, which, value)
+    return replace(loads, vectors=tuple((name, tuple(entries)) for name, entries in vectors))
