@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -28,6 +28,10 @@ _WRONG: Final = 30.0
 # The search itself is no better.
 _ARITHMETIC: Final = 1e-12
 _SAME_START: Final = 10.0
+
+
+# A function from equations, begins, their times and spans to the ends of arcs.
+Stepping = Callable[[Equations, Floats, Floats, Floats], Floats]
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,7 @@ class Answer:
     ``begins`` is the time of the start, ``decimals`` the number of decimals of the times in a file, and
     ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
     Without ``has_rates`` omega is that of the file's own attitudes, and is no quantity of the file.
+    With ``stepping`` the arcs go in steps of a method, as the simulator's did.
     """
 
     right: Equations
@@ -87,6 +92,7 @@ class Answer:
     begins: float = 0.0
     scene: Scene | None = None
     has_rates: bool = True
+    stepping: Stepping | None = None
 
     @property
     def off(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.budget import Spent
+from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.material import (
@@ -132,7 +132,7 @@ def explained(answer: Answer) -> Explained:
     missing: tuple[MissingLoad, ...] = ()
     if not causes and answer.has_rates:
         with suppress(*_SILENT):
-            missing = missing_load(answer)
+            missing = missing_load(replace(answer, budget=Budget()))
     likely = tuple(_likely(cause, answer) for cause in causes)
     return Explained(likely, is_motion, missing_load=missing)
 

@@ -36,6 +36,8 @@ def moved(
     """Return the states after the spans, each arc in pieces between the switches of the loads."""
     sets = max(len(begin), equations.sets)
     begin = np.broadcast_to(begin, (sets, *begin.shape[1:]))
+    if answer.stepping is not None:
+        return answer.stepping(equations, begin, since, spans)
     arcs = begin.shape[2]
     parts = [(since, spans)]
     switches = equations.switches

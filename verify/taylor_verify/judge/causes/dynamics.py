@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Final
@@ -12,6 +13,7 @@ import numpy as np
 from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import telling_arcs
+from taylor_verify.judge.causes.beside_steps import stepped, steps_beside
 from taylor_verify.judge.causes.bodies import (
     entries,
     families_of_bodies,
@@ -19,6 +21,7 @@ from taylor_verify.judge.causes.bodies import (
     nearest_factor,
     structure,
 )
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, both
@@ -42,6 +45,9 @@ _STRICTEST: Final = 1e-4
 _PAIR: Final = 1e-4
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
+# Beside the steps of a method a family has so many numbers.
+_FEW: Final = 3
+_BESIDE: Final = 300_000.0
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
@@ -95,7 +101,8 @@ class _Dynamics:
         if not self.arcs.size > 0 or not self.floor * 2 < 1:
             return None
         candidates = [*self._faults()]
-        if not any(self._is_exact(candidate) for candidate in candidates):
+        is_stepped = self.answer.stepping is not None
+        if not is_stepped and not any(map(self._is_exact, candidates)):
             stride = min(self.stride, 8) if self.few is self.answer else 1
             candidates += replays(self.answer, stride)
         linear: list[_Linear] = []
@@ -107,7 +114,22 @@ class _Dynamics:
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
             cause = self._settled([*self._pairs(linear)], _PAIR)
+        if cause is None and not is_method and self.answer.stepping is None:
+            cause = self._beside_steps(linear)
         return cause
+
+    def _beside_steps(self, linear: list[_Linear]) -> Cause | None:
+        """Return a cause beside the steps of a coarse method."""
+        few = [each.slopes for each in linear if each.family.count <= _FEW]
+        faults = [fault.changes for fault in faults_of_terms(self.answer.right)]
+        budget = self.answer.budget
+        with budget.of_its_own(_BESIDE), suppress(Spent):
+            for steps in steps_beside(self.arcs, self.stride, few, faults):
+                cause = _Dynamics(stepped(self.answer, steps)).cause()
+                if cause is not None:
+                    method = (steps.method, steps.count)
+                    return replace(cause, where=steps.words(self.answer), method=method)
+        return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
         """Return True if a candidate leaves no more than the rounding of the file."""

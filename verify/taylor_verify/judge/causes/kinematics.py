@@ -12,6 +12,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
+from taylor_verify.judge.causes.attitude_pieces import attitude_in_pieces
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.equations import Equations, parts
 from taylor_verify.judge.causes.fault import linear
@@ -72,8 +73,9 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     ends = answer.file.q[rows + 1].T
     exact = _turned(right, arcs)
     size, floor = _apart(ends, exact), max(answer.noise[1], 1e-16) * np.sqrt(ends.size)
-    if size < _CLEAR * floor:
-        return None
+    in_pieces = None if method else attitude_in_pieces(answer, right)
+    if in_pieces is not None or size < _CLEAR * floor:
+        return in_pieces
     tried = list(_replays(right, arcs, ends, exact, method))
     if method is None:
         tried += [*_wrong(right, arcs, ends, size), *_fits(right, arcs, ends, size)]

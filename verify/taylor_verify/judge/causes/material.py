@@ -40,6 +40,8 @@ MOVING: Final = frozenset(chain(*MOMENTA.values(), VELOCITIES))
 _DIGITS: Final = 20
 # Rates of attitudes need as many rows.
 _FEWEST_ATTITUDES: Final = 20
+# Rates that are known to no more than this part tell no equation.
+_TOO_COARSE: Final = 1e-2
 # The work of a search; a motion without closed form takes as long itself.
 _BUDGET: Final = 800_000.0
 _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
@@ -172,12 +174,16 @@ def _of_attitudes(
     verdicts: Iterable[Verdict],
     every: int,
 ) -> Answer | None:
-    """Return the attitudes of a rigid body, with their own rates, as material."""
+    """Return attitudes as material: with their own rates, or else with the exact motion."""
     group, times = _frame_of(file), np.array([float(t) for t in file.times])
-    if given.model != "euler" or not group or len(times) < _FEWEST_ATTITUDES:
+    if not group:
         return None
     q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
+    if given.model != "euler" or len(times) < _FEWEST_ATTITUDES:
+        return _of_frame_alone(given, q, unit, verdicts, every)
     omega, noise = rates_of_attitudes(times, q, unit)
+    if noise > _TOO_COARSE * np.max(np.abs(omega)):
+        return _of_frame_alone(given, q, unit, verdicts, every)
     inner = range(ASIDE, len(times) - ASIDE)
     instants = tuple(given.clock.instants[k] for k in inner)
     scene = replace(given, clock=replace(given.clock, instants=instants))
@@ -193,6 +199,18 @@ def _of_attitudes(
         every=every,
     )
     return answer and replace(answer, has_rates=False)
+
+
+def _of_frame_alone(
+    given: Scene, q: Floats, unit: float, verdicts: Iterable[Verdict], every: int
+) -> Answer | None:
+    """Return attitudes beside the exact motion, for causes in the attitude alone."""
+    n = len(given.body.energy_matrix)
+    motion, noises = Motion(np.zeros((len(q), n)), q), (np.zeros(n), unit, 0.0)
+    answer = material(given, motion, n == 6, noises, verdicts, every=every)
+    if answer is None:
+        return None
+    return replace(answer, file=replace(answer.file, v=answer.truth.v), has_rates=False)
 
 
 def _quaternions(file: TrajectoryFile, group: str, conventions: Conventions) -> Floats:

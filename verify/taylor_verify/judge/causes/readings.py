@@ -50,6 +50,8 @@ _FRAMES: Final = {
     "velocity": "is relative to a moving frame, with the velocity",
     "omega": "is relative to a frame that turns, in space axes, at",
 }
+_ONCE_MORE: Final = "is turned by R^T once more: the file has it in body axes already"
+_TURNED: Final = "turned by a fixed rotation"
 _NOUNS: Final = {"velocity": "the linear velocity", "centre": "the centre"}
 
 
@@ -95,28 +97,28 @@ def readings(answer: Answer) -> dict[str, Cause]:
 
 
 def _one_turn(answer: Answer, causes: dict[str, Cause]) -> dict[str, Cause]:
-    """Return one cause for omega and attitude if the same turn of the body's axes explains both."""
-    has_both = answer.has_rates and {"omega", "attitude"} <= causes.keys()
-    if answer.n == 6 or not has_both:
+    """Return one cause for velocities and attitude if the same turn of the body's axes explains them."""
+    vectors = answer.moving
+    is_one = answer.has_rates and vectors and {*vectors, "attitude"} <= causes.keys()
+    if not is_one or not all(_TURNED in causes[name].name for name in (*vectors, "attitude")):
         return {}
     q, truth = answer.file.q, answer.truth.q
     assert q is not None
     assert truth is not None
     turn = _mean(times(conjugate(truth), q))
-    left = {
-        "omega": _left(answer, "omega", answer.truth.v @ matrices(turn)[0]),
-        "attitude": _left(answer, "attitude", times(truth, turn)),
-    }
-    names, roundings = (causes["omega"].name, causes["attitude"].name), answer.roundings
-    if not all("turned by a fixed rotation" in name for name in names) or any(
-        part > max(_ROUNDINGS * roundings[name], _PART * answer.worst[name])
+    left = {"attitude": _left(answer, "attitude", times(truth, turn))}
+    for name in vectors:
+        left[name] = _left(answer, name, _group(answer, name)[1] @ matrices(turn)[0])
+    if any(
+        part > max(_ROUNDINGS * answer.roundings[name], _PART * answer.worst[name])
         for name, part in left.items()
     ):
         return {}
     leaves = {name: part / answer.worst[name] for name, part in left.items()}
-    words = f"the body's axes are turned by a fixed rotation of {_degrees(turn[0]):.4g} degrees"
-    cause = Cause(f"{words}, in omega and attitude alike", "convention", leaves)
-    return dict.fromkeys(leaves, cause)
+    words = f"the body's axes are {_TURNED} of {_degrees(turn[0]):.4g} degrees"
+    nouns = " and ".join(_NOUNS.get(name, name) for name in (*vectors, "attitude"))
+    cause = Cause(f"{words}, in {nouns} alike", "convention", leaves)
+    return {**causes, **dict.fromkeys(leaves, cause)}
 
 
 def _left(answer: Answer, name: str, rows: Floats) -> float:
@@ -164,7 +166,10 @@ def _vectors(answer: Answer, name: str) -> Iterator[Reading]:
         yield Reading("is in space axes", 0, in_space)
         for P in SIGNED[1:]:
             yield Reading(f"is in space axes, as axes {axes(P)}", 0, in_space @ P.T)
-        yield Reading("is turned by R^T once more", 0, np.einsum("nji,nj->ni", R, truth))
+        once_more = np.einsum("nji,nj->ni", R, truth)
+        yield Reading(_ONCE_MORE, 0, once_more)
+        for unit, factor in FACTORS.items():
+            yield Reading(f"{_ONCE_MORE}, and in another unit: {unit}", 0, factor * once_more)
     for unit, factor in FACTORS.items():
         yield Reading(f"is in another unit: {unit}", 0, factor * truth)
     if name == "omega" and answer.n == 3:
@@ -244,9 +249,9 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     assert q is not None
     assert truth is not None
     yield Reading("is the conjugate: it takes space to body axes", 0, conjugate(truth))
-    last, first = np.roll(truth, -1, axis=1), np.roll(truth, 1, axis=1)
-    yield Reading("has the scalar last, read as first", 0, last)
-    yield Reading("has the scalar first, read as last", 0, first)
+    columns = _other_columns(truth)
+    for words, rows in columns.items():
+        yield Reading(words, 0, rows)
     for words, rows in (("", truth), ("is the conjugate, and ", conjugate(truth))):
         for side, turn in (
             ("space", times(q, conjugate(rows))),
@@ -257,10 +262,25 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
             name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
             turned = (mean, rows) if side == "space" else (rows, mean)
             yield Reading(name, 3, times(*turned))
-    # A quaternion with its scalar in the wrong place is that of other frames too, for a reason of its own.
-    if not any(_is_near(q, rows) for rows in (last, first)):
+    # A quaternion with one component in the wrong place is that of other frames too, for no other reason.
+    if not any(_is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
     yield _frame_that_turns(answer, q, truth)
+
+
+def _other_columns(truth: Floats) -> dict[str, Floats]:
+    """Return the quaternions of files whose columns hold other components, or one with the other sign."""
+    columns = {
+        "has the scalar last, read as first": np.roll(truth, -1, axis=1),
+        "has the scalar first, read as last": np.roll(truth, 1, axis=1),
+    }
+    for k in (1, 2, 3):
+        columns[f"has the other sign in q{k}"] = truth * (1 - 2 * np.eye(4)[k])
+    for i, k in ((1, 2), (1, 3), (2, 3)):
+        order = np.array([0, 1, 2, 3])
+        order[[i, k]] = k, i
+        columns[f"has q{i} and q{k} exchanged"] = truth[:, order]
+    return columns
 
 
 def _is_near(q: Floats, rows: Floats) -> bool:

@@ -34,6 +34,15 @@ def wrong_rows(answer: Answer) -> Cause | None:
     return _repeated(answer, wrong) or _interpolated(answer, bad) or _single(answer, wrong, good)
 
 
+def are_saved_twice(answer: Answer) -> bool:
+    """Return True if every second row is the row before it."""
+    parts = [part for part in (answer.file.v, answer.file.q, answer.file.c) if part is not None]
+    even = answer.count // 2 * 2
+    return answer.count >= _MOST_BETWEEN and all(
+        np.array_equal(part[1:even:2], part[0:even:2]) for part in parts
+    )
+
+
 def _repeated(answer: Answer, wrong: Places) -> Cause | None:
     parts = [part for part in (answer.file.v, answer.file.q, answer.file.c) if part is not None]
     is_repeated = all(

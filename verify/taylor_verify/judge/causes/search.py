@@ -24,7 +24,7 @@ from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.own_states import cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
-from taylor_verify.judge.causes.rows import wrong_rows
+from taylor_verify.judge.causes.rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
 
 # An attitude so many times better than omega refutes every equation.
@@ -44,7 +44,7 @@ def causes_of(answer: Answer) -> list[Cause]:
     whole_answer = wrong_rows(answer) or other_times(answer)
     if whole_answer is not None:
         return [whole_answer]
-    undone = _clock_undone(answer)
+    undone = _clock_undone(answer) or _saved_twice(answer)
     if undone:
         return undone
     by_group = readings(answer)
@@ -202,6 +202,15 @@ def _clock_undone(answer: Answer) -> list[Cause]:
     how = f"late by {late:.6g}" if late > 0 else f"early by {-late:.6g}"
     where = f"with the clock {how}, as the first row shows"
     causes = causes_of(replace(at_start, truth=truth))
+    return [replace(cause, where=": ".join(filter(None, (where, cause.where)))) for cause in causes]
+
+
+def _saved_twice(answer: Answer) -> list[Cause]:
+    """Return the causes of every second row where the others are the rows before them."""
+    if not are_saved_twice(answer):
+        return []
+    causes = causes_of(answer.at(np.s_[::2]))
+    where = "each row is saved twice; of every second row"
     return [replace(cause, where=": ".join(filter(None, (where, cause.where)))) for cause in causes]
 
 

@@ -1,7 +1,7 @@
-"""Another meaning of a file's angles: their unit, their order, one sign, the sequence of their turns.
+"""Another meaning of the numbers of an attitude: unit, order, sign or sequence of angles, another form.
 
-The angles of a file are compared with the exact attitude, as a quaternion would be. What explains them with
-the fewest departures from how they were read is found; several that do as well are said together.
+They are compared with the exact attitude, as a quaternion would be. What explains them with the fewest
+departures from how they were read is found; several that do as well are said together.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ from fractions import Fraction
 from functools import cache
 from itertools import permutations, product
 from operator import itemgetter
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 
 from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Finding
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.conventions.search import attitudes_at, beginnings
+from taylor_verify.judge.conventions.vectors import vectors
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.turns import times
@@ -26,6 +27,7 @@ from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.made import MadeRows
+from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.values import Value
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -38,10 +40,22 @@ _UNITS: Final = {
     1 / DEGREE: "are in radians",
 }
 _NOISE: Final = 64 * FLOAT64
+# Quaternions that are integrated without restoring their length stay as near to it.
+_UNIT: Final = 0.1
+
+
+class Meaning(Protocol):
+    """A meaning of the numbers of a row, with its departures from the form that they were read by."""
+
+    def words(self, own: str) -> list[str]: ...
+
+    def quaternion(self, numbers: Sequence[Fraction]) -> Sequence[Value]: ...
+
+    def quaternions(self, rows: Floats) -> Floats: ...
 
 
 @dataclass(frozen=True)
-class Meaning:
+class Angles:
     """A meaning of three angles: factors, their places in a sequence, and whether its axes stay fixed."""
 
     sequence: str
@@ -87,12 +101,17 @@ class Meaning:
 
 @cache
 def _meanings(own: str) -> tuple[Meaning, ...]:
-    """Return the meanings with few departures, the fewest first; the own one is the first of all.
+    """Return the meanings with few departures, the fewest first; the own one is the first of all."""
+    return _sequences(own) if own in SEQUENCES else tuple(vectors(own))
+
+
+def _sequences(own: str) -> tuple[Angles, ...]:
+    """Return the meanings of angles of a sequence.
 
     Other sequences about fixed axes are sequences about moving ones in the opposite order.
     """
     every = (
-        Meaning(sequence, places, factors, is_fixed)
+        Angles(sequence, places, factors, is_fixed)
         for unit in _UNITS
         for factors in product((unit, -unit), repeat=3)
         for sequence in SEQUENCES
@@ -107,35 +126,42 @@ def _meanings(own: str) -> tuple[Meaning, ...]:
 def with_angles(
     file: TrajectoryFile, scene: Scene, rung: Rung
 ) -> tuple[TrajectoryFile, Finding | None]:
-    """Return the file with its angles as they explain the attitude, and what was found; None for nothing.
+    """Return the file with its attitude as its numbers explain it, and what was found; None for nothing.
 
     Raises what judge.conventions.search.conventions does.
     """
-    if file.form not in SEQUENCES or "quaternion" not in file.groups:
+    numbers = _numbers(file)
+    if numbers is None:
         return file, None
     for rows in reversed(beginnings(file)):
-        finding, meaning = _explained(file, scene, rung, rows)
+        finding, meaning = _explained(file, numbers, scene, rung, rows)
         if finding is not None:
-            return _read_by(file, meaning) if finding.is_certain else file, finding
+            read = MadeRows([numbers], meaning.quaternion, 4)
+            mended = replace(file, groups={**file.groups, "quaternion": read})
+            return mended if finding.is_certain else file, finding
     return file, None
 
 
-def _angles(file: TrajectoryFile) -> Any:
-    (angles,) = file.groups["quaternion"].sources  # type: ignore[attr-defined]
-    return angles
+def _numbers(file: TrajectoryFile) -> Rows | None:
+    """Return the numbers that the attitude was read from; None if they are no form of one."""
+    rows = file.groups.get("quaternion")
+    if rows is None or not file.form:
+        return None if rows is None or _are_unit(rows.doubles()) else rows
+    (numbers,) = rows.sources  # type: ignore[attr-defined]
+    return numbers if numbers.width == len(FORMS[file.form].columns) else None
 
 
-def _read_by(file: TrajectoryFile, meaning: Meaning) -> TrajectoryFile:
-    rows = MadeRows([_angles(file)], meaning.quaternion, 4)
-    return replace(file, groups={**file.groups, "quaternion": rows})
+def _are_unit(q: Floats) -> bool:
+    """Return True if most rows are quaternions near unit length."""
+    return bool(np.median(np.abs(np.linalg.norm(q, axis=1) - 1)) < _UNIT)
 
 
 def _explained(
-    file: TrajectoryFile, scene: Scene, rung: Rung, rows: tuple[int, ...]
+    file: TrajectoryFile, numbers: Rows, scene: Scene, rung: Rung, rows: tuple[int, ...]
 ) -> tuple[Finding | None, Meaning]:
-    angles, right = _angles(file).doubles(rows), attitudes_at(file, scene, rung, rows)
+    columns, right = numbers.doubles(rows), attitudes_at(file, scene, rung, rows)
     every = _meanings(file.form)
-    errors = [_apart(rotations(meaning.quaternions(angles)), right) for meaning in every]
+    errors = [_apart(rotations(meaning.quaternions(columns)), right) for meaning in every]
     plain, best = errors[0], min(errors)
     enough = AS_WELL * max(best, _NOISE)
     good = [m for m, error in zip(every, errors, strict=True) if error <= enough]
@@ -144,12 +170,18 @@ def _explained(
     first, *others = good
     count = len(first.words(file.form))
     alike = [other for other in others if len(other.words(file.form)) == count]
-    words, *more = (f"the angles {'; '.join(m.words(file.form))}" for m in (first, *alike))
+    noun = _noun(file.form)
+    words, *more = (f"{noun} {'; '.join(m.words(file.form))}" for m in (first, *alike))
     return Finding("quaternion", words, plain, best, tuple(more)), first
 
 
+def _noun(form: str) -> str:
+    if form in SEQUENCES:
+        return "the angles"
+    return f"the columns taken as {FORMS[form].words if form else 'q0 q1 q2 q3'}"
+
+
 def _apart(matrices: Floats, right: Floats) -> float:
-    """Return the largest angle between attitudes, in radians where it is small."""
-    return (
-        float(np.max(np.linalg.norm((matrices - right).reshape(len(right), -1), axis=1))) / 2**0.5
-    )
+    """Return the largest angle between attitudes, in radians where it is small; infinite for NaN."""
+    apart = np.linalg.norm((matrices - right).reshape(len(right), -1), axis=1)
+    return float(np.max(np.where(np.isnan(apart), np.inf, apart))) / 2**0.5

@@ -33,11 +33,12 @@ class Reading:
 
     If two readings explain a file equally well, the reading with fewer departures is taken. ``read``
     returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3,
-    3).
+    3). ``is_factor`` if it multiplies by the factor of a unit.
     """
 
     words: tuple[str, ...]
     read: Read
+    is_factor: bool = False
 
     @property
     def cost(self) -> int:
@@ -56,6 +57,8 @@ _UNITS: Final = (
     ("in turns per unit of time", Fraction(2)),
     ("in turns per minute, the unit of time being the second", Fraction(1, 30)),
 )
+# A rate may have these factors by mistakes of its own, as a half of a quaternion's rate.
+_LIKELY_FACTORS: Final = frozenset(Fraction(2) ** k for k in (-2, -1, 1, 2))
 
 
 @lru_cache
@@ -82,13 +85,17 @@ def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[R
         for in_space in (False,) if is_placed else (False, True):
             words = [*in_unit, *[f"{together} are in space axes"] * in_space]
             axes = frames.space if in_space or is_placed else frames.body
-            yield Reading(tuple(words), partial(_read_vectors, axes, pis, in_space))
+            yield Reading(tuple(words), partial(_read_vectors, axes, pis, in_space), bool(unit))
         if group == "omega" and not frames.cost:
             rates = f"{together} are rates of Euler angles, roll' pitch' yaw', and no body rates"
-            yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis))
+            yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis), bool(unit))
     if about.dimension == "rate" and spacing:
+        read = partial(_read_turns, frames.body, spacing)
         turns = f"{together} are turns between two rows, in radians for each {float(spacing):.6g}"
-        yield Reading((turns,), partial(_read_turns, frames.body, spacing))
+        yield Reading((turns,), read, is_factor=True)
+        if spacing in _LIKELY_FACTORS:
+            words_of_factor = f"{together} have the factor {float(spacing):g}"
+            yield Reading((words_of_factor,), read, is_factor=True)
 
 
 def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array, R: Array) -> Array:

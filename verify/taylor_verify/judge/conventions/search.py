@@ -26,6 +26,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.judge.causes.quick_motion import quick_motion
 from taylor_verify.judge.conventions.axes import Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
@@ -50,6 +51,8 @@ from taylor_verify.solvers.files.step import step_of_rows
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]
+# Rows, and the motion there.
+_Truth = tuple[list[int], dict[str, Floats]]
 
 # Errors below this many units of roundoff, of the rung or of float64, count as equal.
 _NOISE_ROUNDOFFS: Final = 64
@@ -74,7 +77,9 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     Raises Unsettled if there is no exact motion, and NotRepresentable if the rung cannot represent the
     scene.
     """
-    searches = [_Search(file, scene, rung, rows) for rows in beginnings(file)]
+    parts = beginnings(file)
+    every = _Search(file, scene, rung, tuple(sorted({k for rows in parts for k in rows})))
+    searches = [_Search(file, scene, rung, rows, every) for rows in parts]
     if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
     # Shorter beginnings come first, and max takes the first of equal ranks.
@@ -83,7 +88,7 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
 
 def attitudes_at(file: TrajectoryFile, scene: Scene, rung: Rung, rows: tuple[int, ...]) -> Floats:
     """Return the exact attitudes at some rows of a file, in doubles; NaN where they are out of reach."""
-    near, truth = _Search(file, scene, rung, rows)._truth(World(scene))
+    near, truth = _Search(file, scene, rung, rows).own_truth
     attitudes = np.full((len(rows), 3, 3), np.nan)
     attitudes[near] = truth["attitude"] if near else attitudes[near]
     return attitudes
@@ -103,20 +108,25 @@ def beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
 
 @dataclass(frozen=True)
 class _Search:
-    """Some rows of the file as floats, for comparison with the exact motion in any world."""
+    """Some rows of the file as floats, for comparison with the exact motion in any world.
+
+    In the scene's own world the exact motion is that of ``every`` row of all beginnings.
+    """
 
     file: TrajectoryFile
     scene: Scene
     rung: Rung
     rows: tuple[int, ...]
+    every: _Search | None = None
 
     def conventions(self) -> Conventions:
         """Return the conventions that these rows show."""
         if self.is_explained:
             return Conventions((), World(self.scene), {})
         # Every body and clock that can be tested here, the scene's own first.
-        others = [w for w in worlds(self.scene, self.file.times) if self._is_possible(w)]
-        tried = (fit for world in (World(self.scene), *others) for fit in self.fits(world))
+        others = [w for w in worlds(self.scene, self.file.times) if self._may_explain(w)]
+        own = self._fits(World(self.scene), self.own_truth)
+        tried = (*own, *(fit for world in others for fit in self.fits(world)))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, self.noise))]
         return findings_of(self.plain, *simplest(fits, self.noise), self.spacing)
 
@@ -139,7 +149,7 @@ class _Search:
     @cached_property
     def plain(self) -> Fit:
         """Best readings in the scene's own world."""
-        return self.fits(World(self.scene), (Frames(),))[0]
+        return self._fits(World(self.scene), self.own_truth, (Frames(),))[0]
 
     @cached_property
     def values(self) -> dict[str, Floats]:
@@ -171,12 +181,13 @@ class _Search:
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
 
-    def fits(self, world: World, frames: Sequence[Frames] = ()) -> list[Fit]:
-        """Return the best readings in a world under each renaming of axes.
+    def fits(self, world: World) -> list[Fit]:
+        """Return the best readings in a world under each renaming that leaves no group unexplained."""
+        return self._fits(world, self._truth(world))
 
-        Without ``frames``, only renamings that leave no group unexplained are used.
-        """
-        near, truth = self._truth(world)
+    def _fits(self, world: World, known: _Truth, frames: Sequence[Frames] = ()) -> list[Fit]:
+        """Return the best readings in a world under each of ``frames``, beside a motion."""
+        near, truth = known
         only = [group for group in self.values if not GROUPS[group].is_frame]
         columns = COLUMNS[only[0]] if len(only) == len(self.values) == 1 else ()
         fits = []
@@ -191,7 +202,41 @@ class _Search:
                 fits.append(Fit(replace(world, frames=renamed, axes_words=words), groups))
         return fits
 
-    def _truth(self, world: World) -> tuple[list[int], dict[str, Floats]]:
+    @cached_property
+    def own_truth(self) -> _Truth:
+        """The rows within reach in the scene's own world, and the exact motion there."""
+        if self.every is None:
+            return self._truth(World(self.scene))
+        near, truth = self.every.own_truth
+        place = {self.every.rows[k]: i for i, k in enumerate(near)}
+        rows = [k for k, row in enumerate(self.rows) if row in place]
+        some = [place[self.rows[k]] for k in rows]
+        return rows, {name: part[some] for name, part in truth.items()}
+
+    def _may_explain(self, world: World) -> bool:
+        """Return False for a world that is not possible, or whose motion in float64 explains nothing."""
+        if not self._is_possible(world):
+            return False
+        given, exact = self.solution(world)
+        if exact.route != "taylor":
+            return True
+        first = exact.evaluate([Fraction(0)], _DIGITS)
+        elapsed = np.array([float(t) for t in given.clock.elapsed])
+        quick = quick_motion(given, first, np.zeros(1), elapsed)
+        if quick is None:
+            return True
+        known = list(range(len(self.rows))), self._with_velocities(given, quick)
+        fits = self._fits(world, known)
+        return any(fit.explains(self.plain, self.noise) for fit in fits)
+
+    def _with_velocities(self, given: Scene, truth: dict[str, Any]) -> dict[str, Floats]:
+        """Return the motion in doubles, with the velocities of a body in a fluid."""
+        if has_velocities(given.body):
+            with mp.workdps(_DIGITS):
+                truth = {**truth, **velocities(given.body, truth)}
+        return {name: rows.astype(float) for name, rows in truth.items()}
+
+    def _truth(self, world: World) -> _Truth:
         """Return the rows within reach in a world, and the exact motion there."""
         given, exact = self.solution(world)
         reach = MOST_SPANS * max(abs(t) for t in self.scene.clock.elapsed)
@@ -201,10 +246,7 @@ class _Search:
             truth = exact.evaluate([elapsed[k] for k in near], _DIGITS) if near else {}
         except Unsettled:
             return [], {}
-        if near and has_velocities(given.body):
-            with mp.workdps(_DIGITS):
-                truth = {**truth, **velocities(given.body, truth)}
-        return near, {name: rows.astype(float) for name, rows in truth.items()}
+        return near, self._with_velocities(given, truth) if near else {}
 
     def _best(
         self, group: str, truth: Mapping[str, Floats], near: Sequence[int], frames: Frames
@@ -219,7 +261,10 @@ class _Search:
         for reading in known:
             values = reading.read(columns, truth["attitude"])
             values = rotations(values) if group == "quaternion" else values
-            errors.append(max(_distance(group, values, right), beyond))
+            error = max(_distance(group, values, right), beyond)
+            if reading.is_factor and error > self.noise and _has_another(values, right, error):
+                error = 1.0
+            errors.append(error)
         enough = AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
@@ -251,6 +296,13 @@ def _distance(group: str, values: Floats, right: Floats) -> float:
     size = np.sqrt(2) if GROUPS[group].is_frame else _largest(right) or 1.0
     # Beyond doubles both may be infinite: then no reading is correct.
     return float(largest / size) if size < inf else inf
+
+
+def _has_another(values: Floats, right: Floats, error: float) -> bool:
+    """Return True if the values that a unit's factor made are right by a further factor, near 1 or not."""
+    factor = np.sum(values * right) / np.sum(values * values)
+    left = _largest(factor * values - right) / (_largest(right) or 1.0)
+    return bool(left * AS_WELL < error)
 
 
 def _largest(rows: Floats) -> float:

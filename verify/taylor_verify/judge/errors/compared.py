@@ -7,7 +7,7 @@ v, a         velocity and acceleration of exact(t - c), relative to the same sca
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -20,6 +20,7 @@ from mpmath import mp
 
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
+from taylor_verify.judge.causes.quick_motion import quick_motion
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
@@ -150,6 +151,19 @@ class Run:
     def unshifted(self) -> Shifts:
         return (Fraction(0),) * len(self.elapsed)
 
+    def near(self, elapsed: Sequence[Fraction]) -> Mapping[str, Any] | None:
+        """Return the motion to a few digits; None if it cannot be computed.
+
+        An enclosure takes much longer than float64 from the exact rows, which is enough for a search.
+        """
+        if self.exact.route == "taylor":
+            known, since, times = self.truth.quantities, _floats(self.elapsed), _floats(elapsed)
+            quick = quick_motion(self.scene, known, since, times)
+            if quick is not None:
+                return quick
+        motion = self.motion(elapsed, _SEARCH_DIGITS)
+        return None if motion is None else motion.quantities
+
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
         try:
@@ -200,7 +214,7 @@ class Compared:
         return fit if fit.is_finite else None
 
     def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
-        error, size = self._relative(truth, slice(None))
+        error, size = self._relative(truth.quantities, slice(None))
         factors = {
             part: float(mp.ldexp(1, derivatives.units[part]) / scale)
             for part, scale in self._scales.items()
@@ -227,12 +241,13 @@ class Compared:
         run, count = self.run, len(self.run.elapsed)
         rows = evenly(count, _SEARCH_SAMPLES)
         elapsed = [run.elapsed[k] - shifts[k] for shifts in tried for k in rows]
-        motion = run.motion(elapsed, _SEARCH_DIGITS)
+        motion = run.near(elapsed)
         if motion is None:
             return None
         left = []
         for first in range(0, len(elapsed), len(rows)):
-            error, size = self._relative(motion.at(range(first, first + len(rows))), rows)
+            some = {name: each[first : first + len(rows)] for name, each in motion.items()}
+            error, size = self._relative(some, rows)
             left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
         return left
 
@@ -256,10 +271,13 @@ class Compared:
             return {self.errors.quantity: mp.sqrt(2)}
         return self.errors.parts
 
-    def _relative(self, truth: Motion, rows: Sequence[int] | slice) -> tuple[Floats, float]:
+    def _relative(
+        self, truth: Mapping[str, Any], rows: Sequence[int] | slice
+    ) -> tuple[Floats, float]:
         """Return the error of these rows of the answer, in units of a power of two near the largest."""
-        parts, count = self._scales, len(truth.radius)
-        errors = {p: (self.run.answer[p][rows] - truth[p]).reshape(count, -1) for p in parts}
+        parts = self._scales
+        errors = {p: self.run.answer[p][rows] - truth[p] for p in parts}
+        errors = {p: error.reshape(len(error), -1) for p, error in errors.items()}
         with np.errstate(all="ignore"):  # overflow and underflow are handled below
             relative = np.concatenate(
                 [e.astype(float) * float(1 / parts[p]) for p, e in errors.items()], axis=1
@@ -273,3 +291,7 @@ class Compared:
         largest = max(abs(value) for value in exact.flat)
         exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0
         return (exact * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent
+
+
+def _floats(times: Sequence[Fraction]) -> Floats:
+    return np.array([float(t) for t in times])

@@ -212,8 +212,13 @@ def missing_groups(groups: Sequence[str], scene: Scene) -> list[Group]:
 
 
 def span_notes(scene: Scene, times: Sequence[Fraction], extent: Extent) -> Iterator[str]:
-    """Yield a sentence if no row is at the start, and one if the file stops before the scene does."""
+    """Yield a sentence if no row is at the start, if rows are reversed, if the file stops too early."""
     start, end = float(scene.clock.start), float(scene.clock.instants[-1])
+    if (times[-1] - times[0]) * (scene.clock.instants[-1] - scene.clock.start) < 0:
+        yield (
+            f"the rows are reversed: their times go from t = {float(times[0]):.12g} to "
+            f"{float(times[-1]):.12g}, against the direction of the scene"
+        )
     if all(float(time) != start for time in times):
         yield f"no row is at the start, t = {start:g}: the initial state was not compared"
     if extent.last >= 0 and not extent.reaches_end:

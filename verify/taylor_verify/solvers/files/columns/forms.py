@@ -81,6 +81,13 @@ def _of_rodrigues(vector: Numbers) -> Sequence[Value]:
     return ((1 - square) / (1 + square), *(2 * part / (1 + square) for part in vector))
 
 
+def _of_gibbs(vector: Numbers) -> Sequence[Value]:
+    with gmpy2.context(precision=STAND_IN_BITS + _SPARE_BITS):
+        numbers = [gmpy2.mpfr(1), *map(_mpfr, vector)]
+        length = gmpy2.sqrt(sum(part * part for part in numbers))
+        return _exact([part / length for part in numbers])
+
+
 def _numbered(name: str) -> tuple[str, ...]:
     return tuple(f"{name}{k}" for k in (1, 2, 3))
 
@@ -101,6 +108,7 @@ FORMS: Final[Mapping[str, Form]] = {
         *map(_euler, _TURNS),
         Form("rotvec", _VECTOR, "a rotation vector", _of_vector, _VECTOR),
         Form("mrp", _numbered("mrp"), "modified Rodrigues parameters", _of_rodrigues),
+        Form("gibbs", _numbered("gibbs"), "a Gibbs vector", _of_gibbs),
         Form("axis_angle", _AXIS, "an axis and an angle", _of_axis, _AXIS[3:]),
     )
 }

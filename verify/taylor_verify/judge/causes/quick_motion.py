@@ -1,0 +1,76 @@
+"""The motion of a scene in float64: quick where an enclosure is slow, to try many times or many scenes.
+
+What is found by it is asked again of the exact motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.judge.causes.material import are_known, equations_of
+from taylor_verify.judge.conventions.axes import quaternion_columns
+from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.scenes.scene import Scene
+
+# Steps are doubled until the ends change by less than this part of the motion.
+_SETTLED: Final = 1e-9
+_FEWEST: Final = 4
+_MOST: Final = 2048
+
+
+def quick_motion(
+    scene: Scene, known: Mapping[str, Any], since: Floats, times: Floats
+) -> dict[str, Floats] | None:
+    """Return the motion of a rounded scene at ``times``, each from the nearest of the rows at ``since``.
+
+    ``known`` has the rows by quantity, as the motion that is returned. Times are since the start of the
+    scene. None where the body has loads or terms of its own, or where float64 does not follow it.
+    """
+    names = MOMENTA[scene.model]
+    if scene.body.loads is not None or not are_known(scene.body) or not set(names) <= set(known):
+        return None
+    right = equations_of(scene, has_momenta=scene.model == "kirchhoff")
+    rows = {name: np.asarray(part.astype(float)) for name, part in known.items()}
+    parts = [rows[name] for name in names]
+    if "attitude" in rows:
+        q = quaternion_columns(rows["attitude"])
+        parts.append(q / np.linalg.norm(q, axis=1, keepdims=True))
+    if "centre" in rows:
+        parts.append(rows["centre"])
+    nearest = np.argmin(np.abs(times[:, None] - since[None, :]), axis=1)
+    begin = np.hstack(parts)[nearest].T[None]
+    with np.errstate(all="ignore"):
+        ends = _settled(lambda steps: _ends(right.rates, begin, since[nearest], times, steps))
+    return None if ends is None else _by_name(ends, rows, names)
+
+
+def _ends(rates: Any, begin: Floats, since: Floats, times: Floats, steps: int) -> Floats:
+    return np.asarray(flow(rates, begin, since, times - since, steps)[0].T)
+
+
+def _settled(ends: Any) -> Floats | None:
+    """Return the ends of as many steps as they need; None if they do not settle."""
+    steps, before = _FEWEST, ends(_FEWEST)
+    while steps < _MOST:
+        steps, after = 2 * steps, ends(2 * steps)
+        if not np.all(np.isfinite(after)):
+            return None
+        if np.all(np.abs(after - before) <= _SETTLED * np.max(np.abs(after), axis=0)):
+            return np.asarray(after)
+        before = after
+    return None
+
+
+def _by_name(ends: Floats, rows: Mapping[str, Floats], names: tuple[str, ...]) -> dict[str, Floats]:
+    motion = {name: ends[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}
+    n = 3 * len(names)
+    if "attitude" in rows:
+        motion["attitude"] = rotations(ends[:, n : n + 4])
+    if "centre" in rows:
+        motion["centre"] = ends[:, n + 4 :]
+    return motion
