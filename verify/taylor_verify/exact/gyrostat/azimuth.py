@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from flint import acb, arb
 
@@ -64,7 +64,7 @@ def poles(free: FreeGyrostat, place: PointMap, frame: Frame) -> list[Pole]:
     result = []
     for sigma in (1, -1):
         for rho in _feet(free, frame, sigma, N):
-            point = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
+            point: list[Any] = [sigma * N * p + rho * q for p, q in zip(c, f, strict=True)]
             omega = [scalar_product(row, point) - entry for row, entry in zip(K, g, strict=True)]
             result.append(Pole(sigma, *place.at(point, cross(point, omega))))
     return result

@@ -12,7 +12,6 @@ L, U and D of space.py, chi = L + U - D: the attitude takes no other integrals t
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -28,45 +27,6 @@ from taylor_verify.scenes.motion import Impulse
 
 # Of a root that goes from -1 to 1 or so: whatever the precision, beyond this its sign is no rounding.
 _NEAR_POLE: Final = 2.0**-3
-
-
-class Orbit(ABC):
-    """A nutating motion, with numbers of one precision; to be used at that precision."""
-
-    def __init__(self, nutation: Nutation, start: Impulse) -> None:
-        body, axes = nutation.body, nutation.axes
-        self._start = start
-        self._F = mp.sqrt(mp.convert(nutation.F2))
-        self._y3, root = mp.convert(nutation.y3), mp.sqrt(mp.convert(axes.nu))
-        self._r = mp.convert(body.r) / root
-        # L' is linear + screw z, and the phase of both parameters grows at half of glide.
-        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3) / root
-        self._screw = mp.convert(body.q - body.q_prime) / root
-        self._glide = mp.convert(body.q) / root * self._F
-        # x1 + i x2 and y1 + i y2 at the start.
-        self._xi, self._eta = (transverse(v, axes) for v in (start.linear, start.angular))
-
-    @abstractmethod
-    def pose(self, t: mpf) -> Pose:
-        """x, y, the attitude and Z at the time t since the start."""
-
-    @property
-    @abstractmethod
-    def elements(self) -> dict[str, mpf]:
-        """The period of nutation where x3 recurs; for elliptic motion also rate, m and m_prime."""
-
-    @abstractmethod
-    def losses(self, t: mpf) -> list[mpf]:
-        """Estimates of the factors by which errors have grown by the time t >= 0.
-
-        They save repetitions; whether they were enough is decided by two precisions.
-        """
-
-    @final
-    @cached_property
-    def axes(self) -> SpaceAxes:
-        """The scene's space axes."""
-        return SpaceAxes(self._start, self.pose(mpf(0)), self._F)
 
 
 @dataclass(frozen=True)
@@ -150,11 +110,21 @@ class Phase:
 
 
 @final
-class EllipticOrbit(Orbit):
-    """A motion whose x3 swings between two simple roots of f."""
+class EllipticOrbit:
+    """A motion whose x3 swings between two simple roots of f; to be used at one precision."""
 
     def __init__(self, nutation: Nutation, start: Impulse) -> None:
-        super().__init__(nutation, start)
+        body, axes = nutation.body, nutation.axes
+        self._start = start
+        self._F = mp.sqrt(mp.convert(nutation.F2))
+        self._y3, root = mp.convert(nutation.y3), mp.sqrt(mp.convert(axes.nu))
+        self._r = mp.convert(body.r) / root
+        # L' is linear + screw z, and the phase of both parameters grows at half of glide.
+        self._linear = mp.convert((body.r - body.r_prime) * nutation.y3) / root
+        self._screw = mp.convert(body.q - body.q_prime) / root
+        self._glide = mp.convert(body.q) / root * self._F
+        # x1 + i x2 and y1 + i y2 at the start.
+        self._xi, self._eta = (transverse(v, axes) for v in (start.linear, start.angular))
         points = turning_points(nutation, mp.dps)
         self._wave: Wave = (SquareWave if points.pair is None else CosineWave)(nutation, points)
         self._z1, self._width = mp.convert(points.z1), mp.convert(points.z2 - points.z1)
@@ -163,7 +133,13 @@ class EllipticOrbit(Orbit):
         self._rise = Rise(nutation, points.z1, self._wave, self._r * self._F)
         self._turn = self._first_turn()
 
+    @cached_property
+    def axes(self) -> SpaceAxes:
+        """The scene's space axes."""
+        return SpaceAxes(self._start, self.pose(mpf(0)), self._F)
+
     def pose(self, t: mpf) -> Pose:
+        """x, y, the attitude and Z at the time t since the start."""
         place = self._wave.place(self._wave.start + self._wave.rate * t)
         up, down, z, partner = self._shape(place)
         L, U, D = (phase.at(t, place) for phase in self._phases)
@@ -178,10 +154,15 @@ class EllipticOrbit(Orbit):
 
     @property
     def elements(self) -> dict[str, mpf]:
+        """The period of nutation, the rate of the elliptic argument, m and m'."""
         wave = self._wave
         return {"period": wave.period, "rate": wave.rate, "m": wave.m, "m_prime": wave.m_prime}
 
     def losses(self, t: mpf) -> list[mpf]:
+        """Estimates of the factors by which errors have grown by the time t >= 0.
+
+        They save repetitions; whether they were enough is decided by two precisions.
+        """
         linear = abs(self._glide) + sum(abs(phase.rate) for phase in self._phases)
         betas = [phase.beta + 1 / phase.beta for phase in self._phases if phase.bend]
         return [1 + self._wave.rate * t, 1 / self._wave.m_prime, 1 + linear * t, *betas]
