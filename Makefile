@@ -51,10 +51,9 @@ test-site: site  ## Look at those pages in a browser without a window (Debian: i
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
 	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'browser or slow' tests/site tests/studies/test_site.py
 
-# Five minutes of one core at most; with AGAINST some ten on two.
+# Five minutes of one core at most.
 bench: $(INSTALLED)  ## Take the costs in ratios: targets missed, changes since the last (KEEP=1 keeps them)
-	@PYTHONPATH=tests $(BIN)/python -m benches $(ONLY) $(if $(KEEP),--keep) $(if $(STRICT),--strict) \
-		$(if $(AGAINST),--against '$(AGAINST)')
+	@PYTHONPATH=tests $(BIN)/python -m benches $(ONLY) $(if $(KEEP),--keep) $(if $(STRICT),--strict)
 
 # Each tool has an environment of its own, which uv makes and keeps.
 dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in them and what they say

@@ -24,7 +24,7 @@ from taylor_verify.records.faults import Refused
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
-from taylor_verify.scenes.reading.reader import load, read
+from taylor_verify.scenes.reading.reader import load
 
 SCENES = ["euler/rest", "kirchhoff/whole-motion", "euler/generic"]
 RUNGS = ["f32", "mp120"]
@@ -77,22 +77,6 @@ def test_any_executor_gives_the_verdicts_of_run(executor: Any, alone: list[Judge
     assert progress[0] == (0, 3, "None")
     assert [k for k, *_ in progress] == [0, 1, 2, 3]
     assert {name for *_, name in progress[1:]} == {f"{scene} on f32 mp120" for scene in SCENES}
-
-
-def test_a_scene_made_in_memory_runs_in_other_processes(tmp_path: Path) -> None:
-    """A Scene is sent as it is; a file of the same text gives the same numbers."""
-    file = tmp_path / "made.toml"
-    file.write_text(THREE_INSTANTS)
-    made = [read(THREE_INSTANTS, "made in memory"), load("euler/rest"), file]
-    judgements = taylor_verify.run_many(made, jobs=2)
-    assert [one.verdicts[0].scene for one in judgements] == [
-        "made in memory",
-        "euler/rest",
-        str(file),
-    ]
-    assert [row[2:] for row in numbers(judgements[:1])] == [
-        row[2:] for row in numbers(judgements[2:])
-    ]
 
 
 def test_an_interrupted_run_with_an_executor_goes_on_where_it_was(

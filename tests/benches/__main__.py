@@ -5,12 +5,10 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from benches import commands, history, suite
+from benches import history, suite
 from benches.ratio import Ratio
 from benches.registry import RATIOS
 from benches.table import remarks, table
@@ -25,35 +23,26 @@ def main(words: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--keep", action="store_true", help="append the ratios to the history")
     parser.add_argument("--strict", action="store_true", help="fail where a target is missed")
-    parser.add_argument(
-        "--against", type=Path, help="a checkout: times `make verify` here and there"
-    )
     parser.add_argument("--processes", type=_positive, default=suite.PROCESSES)
     asked = parser.parse_args(words)
-    with TemporaryDirectory() as folder:
-        try:
-            ratios = _chosen(asked.only, asked.against, Path(folder) / "caches")
-            last = history.last(history.FILE, processor())
-        except ValueError as error:
-            parser.error(str(error))
-        measured = suite.measured(ratios, asked.processes)
+    try:
+        ratios = _chosen(asked.only)
+        last = history.last(history.FILE, processor())
+    except ValueError as error:
+        parser.error(str(error))
+    measured = suite.measured(ratios, asked.processes)
     page = Console(width=None if sys.stdout.isatty() else 140, highlight=False)
     page.print(f"{processor()}; processor time, medians of {asked.processes} processes")
     page.print(table(measured, last))
     for line in remarks(measured, last):
         page.print(line)
     if asked.keep:
-        shipped = [one for one in measured if one.ratio in RATIOS]
-        history.keep(shipped, history.FILE, processor(), history.commit())
+        history.keep(measured, history.FILE, processor(), history.commit())
     return int(asked.strict and any(one.misses for one in measured))
 
 
-def _chosen(names: Sequence[str], against: Path | None, caches: Path) -> list[Ratio]:
-    """Return the ratios that are asked for; those of two checkouts alone where one is named."""
-    if against is not None:
-        if not (against / "verify" / "taylor_verify").is_dir():
-            raise ValueError(f"expected a checkout of this project, got {against} @ --against")
-        return [*commands.ratios(against, caches)]
+def _chosen(names: Sequence[str]) -> list[Ratio]:
+    """Return the ratios that are asked for."""
     chosen = [ratio for ratio in RATIOS if not names or ratio.name.startswith(tuple(names))]
     for name in names:
         if not any(ratio.name.startswith(name) for ratio in chosen):

@@ -250,35 +250,6 @@ def test_a_library_that_writes_on_stdout_does_not_spoil_the_document(
     assert "noise from Python" in error
 
 
-@pytest.mark.parametrize(
-    "state",
-    ["corrupt", *(pytest.param(s, marks=pytest.mark.slow) for s in ("not a folder", "no home"))],
-)
-def test_a_broken_cache_neither_stops_a_run_nor_spoils_the_document(
-    short: Path, tmp_path: Path, state: str
-) -> None:
-    """Compiled code is kept where possible; where not, stdout still holds JSON alone."""
-    cache = tmp_path / "cache"
-    changed = {"HEYOKA_CACHE_DIR": str(cache)}
-    if state == "corrupt":
-        subprocess.run(
-            command("run", str(short)), env=environment(**changed), check=True, capture_output=True
-        )
-        stored = [file for file in cache.rglob("*") if file.is_file()]
-        assert stored
-        for file in stored:
-            file.write_bytes(b"garbage" * 100)
-    elif state == "not a folder":
-        cache.write_text("a file")
-    else:
-        changed = {"HOME": str(cache / "nowhere"), "XDG_CACHE_HOME": "/proc/nowhere"}
-    done = subprocess.run(
-        command("run", str(short), "--json"), env=environment(**changed), capture_output=True
-    )
-    assert done.returncode == 0
-    assert json.loads(done.stdout)["summary"]["pass"] == 3
-
-
 # --out and publish
 
 

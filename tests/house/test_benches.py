@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from benches import __main__ as bench
-from benches import commands, history
+from benches import history
 from benches.history import Row, has_moved, keep, last
 from benches.judging import FAILING, PASSING, chunks
 from benches.propagation import plain
@@ -23,7 +23,6 @@ from taylor_verify.batch.sweeps.chunk import judge
 from taylor_verify.judge.provenance import processor
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
-from taylor_verify.scenes.library import find
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Postponed
@@ -177,38 +176,6 @@ def test_a_missed_target_fails_only_where_that_is_asked_for(
     assert not shipped.exists()
     assert bench.main(["--strict", "--keep"]) == 1
     assert last(shipped, processor())["invented/twice"].ratio == 3.0
-
-
-def test_a_verification_that_fails_is_not_timed(tmp_path: Path) -> None:
-    """A checkout whose standard set does not pass is an error, and no time."""
-    package = tmp_path / "verify" / "taylor_verify"
-    package.mkdir(parents=True)
-    (package / "__init__.py").touch()
-    (package / "__main__.py").write_text("raise SystemExit('a gate failed')")
-    share_a_scene(tmp_path)
-    side, _ = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
-    with pytest.raises(ChildProcessError, match=r"got 1 of `run euler/rest \.\.\.`.*a gate failed"):
-        replace(side, checkout=tmp_path).cost()  # type: ignore[type-var]
-
-
-def share_a_scene(checkout: Path) -> None:
-    """Give a checkout two scenes of this one, and another scene under the name of one of this one."""
-    for name in ("euler/rest", "extremes/euler-many-turns"):
-        file = checkout / "cases" / f"{name}.toml"
-        file.parent.mkdir(parents=True)
-        file.write_text(find(name).read_text())
-    (checkout / "cases" / "euler" / "generic.toml").write_text("another scene")
-
-
-def test_two_checkouts_are_timed_on_the_scenes_that_both_have(tmp_path: Path) -> None:
-    """A scene that was added or changed would make one of them slower; without any there is no ratio."""
-    with pytest.raises(ValueError, match="expected a checkout with scenes of this one"):
-        next(commands.ratios(tmp_path, tmp_path / "caches"))
-    share_a_scene(tmp_path)
-    sides = next(commands.ratios(tmp_path, tmp_path / "caches")).pair()
-    calls = {side.calls for side in sides}  # type: ignore[attr-defined]
-    standard = ("euler/rest", "--rung", "f32", "f64", "f80", "f128", "mp237")
-    assert calls == {(standard, ("extremes/euler-many-turns", "--rung", "f64"))}
 
 
 # The ratios
