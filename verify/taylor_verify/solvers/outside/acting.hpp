@@ -186,7 +186,7 @@ class Piece {
 class Acting {
  public:
   double t = 0;
-  Moment moment = [this](double at, const Vector &state) { return acting(at, state); };
+  Moment moment = [this](double at, const Vector &state) { return acting(at, state, advanced(at - t)); };
 
   Acting(const Json &question, std::function<Vector()> state)
       : state_(std::move(state)),
@@ -223,16 +223,11 @@ class Acting {
     return (target_ - t) / left_;
   }
 
-  // The engine has made this step; states of one's own follow, by Heun's method.
+  // The engine has made this step; states of one's own follow.
   void move(double step) {
-    const double before = t;
-    const Known ahead = advanced(step);
-    t = left_ == 1 ? target_ : t + step;
-    if (!moving_.empty()) {
-      const Vector after = piece_->values(piece_->rates, known(t, state_(), ahead));
-      for (std::size_t k = 0; k < moving_.size(); k++)
-        values_[moving_[k]] += (t - before) * (rates_[k] + after[k]) / 2;
-    }
+    const double after = left_ == 1 ? target_ : t + step;
+    for (const auto &[name, value] : advanced(after - t)) values_[name] = value;
+    t = after;
     arrive();
   }
 
@@ -242,7 +237,7 @@ class Acting {
   Vector attitude_;
   std::vector<std::string> moving_, held_;
   int sign_;
-  Vector inertia_, constant_, wheels_ = {0, 0, 0}, rates_, stops_;
+  Vector inertia_, constant_, wheels_ = {0, 0, 0}, begin_, stops_;
   double damping_ = 0, target_ = 0;
   long left_ = 1;
   std::vector<Piece> pieces_;
@@ -257,13 +252,13 @@ class Acting {
   }
 
   // The moment in body axes, of all that acts: I w' = I w x w + this.
-  Vector acting(double at, const Vector &state) const {
+  Vector acting(double at, const Vector &state, const Known &own) const {
     const Vector omega(state.begin(), state.begin() + 3);
     Vector made = constant_;
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) made[i] -= damping_ * inertia_[3 * i + j] * omega[j];
     if (pieces_.empty()) return plus(made, cross(wheels_, omega));
-    const Known now = known(at, state, advanced(at - t));
+    const Known now = known(at, state, own);
     made = plus(made, piece_->values(piece_->moment, now));
     if (piece_->rotor.empty()) return plus(made, cross(wheels_, omega));
     return plus(plus(made, cross(piece_->values(piece_->rotor, now), omega)), reaction(at, now));
@@ -281,15 +276,57 @@ class Acting {
       for (const std::string &name : instants_[t])
         values_[name] = values[std::find(held_.begin(), held_.end(), name) - held_.begin()];
     }
-    if (!moving_.empty()) rates_ = piece_->values(piece_->rates, known(t, state_(), {}));
+    // The engine's own numbers may change in the middle of a step.
+    begin_ = state_();
   }
 
-  // One's own continuous states a step later, as their rates say now.
+  // One's own continuous states a step later, by the classical method of Runge and Kutta for the body and
+  // these states together.
   Known advanced(double step) const {
+    if (moving_.empty() || step == 0) return {};
+    Vector y = begin_;
+    for (const std::string &name : moving_) y.push_back(values_.at(name));
+    const auto moved = [&y](double h, const Vector &k) {
+      Vector made = y;
+      for (std::size_t i = 0; i < y.size(); i++) made[i] += h * k[i];
+      return made;
+    };
+    const Vector k1 = rates(t, y), k2 = rates(t + step / 2, moved(step / 2, k1));
+    const Vector k3 = rates(t + step / 2, moved(step / 2, k2)), k4 = rates(t + step, moved(step, k3));
+    for (std::size_t i = 0; i < y.size(); i++) y[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    return named(y);
+  }
+
+  // One's own continuous states behind omega and attitude, by name.
+  Known named(const Vector &y) const {
     Known made;
-    for (std::size_t k = 0; k < moving_.size(); k++) made[moving_[k]] = values_.at(moving_[k]) + step * rates_[k];
+    for (std::size_t k = 0; k < moving_.size(); k++) made[moving_[k]] = y[7 + k];
     return made;
   }
+
+  // The rates of omega, attitude and one's own continuous states.
+  Vector rates(double at, const Vector &y) const {
+    const Vector omega(y.begin(), y.begin() + 3), state(y.begin(), y.begin() + 7);
+    const Known own = named(y);
+    const Vector I1 = row(0), I2 = row(1), I3 = row(2);
+    const Vector minors[] = {cross(I2, I3), cross(I3, I1), cross(I1, I2)};
+    const Vector momentum = {dot(I1, omega), dot(I2, omega), dot(I3, omega)};
+    const Vector torque = plus(cross(momentum, omega), acting(at, state, own));
+    const double p = y[3], q1 = y[4], q2 = y[5], q3 = y[6], a = y[0] / 2, b = y[1] / 2, c = y[2] / 2;
+    Vector made(3);
+    for (int j = 0; j < 3; j++)
+      for (int i = 0; i < 3; i++) made[i] += minors[j][i] * torque[j] / dot(I1, minors[0]);
+    made.insert(made.end(), {-q1 * a - q2 * b - q3 * c, p * a + q2 * c - q3 * b, p * b + q3 * a - q1 * c,
+                             p * c + q1 * b - q2 * a});
+    const Vector own_rates = piece_->values(piece_->rates, known(at, state, own));
+    made.insert(made.end(), own_rates.begin(), own_rates.end());
+    return made;
+  }
+
+  // A row of the inertia.
+  Vector row(int i) const { return Vector(inertia_.begin() + 3 * i, inertia_.begin() + 3 * i + 3); }
+
+  static double dot(const Vector &a, const Vector &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
   // All that steps may read, by name; the quaternion is unit.
   Known known(double at, const Vector &state, const Known &own) const {

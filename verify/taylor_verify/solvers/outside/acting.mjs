@@ -71,7 +71,7 @@ function prepared([word, ...rest]) {
 
 export class Acting {
   #state; #attitude; #sign; #inertia; #constant; #wheels; #damping; #pieces; #piece; #values = {}; #moving;
-  #held; #rates; #instants; #stops; #target; #left;
+  #held; #begin; #inverse; #instants; #stops; #target; #left;
 
   constructor({ body, initial, time, loads, states = [], instants = [] }, state) {
     this.t = 0;
@@ -80,6 +80,7 @@ export class Acting {
     this.#attitude = floats(initial.attitude);
     this.#sign = floats(time.elapsed).at(-1) < 0 ? -1 : 1;
     this.#inertia = floats(body.inertia);
+    this.#inverse = inverse(this.#inertia);
     this.#constant = floats(body.moment);
     this.#wheels = "rotor" in body ? floats(body.rotor) : [0, 0, 0];
     this.#damping = "damping" in body ? floats(body.damping) : 0;
@@ -107,26 +108,25 @@ export class Acting {
     return (this.#target - this.t) / this.#left;
   }
 
-  // The engine has made this step; states of one's own follow, by Heun's method.
+  // The engine has made this step; states of one's own follow.
   move(step) {
-    const [before, ahead] = [this.t, this.#advanced(step)];
-    this.t = this.#left === 1 ? this.#target : this.t + step;
-    if (this.#moving.length) {
-      const after = this.#piece.values(this.#piece.rates, this.#known(this.t, this.#state(), ahead));
-      this.#moving.forEach((name, k) => {
-        this.#values[name] += ((this.t - before) * (this.#rates[k] + after[k])) / 2;
-      });
-    }
+    const after = this.#left === 1 ? this.#target : this.t + step;
+    Object.assign(this.#values, this.#advanced(after - this.t));
+    this.t = after;
     this.#arrive();
   }
 
   // The moment in body axes, of all that acts: I w' = I w x w + this.
   moment(t, state) {
+    return this.#moment(t, state, this.#advanced(t - this.t));
+  }
+
+  #moment(t, state, own) {
     const omega = state.slice(0, 3);
-    const momentum = this.#inertia.map((row) => row[0] * omega[0] + row[1] * omega[1] + row[2] * omega[2]);
+    const momentum = applied(this.#inertia, omega);
     const moment = this.#constant.map((M, i) => M - this.#damping * momentum[i]);
     if (!this.#pieces.length) return plus(moment, cross(this.#wheels, omega));
-    const known = this.#known(t, state, this.#advanced(t - this.t));
+    const known = this.#known(t, state, own);
     const loaded = plus(moment, this.#piece.values(this.#piece.moment, known));
     if (!this.#piece.rotor.length) return plus(loaded, cross(this.#wheels, omega));
     const { wheels, reaction } = this.#turning(t, known);
@@ -136,6 +136,8 @@ export class Acting {
   // Take the values that are due, all of them before any is set, and begin what begins here.
   #arrive() {
     const forwards = this.#sign > 0;
+    // The engine's own numbers may change in the middle of a step.
+    this.#begin = [...this.#state()];
     this.#attitude = continued(this.#state().slice(3), this.#attitude);
     for (const piece of this.#pieces)
       if (forwards ? piece.begin <= this.t && this.t < piece.end : piece.begin < this.t && this.t <= piece.end)
@@ -145,15 +147,29 @@ export class Acting {
       const values = this.#piece.values(this.#piece.taken, this.#known(this.t, this.#state(), {}));
       for (const name of due) this.#values[name] = values[this.#held.indexOf(name)];
     }
-    if (this.#moving.length)
-      this.#rates = this.#piece.values(this.#piece.rates, this.#known(this.t, this.#state(), {}));
   }
 
-  // One's own continuous states a step later, as their rates say now.
+  // One's own continuous states a step later, by the classical method of Runge and Kutta for the body and
+  // these states together.
   #advanced(step) {
-    return Object.fromEntries(
-      this.#moving.map((name, k) => [name, this.#values[name] + step * this.#rates[k]]),
-    );
+    if (!this.#moving.length || !step) return {};
+    const y = [...this.#begin, ...this.#moving.map((name) => this.#values[name])];
+    const moved = (part, k) => y.map((entry, i) => entry + part * step * k[i]);
+    const k1 = this.#rates(this.t, y), k2 = this.#rates(this.t + step / 2, moved(0.5, k1));
+    const k3 = this.#rates(this.t + step / 2, moved(0.5, k2)), k4 = this.#rates(this.t + step, moved(1, k3));
+    const after = y.map((entry, i) => entry + (step / 6) * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]));
+    return Object.fromEntries(this.#moving.map((name, k) => [name, after[7 + k]]));
+  }
+
+  // The rates of omega, attitude and one's own continuous states.
+  #rates(t, y) {
+    const state = y.slice(0, 7), own = Object.fromEntries(this.#moving.map((name, k) => [name, y[7 + k]]));
+    const omega = y.slice(0, 3), [p, q1, q2, q3] = y.slice(3, 7), [a, b, c] = omega.map((w) => w / 2);
+    const torque = plus(cross(applied(this.#inertia, omega), omega), this.#moment(t, state, own));
+    const turning = [-q1 * a - q2 * b - q3 * c, p * a + q2 * c - q3 * b];
+    turning.push(p * b + q3 * a - q1 * c, p * c + q1 * b - q2 * a);
+    const rates = this.#piece.values(this.#piece.rates, this.#known(t, state, own));
+    return [...applied(this.#inverse, torque), ...turning, ...rates];
   }
 
   #known(t, state, own) {
@@ -188,6 +204,15 @@ function continued(attitude, before) {
   const product = attitude.reduce((sum, entry, i) => sum + entry * before[i], 0);
   return attitude.map((entry) => (product < 0 ? -entry : entry));
 }
+
+function inverse([a, b, c]) {
+  const minors = [cross(b, c), cross(c, a), cross(a, b)], volume = dot(a, minors[0]);
+  return [0, 1, 2].map((i) => minors.map((minor) => minor[i] / volume));
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+const applied = (matrix, vector) => matrix.map((row) => dot(row, vector));
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 

@@ -111,6 +111,7 @@ class Acting:
         self.t, self._state = 0.0, state
         self._sign = -1.0 if floats(question["time"]["elapsed"])[-1] < 0 else 1.0
         self._inertia, self._constant = floats(body["inertia"]), floats(body["moment"])
+        self._inverse = _inverse(self._inertia)
         self._wheels = floats(body["rotor"]) if "rotor" in body else [0.0] * 3
         self._damping = floats(body["damping"]) if "damping" in body else 0.0
         self._pieces = list(map(Piece, question.get("loads", {}).get("pieces", [])))
@@ -140,23 +141,23 @@ class Acting:
         self.move_to(self._target if self._left == 1 else self.t + step)
 
     def move_to(self, t: float) -> None:
-        """Note that the engine has gone on to this time; one's own states follow, by Heun's method."""
-        before, ahead = self.t, self._advanced(t - self.t)
+        """Note that the engine has gone on to this time; one's own states follow."""
+        before = self.t
+        self._values |= self._advanced(t - before)
         self.t = t
-        if self._moving:
-            after = self._piece.values(self._piece.rates, self._known(t, self._state(), ahead))
-            for name, a, b in zip(self._moving, self._rates, after, strict=True):
-                self._values[name] += (t - before) * (a + b) / 2
         self._arrive(before)
 
     def moment(self, t: float, state: Vector) -> list[float]:
         """Return the moment in body axes, of all that acts: I w' = I w x w + this."""
+        return self._moment(t, state, self._advanced(t - self.t))
+
+    def _moment(self, t: float, state: Vector, own: Mapping[str, float]) -> list[float]:
         omega = state[:3]
-        momentum = [sum(a * w for a, w in zip(row, omega, strict=True)) for row in self._inertia]
+        momentum = _applied(self._inertia, omega)
         moment = [M - self._damping * H for M, H in zip(self._constant, momentum, strict=True)]
         if not self._pieces:
             return _plus(moment, _cross(self._wheels, omega))
-        known = self._known(t, state, self._advanced(t - self.t))
+        known = self._known(t, state, own)
         moment = _plus(moment, self._piece.values(self._piece.moment, known))
         if not self._piece.rotor:
             return _plus(moment, _cross(self._wheels, omega))
@@ -168,6 +169,8 @@ class Acting:
         # A clock that counts steps may be a rounding beside an instant.
         near = 1e-9 * abs(self.t - before)
         here, state = self._sign * self.t + near, self._state()
+        # The engine's own numbers may change in the middle of a step.
+        self._begin = list(state)
         self._attitude = continued(state[3:], self._attitude)
         for piece in self._pieces:
             first, last = sorted((piece.begin * self._sign, piece.end * self._sign))
@@ -180,18 +183,37 @@ class Acting:
             values = self._piece.values(self._piece.taken, self._known(self.t, state, {}))
             taken = dict(zip(self._held, values, strict=True))
             self._values |= {name: taken[name] for name in due}
-        if self._moving:
-            known = self._known(self.t, state, {})
-            self._rates = self._piece.values(self._piece.rates, known)
 
     def _advanced(self, step: float) -> dict[str, float]:
-        """Return one's own continuous states a step later, as their rates say now."""
-        if not self._moving:
+        """Return one's own continuous states a step later.
+
+        By the classical method of Runge and Kutta, order four, for the body and these states together.
+        """
+        if not self._moving or not step:
             return {}
-        return {
-            name: self._values[name] + step * rate
-            for name, rate in zip(self._moving, self._rates, strict=True)
-        }
+        y, t = [*self._begin, *(self._values[name] for name in self._moving)], self.t
+        k1 = self._rates(t, y)
+        k2 = self._rates(t + step / 2, [a + step / 2 * b for a, b in zip(y, k1, strict=True)])
+        k3 = self._rates(t + step / 2, [a + step / 2 * b for a, b in zip(y, k2, strict=True)])
+        k4 = self._rates(t + step, [a + step * b for a, b in zip(y, k3, strict=True)])
+        slopes = zip(y, k1, k2, k3, k4, strict=True)
+        after = [x + step / 6 * (a + 2 * b + 2 * c + d) for x, a, b, c, d in slopes]
+        return dict(zip(self._moving, after[7:], strict=True))
+
+    def _rates(self, t: float, y: Vector) -> list[float]:
+        """Return the rates of omega, attitude and one's own continuous states."""
+        state, own = y[:7], dict(zip(self._moving, y[7:], strict=True))
+        omega, (p, q1, q2, q3) = state[:3], state[3:]
+        torque = _cross(_applied(self._inertia, omega), omega)
+        turned = _applied(self._inverse, _plus(torque, self._moment(t, state, own)))
+        a, b, c = (w / 2 for w in omega)
+        turning = [-q1 * a - q2 * b - q3 * c, p * a + q2 * c - q3 * b]
+        turning += [p * b + q3 * a - q1 * c, p * c + q1 * b - q2 * a]
+        return [
+            *turned,
+            *turning,
+            *self._piece.values(self._piece.rates, self._known(t, state, own)),
+        ]
 
     def _known(self, t: float, state: Vector, own: Mapping[str, float]) -> dict[str, float]:
         attitude = continued(state[3:], self._attitude)
@@ -228,6 +250,17 @@ def continued(attitude: Vector, before: Vector) -> list[float]:
     """Return the quaternion or its negative, whichever is nearer to the one before."""
     is_near = sum(a * b for a, b in zip(attitude, before, strict=True)) >= 0
     return [entry if is_near else -entry for entry in attitude]
+
+
+def _inverse(matrix: Sequence[Vector]) -> list[list[float]]:
+    a, b, c = matrix
+    minors = _cross(b, c), _cross(c, a), _cross(a, b)
+    volume = sum(x * y for x, y in zip(a, minors[0], strict=True))
+    return [[minor[i] / volume for minor in minors] for i in range(3)]
+
+
+def _applied(matrix: Sequence[Vector], vector: Vector) -> list[float]:
+    return [sum(a * x for a, x in zip(row, vector, strict=True)) for row in matrix]
 
 
 def _cross(a: Vector, b: Vector) -> list[float]:
