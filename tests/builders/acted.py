@@ -27,5 +27,12 @@ samples = 9
 """
 
 
-def acted() -> Scene:
-    return read(_TEXT, "acted")
+# What has a kink in the text, and what takes its place where the motion is to be smooth.
+_SMOOTH = {"abs(w2)": "w2", "-sign(q1)/9": "-q1/9", "clip(-w2, -0.1, 0.1)": "-w2/5"}
+
+
+def acted(is_smooth: bool = False) -> Scene:
+    text = _TEXT
+    for kink, smooth in _SMOOTH.items() if is_smooth else ():
+        text = text.replace(kink, smooth)
+    return read(text, "acted")

@@ -36,18 +36,18 @@ def orbiting(**changed: str) -> Scene:
 
 ALONG_1 = {"inertia": "[2, 1, 1.5]", "o": '[0, "cos(n*t)", "sin(n*t)"]', "omega": "[0.4, 0, 0]"}
 PITCHING = {
-    "about the vertical": ("pitch-swing", {}),
-    "about the other end": ("pitch-swing", {"attitude": "[0.2, 0, 0, 1]"}),
-    "upside down": ("pitch-swing", {"attitude": "[0, 1, 0.3, 0]", "omega": "[0, 0, -0.6]"}),
+    "about the vertical": ("planar-swing", {}),
+    "about the other end": ("planar-swing", {"attitude": "[0.2, 0, 0, 1]"}),
+    "upside down": ("planar-swing", {"attitude": "[0, 1, 0.3, 0]", "omega": "[0, 0, -0.6]"}),
     "on an orbit the other way": (
-        "pitch-swing",
+        "planar-swing",
         {"o": '["cos(n*t)", "-sin(n*t)", 0]', "omega": "[0, 0, -0.3]"},
     ),
-    "about axis 1": ("pitch-swing", {**ALONG_1, "attitude": "[1, 0.4, 0, 0]"}),
-    "over and over": ("pitch-turn", {"omega": "[0, 0, 3]"}),
-    "towards the horizontal": ("pitch-front", {"omega": "[0, 0, 1]", "attitude": "[1, 0, 0, 0]"}),
-    "upright": ("pitch-steady", {"omega": "[0, 0, 0.5]", "attitude": "[1, 0, 0, 0]"}),
-    "level": ("pitch-steady", {"omega": "[0, 0, 0.5]", "attitude": "[1, 0, 0, 1]"}),
+    "about axis 1": ("planar-swing", {**ALONG_1, "attitude": "[1, 0.4, 0, 0]"}),
+    "over and over": ("planar-turn", {"omega": "[0, 0, 3]"}),
+    "towards the horizontal": ("planar-front", {"omega": "[0, 0, 1]", "attitude": "[1, 0, 0, 0]"}),
+    "upright": ("planar-steady", {"omega": "[0, 0, 0.5]", "attitude": "[1, 0, 0, 0]"}),
+    "level": ("planar-steady", {"omega": "[0, 0, 0.5]", "attitude": "[1, 0, 0, 1]"}),
 }
 
 

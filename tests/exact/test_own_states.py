@@ -8,8 +8,6 @@ from itertools import product
 from typing import Any
 
 import pytest
-from builders.turns import by_turns
-from builders.written_loads import end_of
 from flint import arb, ctx
 from mpmath import mp, mpf
 
@@ -273,21 +271,6 @@ def test_instants_cost_bits_and_no_digits() -> None:
 
 
 # An independent integrator, by other equations: the momentum in space for wheels.
-
-
-@pytest.mark.parametrize("name", by_turns(SATELLITES))
-def test_satellites_are_where_another_integrator_leads(name: str) -> None:
-    """Held values are taken by itself, and its texts are read by Python."""
-    scene = satellite(name)
-    end = end_of(scene, Fraction(1, 2), DIGITS, columns=9)
-    got = motion(scene, "1/2")
-    with mp.workdps(DIGITS + 15):
-        slack = mpf(10) ** -(DIGITS - 4)
-        assert end.error <= slack
-        for quantity, wanted in {"omega": end.state[:3], **end.own}.items():
-            apart = mp.norm([a - b for a, b in zip(got[quantity][0], wanted, strict=True)])
-            assert apart <= slack * (mp.norm(wanted) or 1)
-        assert max(got.radius) <= mpf(10) ** -DIGITS
 
 
 def test_arcs_begin_with_own_states_of_their_own() -> None:

@@ -37,7 +37,7 @@ Row = list[Polynomial]
 
 # Powers up to this one are written out.
 _MOST_POWER: Final = 4
-ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
+_ARITHMETIC: Final[Mapping[str, Callable[[Polynomial, Polynomial], Polynomial]]] = {
     "+": add,
     "-": sub,
     "*": multiplied,
@@ -106,7 +106,7 @@ class Derivation:
     @cached_property
     def wheels(self) -> Row:
         """The momentum h of wheels, by time and own states. Raises TooLong."""
-        values = self._values({})
+        values = self.values({})
         return [values[place] for place in self.piece.rotor]
 
     @cached_property
@@ -184,10 +184,10 @@ class Derivation:
     @cached_property
     def loads(self) -> Row:
         """The moment, or force and couple. Raises TooLong."""
-        values = self._values(self._inputs)
+        values = self.values(self._inputs)
         return [values[place] for place in self.piece.outputs]
 
-    def _values(self, inputs: Mapping[str, Polynomial]) -> Row:
+    def values(self, inputs: Mapping[str, Polynomial]) -> Row:
         """The steps; an input that is not given is a symbol."""
         values: list[Polynomial] = []
         for place, step in enumerate(self.piece.steps):
@@ -212,8 +212,8 @@ class Derivation:
 
     def _written_out(self, step: Step, operands: Row) -> Polynomial | None:
         """The polynomial of a step; None of a step that is none. Raises TooLong."""
-        if step.operation in ARITHMETIC:
-            return ARITHMETIC[step.operation](*operands)
+        if step.operation in _ARITHMETIC:
+            return _ARITHMETIC[step.operation](*operands)
         if step.operation == "/" and operands[1].is_constant() and not operands[1].is_zero():
             return operands[0] / operands[1].leading_coefficient()
         if step.operation == "power" and step.number in range(2, _MOST_POWER + 1):

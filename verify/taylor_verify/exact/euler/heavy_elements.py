@@ -14,7 +14,7 @@ from mpmath import mp
 
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.euler.heavy import Top, TopRegime, top_of
-from taylor_verify.exact.euler.libration import WORDS, Pitch, pitch_of
+from taylor_verify.exact.euler.libration import Pitch, pitch_of
 from taylor_verify.exact.kirchhoff.closed import case
 from taylor_verify.exact.kirchhoff.general import own_elements, recurring
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
@@ -56,7 +56,7 @@ def elements(scene: Scene, digits: int) -> Elements:
 def _of_pitch(pitch: Pitch, digits: int) -> Elements:
     solved = case(pitch.scene)
     numbers = settled(lambda working: own_elements(solved, working), digits)
-    return Elements(WORDS[solved.regime], numbers, (_PITCH,))
+    return Elements(solved.regime, numbers, (_PITCH,))
 
 
 def _numbers(top: Top, working: int) -> Iterator[Element]:

@@ -13,52 +13,36 @@ Dynamics (1986), section 9.2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
-from functools import reduce
-from operator import mul
-from typing import Any, Final
+from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb, fmpq
+from flint import arb
 from mpmath import mp
 
 from taylor_verify.exact.carried import carried
-from taylor_verify.exact.conserved.derivation import ARITHMETIC
-from taylor_verify.exact.conserved.polynomial import Polynomial, rational, symbols_of
+from taylor_verify.exact.conserved.derivation import Derivation
+from taylor_verify.exact.conserved.polynomial import (
+    Polynomial,
+    TooLong,
+    rational,
+    symbols_of,
+    terms,
+)
 from taylor_verify.exact.euler import heavy
 from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Solution, Time
-from taylor_verify.numbers import tensors
-from taylor_verify.numbers.tensors import ZERO_MATRIX, Vector
+from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.steps import Step, exact_root
-from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.loads.steps import exact_root
+from taylor_verify.scenes.motion import IDENTITY, Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
-# Of alpha and n t.
-_SYMBOLS: Final = ("cos alpha", "sin alpha", "cos nt", "sin nt", "t")
 
-
-# By the word of the motion in a plane.
-WORDS: Final = {
-    "planar-swing": "pitch-swing",
-    "planar-turn": "pitch-turn",
-    "planar-front": "pitch-front",
-    "planar-steady": "pitch-steady",
-    "steady": "pitch-steady",
-}
-
-
-class _NoPitch(Exception):
-    """The error for a step that is no polynomial in the cosines and sines of alpha and n t."""
-
-
-@dataclass(frozen=True)
-class Pitch:
+class Pitch(NamedTuple):
     """The motion of a solid in the frame that turns at ``rate`` about axis ``k`` of the body."""
 
     scene: Scene
@@ -71,7 +55,7 @@ def enclosed(scene: Scene) -> Solution:
     pitch = pitch_of(scene)
     if pitch is None:
         return heavy.enclosed(scene)
-    return _from_orbit(closed.enclosed(pitch.scene), pitch, arb.cos, arb.sin)
+    return _in_space(scene, pitch, closed.enclosed(pitch.scene), arb)
 
 
 def closed_form(scene: Scene) -> Solution | None:
@@ -80,15 +64,13 @@ def closed_form(scene: Scene) -> Solution | None:
     if pitch is None:
         return heavy.closed_form(scene)
     inner = closed.closed_form(pitch.scene)
-    return None if inner is None else _from_orbit(inner, pitch, mp.cos, mp.sin)
+    return None if inner is None else _in_space(scene, pitch, inner, mp)
 
 
-def _from_orbit(
-    inner: Solution, pitch: Pitch, cos: Callable[[Any], Any], sin: Callable[[Any], Any]
-) -> Solution:
-    """The solution in space, by that in the turning frame."""
+def _in_space(scene: Scene, pitch: Pitch, inner: Solution, functions: Any) -> Solution:
+    """The solution by that in the turning frame; ``functions`` has the sine and the cosine."""
     spin = np.array(pitch.scene.body.energy_matrix, dtype=object)[3:, 3:]
-    start = np.array(rotation_matrix(pitch.scene.initial.attitude), dtype=object)
+    start = np.array(rotation_matrix(scene.initial.attitude), dtype=object)
 
     def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
         exactly = np.vectorize(number, otypes=[object])
@@ -97,14 +79,11 @@ def _from_orbit(
         rows.clear()
         rows["omega"] = omega
         if frames is not None:
-            to_space = exactly(start)
             angles = [number(pitch.rate) * number(t) for t in elapsed]
-            turns = [_about(pitch.k, cos(angle), sin(angle)) for angle in angles]
-            rows["attitude"] = np.array(
-                [to_space @ turn @ to_space.T @ R for turn, R in zip(turns, frames, strict=True)]
-            )
+            turns = [_about(pitch.k, functions.cos(a), functions.sin(a)) for a in angles]
+            rows["attitude"] = exactly(start) @ np.array(turns) @ frames
 
-    return carried(inner, back, WORDS[inner.regime])
+    return carried(inner, back)
 
 
 def pitch_of(scene: Scene) -> Pitch | None:
@@ -116,39 +95,33 @@ def pitch_of(scene: Scene) -> Pitch | None:
     if loads is None or loads.rung is not None or loads.states or loads.rotor or loads.switches:
         return None
     for k in range(3):
-        I, omega = body.inertia[k][k], start.omega
-        if sum(map(bool, body.inertia[k])) == 1 and not any(omega[:k] + omega[k + 1 :]):
-            moment = _Planar(loads, rotation_matrix(start.attitude), k).moment()
+        across = [start.omega[i] for i in range(3) if i != k]
+        if sum(map(bool, body.inertia[k])) == 1 and not any(across):
+            moment = _moment(scene, k)
             if moment is not None:
-                rate, z1, z2 = moment
-                return _pitch(scene, k, rate, (I, z1, z2))
+                return _pitch(scene, k, body.inertia[k][k], *moment)
     return None
 
 
-def _pitch(scene: Scene, k: int, rate: Fraction, numbers: Sequence[Fraction]) -> Pitch | None:
-    I, z1, z2 = numbers
+def _pitch(
+    scene: Scene, k: int, I: Fraction, n: Fraction, z1: Fraction, z2: Fraction
+) -> Pitch | None:
     size = exact_root(z1**2 + z2**2)
     if not size:
         return None
-    i, j = (k + 1) % 3, (k + 2) % 3
-    a, b = (z1, size + z2) if size + z2 else (Fraction(1), Fraction(0))
-    D = 1 / (size + z2) if size + z2 else -2 * z2
-    turns = [Fraction(2), Fraction(2), Fraction(2)]
-    turns[k], turns[j] = Fraction(1), Fraction(3)
-    x, y, A = ([Fraction(0)] * 3 for _ in range(3))
-    x[i], x[j], y[k] = a, b, I * (scene.initial.omega[k] - rate)
-    # No two are alike, so that the body has no axis of symmetry.
-    A[i], A[j], A[k] = Fraction(1), 1 + D, 2 + D
-    solid = ImmersedBody(
-        tensors.diagonal(_vector(A)), ZERO_MATRIX, tensors.diagonal(_vector(n / I for n in turns))
-    )
-    impulse = Impulse(_vector(x), _vector(y), attitude=scene.initial.attitude)
-    return Pitch(replace(scene, model="kirchhoff", body=solid, initial=impulse), k, rate)
+    one, zero = Fraction(1), Fraction(0)
+    (a, b), D = ((z1, size + z2), 1 / (size + z2)) if size + z2 else ((one, zero), -2 * z2)
 
+    def vector(first: Fraction, second: Fraction, across: Fraction) -> tuple[Fraction, ...]:
+        entries = {(k + 1) % 3: first, (k + 2) % 3: second, k: across}
+        return tuple(entries[i] for i in range(3))
 
-def _vector(row: Iterable[Fraction]) -> Vector:
-    first, second, third = row
-    return first, second, third
+    # No two moments or masses are alike, so that the body has no axis of symmetry.
+    linear, angular = vector(one, 1 + D, 2 + D), vector(2 / I, 3 / I, 1 / I)
+    solid = ImmersedBody(diagonal(linear), ZERO_MATRIX, diagonal(angular))
+    y = vector(zero, zero, I * (scene.initial.omega[k] - n))
+    start = Impulse(vector(a, b, zero), y, attitude=IDENTITY)
+    return Pitch(replace(scene, model="kirchhoff", body=solid, initial=start), k, n)
 
 
 def _about(k: int, c: Any, s: Any) -> Any:
@@ -162,84 +135,44 @@ def _about(k: int, c: Any, s: Any) -> Any:
     return turn
 
 
-def _powers(product: Polynomial) -> tuple[int, ...]:
-    """The powers of the one product of a polynomial."""
-    (powers,) = product.monoms()
-    return powers
-
-
-def _fraction(number: fmpq) -> Fraction:
-    return Fraction(int(number.p), int(number.q))
-
-
-class _Planar:
-    """The moment of loads on a body that has turned by alpha about its axis k since the start."""
-
-    def __init__(self, loads: Loads, start: Sequence[Vector], k: int) -> None:
-        self._piece, self._k = loads.piece(Fraction(0)), k
-        self._symbols = symbols_of(_SYMBOLS)
-        self._rate: Fraction | None = None
-        c, s = self._symbols["cos alpha"], self._symbols["sin alpha"]
-        exactly = np.vectorize(rational, otypes=[object])
-        R = exactly(np.array(start, dtype=object)) @ _about(k, c, s)
-        self._inputs = {f"r{i + 1}{j + 1}": R[i, j] for i in range(3) for j in range(3)}
-        self._inputs["t"] = self._symbols["t"]
-
-    def moment(self) -> tuple[Fraction, Fraction, Fraction] | None:
-        """Return n, z1 and z2; None where the moment is another function."""
-        values: list[Polynomial] = []
-        try:
-            for step in self._piece.steps:
-                values.append(self._value(step, [values[place] for place in step.operands]))
-        except _NoPitch:
-            return None
-        moment = [self._reduced(values[place]) for place in self._piece.outputs]
-        along = moment.pop(self._k)
-        if self._rate is None or not all(part.is_zero() for part in moment):
-            return None
-        return self._matched(along, self._rate)
-
-    def _matched(self, M: Polynomial, rate: Fraction) -> tuple[Fraction, Fraction, Fraction] | None:
-        ca, sa, ct, st, _ = (self._symbols[name] for name in _SYMBOLS)
-        for sign in (1, -1):
-            double = (ct * ct - st * st, 2 * ct * st * sign)
-            angle = (ca * ca - sa * sa, 2 * ca * sa)
-            cosine = angle[0] * double[0] + angle[1] * double[1]
-            sine = angle[1] * double[0] - angle[0] * double[1]
-            z1, z2 = M[_powers(sa * ca * st * ct)] / (4 * sign), M[_powers(sa * ca)] / 2
-            if M == self._reduced(z1 * cosine + z2 * sine):
-                return sign * rate, _fraction(z1), _fraction(z2)
+def _moment(scene: Scene, k: int) -> tuple[Fraction, Fraction, Fraction] | None:
+    """Return n, z1 and z2 of a body that turns by alpha about axis k; None of another moment."""
+    assert scene.body.loads is not None
+    piece = scene.body.loads.piece(Fraction(0))
+    known = symbols_of(("ca", "sa", "cos", "sin", "t"))
+    waves = {p: step for p, step in enumerate(piece.steps) if step.operation in ("cos", "sin")}
+    functions = {f"step {place}": known[step.operation] for place, step in waves.items()}
+    start = [[rational(entry) for entry in row] for row in rotation_matrix(scene.initial.attitude)]
+    R = np.array(start, dtype=object) @ _about(k, known["ca"], known["sa"])
+    inputs = {f"r{i + 1}{j + 1}": R[i, j] for i, j in np.ndindex(3, 3)}
+    try:
+        values = Derivation(scene, piece, known | functions).values(inputs)
+    except (KeyError, TooLong):
+        # Something else is read, or a function of something else.
         return None
+    along, *across = (_reduced(values[piece.outputs[(k + i) % 3]], known) for i in range(3))
+    angles = [dict(terms(values[step.operands[0]])) for step in waves.values()]
+    if any(across) or not angles or any(a.keys() != {("t",)} or a != angles[0] for a in angles):
+        return None
+    return _matched(along, angles[0][("t",)], known)
 
-    def _value(self, step: Step, operands: Sequence[Polynomial]) -> Polynomial:
-        if step.operation in ("cos", "sin"):
-            self._note(operands[0])
-            return self._symbols[f"{step.operation} nt"]
-        if step.operation == "input" and step.name in self._inputs:
-            return self._inputs[step.name]
-        if step.operation == "number" and step.number is not None:
-            return 0 * self._symbols["t"] + rational(step.number)
-        if step.operation in ARITHMETIC:
-            return self._reduced(ARITHMETIC[step.operation](*operands))
-        if step.operation == "power" and step.number in (2, 3, 4):
-            return self._reduced(reduce(mul, operands * int(step.number)))
-        if step.operation == "/" and operands[1].is_constant() and not operands[1].is_zero():
-            return operands[0] / operands[1].leading_coefficient()
-        raise _NoPitch
 
-    def _note(self, angle: Polynomial) -> None:
-        """Note n of an angle n t, which is the same in all of them."""
-        rate = _fraction(angle[_powers(self._symbols["t"])])
-        if (
-            not rate
-            or angle != self._symbols["t"] * rational(rate)
-            or self._rate not in (None, rate)
-        ):
-            raise _NoPitch
-        self._rate = rate
+def _matched(
+    M: Polynomial, rate: Fraction, known: dict[str, Polynomial]
+) -> tuple[Fraction, Fraction, Fraction] | None:
+    c, s, cos, sin = (known[name] for name in ("ca", "sa", "cos", "sin"))
+    numbers = dict(terms(M))
+    for sign in (1, -1):
+        z1 = numbers.get(("ca", "cos", "sa", "sin"), Fraction(0)) / (4 * sign)
+        z2 = numbers.get(("ca", "sa"), Fraction(0)) / 2
+        (C, S), (c2, s2) = (c * c - s * s, 2 * c * s), (cos * cos - sin * sin, 2 * cos * sin * sign)
+        pendulum = rational(z1) * (C * c2 + S * s2) + rational(z2) * (S * c2 - C * s2)
+        if M == _reduced(pendulum, known):
+            return sign * rate, z1, z2
+    return None
 
-    def _reduced(self, polynomial: Polynomial) -> Polynomial:
-        for name in ("alpha", "nt"):
-            c, s = self._symbols[f"cos {name}"], self._symbols[f"sin {name}"]
-            polynomial = polynomial % (c * c + s * s - 1)
-        return polynomial
+
+def _reduced(polynomial: Polynomial, known: dict[str, Polynomial]) -> Polynomial:
+    for c, s in (("ca", "sa"), ("cos", "sin")):
+        polynomial = polynomial % (known[c] ** 2 + known[s] ** 2 - 1)
+    return polynomial
