@@ -162,7 +162,7 @@ WATER_KINDS: Final = (
     Kind("thrust with the other sign", _PUSH, _thrust(-1.0), _PLAIN),
     Kind("righting moment left out", _MOMENT, _righting(0.0), ("vehicle",)),
     Kind("righting moment upside down", (*_MOMENT, "sign"), _righting(-1.0), ("vehicle",)),
-    Kind("velocity over ground", ("over ground",), _over_ground, ("current",)),
+    Kind("velocity over ground", ("over ground", "moving frame"), _over_ground, ("current",)),
     Kind("drag by the velocity over ground", _DRAG, _drag_over_ground, ("current",)),
     Kind("motor without lag", ("m ", "lag"), _without_lag, ("steered",)),
     Kind("slower motor", ("m ", "rate"), _slower_motor, ("steered",)),
