@@ -110,7 +110,7 @@ def _of_energy(change: Callable[[Floats, float], Floats]) -> Make:
 
     def make(s: Sample, d: Draw, size: float) -> Rows:
         own = law(s)
-        own.mass = np.linalg.inv(change(np.linalg.inv(s.mass), size))
+        own.mass = np.asarray(np.linalg.inv(change(np.asarray(np.linalg.inv(s.mass)), size)))
         own.coriolis, own.munk = own.mass.copy(), own.mass[:3].copy()
         return integrated(s, own)
 
