@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 import pytest
 from builders.processes import PATIENCE
 
-from taylor_verify.batch.pool import LocalPool, WorkerLost
+from taylor_verify.batch.pool import LocalPool, WorkerLost, _interrupts_blocked
 
 
 class TwoParts(Exception):
@@ -218,6 +219,26 @@ def test_a_second_interrupt_does_not_end_the_end(monkeypatch: pytest.MonkeyPatch
     pool.terminate()
     assert not worker.process.is_alive()
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_an_interrupt_that_a_thread_takes_waits_for_the_start_of_the_workers() -> None:
+    """A thread of a library has no mask of signals: the handler is called at the end all the same."""
+    steps = []
+
+    def take() -> None:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.raise_signal(signal.SIGINT)
+
+    def start() -> None:
+        with _interrupts_blocked():
+            for thread in (threading.Thread(target=take) for _ in range(2)):
+                thread.start()
+                thread.join()
+                steps.append(thread)
+
+    with pytest.raises(KeyboardInterrupt):
+        start()
+    assert len(steps) == 2
 
 
 def test_shutdown_waits_for_the_work() -> None:

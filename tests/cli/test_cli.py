@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -455,15 +456,39 @@ needs_processes = pytest.mark.skipif(
 )
 
 
+@pytest.mark.slow
+@needs_processes
+def test_two_interrupts_at_any_time_leave_one_line(tmp_path: Path) -> None:
+    """Of 50 runs each is ended at another time, most while its workers start: there is no traceback."""
+    words = command("run", "euler/rest", "kirchhoff/rest", "--out", str(tmp_path / "out"))
+    for k in range(50):
+        with interruptible():
+            process = subprocess.Popen(
+                words, stderr=subprocess.PIPE, env=environment(), text=True, start_new_session=True
+            )
+        for pause in (0.5 + 0.05 * k, 0.01 * (k % 7)):
+            time.sleep(pause)
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGINT)
+        _, error = process.communicate(timeout=PATIENCE)
+        assert "Traceback" not in error
+
+
 @needs_processes
 @pytest.mark.parametrize("after", [0.0, pytest.param(0.2, marks=pytest.mark.slow), 1.5])
 def test_an_interrupt_ends_run_and_workers_with_one_line(
     working: subprocess.Popen[str], tmp_path: Path, after: float
 ) -> None:
-    """Ctrl-C goes to the whole group; status 130, no traceback, no report, no process left."""
+    """Ctrl-C goes to the whole group; status 130, no traceback, no report, no process left.
+
+    A second one changes nothing.
+    """
     time.sleep(after)
     workers = children(working.pid)
     os.killpg(working.pid, signal.SIGINT)
+    time.sleep(after / 20)
+    with suppress(ProcessLookupError):
+        os.killpg(working.pid, signal.SIGINT)
     # A run that did not hear it would end with 0.
     out, error = working.communicate(timeout=PATIENCE)
     assert working.returncode == 130

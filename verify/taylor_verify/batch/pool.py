@@ -24,7 +24,7 @@ from multiprocessing import resource_tracker, spawn
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext
 from queue import SimpleQueue
-from types import ModuleType
+from types import FrameType, ModuleType
 from typing import Any, Final, TypeVar
 
 from taylor_verify.batch.pickling import dumps, needs_script
@@ -244,15 +244,34 @@ def _interrupts_ignored() -> Iterator[None]:
 def _interrupts_blocked() -> Iterator[None]:
     """Keep an interrupt waiting until the workers are started.
 
-    They inherit the mask, and so are deaf from their first instruction, before `_serve`.
+    They inherit the mask, and so are deaf from their first instruction, before `_serve`. A thread of a
+    library has no mask: an interrupt that it takes is noted, and heard at the end.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     # The first worker would start it, and that lifts the mask in Python 3.13.0 and before.
     resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    with _interrupts_noted():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _interrupts_noted() -> Iterator[None]:
+    """Call the handler of an interrupt at the end of the block and not within it."""
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    noted: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda number, frame: noted.append((number, frame)))
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, handler)
+        if noted:
+            handler(*noted[0])

@@ -12,6 +12,7 @@ from argparse import Namespace
 from collections.abc import Sequence
 
 from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
+from taylor_verify.cli.interrupts import heard_once
 from taylor_verify.cli.streams import (
     MANNER,
     as_json_text,
@@ -25,12 +26,17 @@ from taylor_verify.cli.streams import (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one verb and return the exit status."""
+    with heard_once(to_the_end=arguments is None):
+        return _status(sys.argv[1:] if arguments is None else arguments)
+
+
+def _status(arguments: Sequence[str]) -> int:
     try:
         # Imported inside the try, so that an interrupt during the import is reported too.
         from taylor_verify.cli.arguments import parse
 
         have_streams()
-        options = parse(sys.argv[1:] if arguments is None else arguments)
+        options = parse(arguments)
         MANNER.quiet, MANNER.colour = options.quiet, options.color
         with stdout_reserved():
             answer = _acted(options)

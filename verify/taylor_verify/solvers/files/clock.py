@@ -56,9 +56,10 @@ def with_times(
     sums = list(_sums_of_seconds(columns, place, faults))
     notes = [each.note for each in sums]
     read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
-    whole = [c for c in read if not any(c is each.fractions for each in sums)]
+    names = Candidates([Name(column) for column in read], {}, {})
+    read = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
-    clocks = _clocks(whole, asked, scene, Candidates([Name(column) for column in read], {}, {}))
+    clocks = _clocks(read, asked, scene, names)
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))

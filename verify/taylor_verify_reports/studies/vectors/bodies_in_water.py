@@ -60,7 +60,7 @@ def vehicle(body: Sample, draw: Draw) -> Sample:
 
     def acting(t: float, v: Floats, q: Floats, own: Floats) -> Floats:
         righting = np.cross(at, rotation(q).T @ down)
-        return load(t, v, q, own) + np.array([0, 0, 0, *righting])
+        return np.asarray(load(t, v, q, own) + np.array([0, 0, 0, *righting]))
 
     place = f"[{', '.join(map(str, at))}]"
     hydrostatic = (

@@ -22,6 +22,7 @@ FAMILIES: Final = {
         "space frame turned",
         "frame that turns",
         "tensor in space axes",
+        "velocity over ground",
     ),
     "starts": ("own start", "jump", "asleep", "load from some time on"),
     "methods": (

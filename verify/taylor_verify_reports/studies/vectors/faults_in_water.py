@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from taylor_verify_reports.studies.causes.bodies import Floats, Sample
 from taylor_verify_reports.studies.causes.kinds import Kind
 from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law, rotation
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
+from taylor_verify_reports.studies.vectors.loaded_kinds import without_lag
 
 _PLAIN: Final = ("vehicle", "current")
 _SOLIDS: Final = (*_PLAIN, "steered")
@@ -48,50 +49,35 @@ def _no_coupling(own: Law, s: Sample, size: float) -> None:
     own.munk = own.coriolis[:3].copy()
 
 
-def _pushed(change: Callable[[Law, Sample, Floats], Any]) -> Make:
-    """Return the maker of answers with a further load of t and v."""
+def _scaled(part: Callable[[Floats, Floats], Floats], factor: float) -> Make:
+    """Return the maker of answers in which a part of the load has a factor.
+
+    The part is made of the whole load and of that at rest.
+    """
 
     def make(s: Sample, d: Draw, size: float) -> Rows:
-        own, rest = law(s), np.zeros(6)
-        at_rest = s.acting.load(0.0, rest, s.q0 / np.linalg.norm(s.q0), s.acting.start)
-        own.loads_of = change(own, s, at_rest[:3])
-        return integrated(s, own)
-
-    return make
-
-
-def _thrust(factor: float) -> Make:
-    more = factor - 1
-    return _pushed(lambda own, s, thrust: lambda t, v: np.array([more * thrust[0], 0, 0, 0, 0, 0]))
-
-
-def _drag(factor: float) -> Make:
-    """Return the maker of answers whose drag has a factor: what is left of the load without thrust."""
-
-    def change(own: Law, s: Sample, thrust: Floats) -> Any:
-        def more(t: float, v: Floats) -> Floats:
-            unturned, own_states = np.array([1.0, 0, 0, 0]), s.acting.start
-            drag = s.acting.load(t, v, unturned, own_states)
-            rest = s.acting.load(t, 0 * v, unturned, own_states)
-            return (factor - 1) * (drag - rest)
-
-        return more
-
-    return _pushed(change)
-
-
-def _righting(factor: float) -> Make:
-    def make(s: Sample, d: Draw, size: float) -> Rows:
-        own, load, rest = law(s), s.acting.load, np.zeros(6)
+        own, load = law(s), s.acting.load
 
         def changed(t: float, v: Floats, q: Floats, m: Floats) -> Floats:
-            righting = load(t, rest, q, m) * (np.arange(6) > 2)
-            return load(t, v, q, m) + (factor - 1) * righting
+            whole, at_rest = load(t, v, q, m), load(t, 0 * v, q, m)
+            return whole + (factor - 1) * part(whole, at_rest)
 
         own.acting = replace(s.acting, load=changed)
         return integrated(s, own)
 
     return make
+
+
+def _drag(whole: Floats, at_rest: Floats) -> Floats:
+    return whole - at_rest
+
+
+def _thrust(whole: Floats, at_rest: Floats) -> Floats:
+    return at_rest * (np.arange(6) < 3)
+
+
+def _righting(whole: Floats, at_rest: Floats) -> Floats:
+    return at_rest * (np.arange(6) > 2)
 
 
 def _over_ground(s: Sample, d: Draw, size: float) -> Rows:
@@ -113,15 +99,6 @@ def _drag_over_ground(s: Sample, d: Draw, size: float) -> Rows:
     return integrated(s, own)
 
 
-def _without_lag(s: Sample, d: Draw, size: float) -> Rows:
-    own, rate, load = law(s), s.acting.rate, s.acting.load
-    pace = float((rate(0.0, s.v0, s.q0, np.zeros(2)) - rate(0.0, s.v0, s.q0, np.ones(2)))[0])
-    own.acting = replace(
-        s.acting, load=lambda t, v, q, m: load(t, v, q, rate(t, v, q, np.zeros(2)) / pace)
-    )
-    return integrated(s, own)
-
-
 def _slower_motor(s: Sample, d: Draw, size: float) -> Rows:
     own, rate = law(s), s.acting.rate
     own.acting = replace(s.acting, rate=lambda t, v, q, m: rate(t, v, q, m) / (1 + size))
@@ -133,7 +110,7 @@ def _of_energy(change: Callable[[Floats, float], Floats]) -> Make:
 
     def make(s: Sample, d: Draw, size: float) -> Rows:
         own = law(s)
-        own.mass = np.linalg.inv(change(np.linalg.inv(s.mass), size))
+        own.mass = np.asarray(np.linalg.inv(change(np.asarray(np.linalg.inv(s.mass)), size)))
         own.coriolis, own.munk = own.mass.copy(), own.mass[:3].copy()
         return integrated(s, own)
 
@@ -156,15 +133,15 @@ WATER_KINDS: Final = (
     Kind("C_A twice", _CORIOLIS, _masses(2.0, in_inertia=False), _SOLIDS),
     Kind("C_A with the other sign", _CORIOLIS, _masses(-1.0, in_inertia=False), _SOLIDS),
     Kind("centre of mass left out of C", ("coupling", *_CORIOLIS), _of(_no_coupling), _SOLIDS),
-    Kind("drag left out", _DRAG, _drag(0.0), _SOLIDS),
-    Kind("drag of another size", _DRAG, _drag(1.06), _SOLIDS),
-    Kind("thrust left out", _PUSH, _thrust(0.0), _PLAIN),
-    Kind("thrust with the other sign", _PUSH, _thrust(-1.0), _PLAIN),
-    Kind("righting moment left out", _MOMENT, _righting(0.0), ("vehicle",)),
-    Kind("righting moment upside down", (*_MOMENT, "sign"), _righting(-1.0), ("vehicle",)),
-    Kind("velocity over ground", ("over ground",), _over_ground, ("current",)),
+    Kind("drag left out", _DRAG, _scaled(_drag, 0.0), _SOLIDS),
+    Kind("drag of another size", _DRAG, _scaled(_drag, 1.06), _SOLIDS),
+    Kind("thrust left out", _PUSH, _scaled(_thrust, 0.0), _PLAIN),
+    Kind("thrust with the other sign", _PUSH, _scaled(_thrust, -1.0), _PLAIN),
+    Kind("righting moment left out", _MOMENT, _scaled(_righting, 0.0), ("vehicle",)),
+    Kind("righting moment upside down", (*_MOMENT, "sign"), _scaled(_righting, -1.0), ("vehicle",)),
+    Kind("velocity over ground", ("over ground", "moving frame"), _over_ground, ("current",)),
     Kind("drag by the velocity over ground", _DRAG, _drag_over_ground, ("current",)),
-    Kind("motor without lag", ("m ", "lag"), _without_lag, ("steered",)),
+    Kind("motor without lag", ("m ", "lag"), without_lag, ("steered",)),
     Kind("slower motor", ("m ", "rate"), _slower_motor, ("steered",)),
     Kind("coefficient p of another size", ("a_", "M_", "p "), _coefficient, ("clebsch",)),
     Kind("coupling left out", ("coupling", "b_", "M_", "q"), _without_coupling, ("clebsch",)),

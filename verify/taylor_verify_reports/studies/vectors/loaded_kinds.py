@@ -59,11 +59,13 @@ def _taken(s: Sample, late: bool) -> Rows:
     return integrated(s, own)
 
 
-def _without_lag(s: Sample, d: Draw, size: float) -> Rows:
-    """Return a motor that follows at once: its state is that at which its rate is zero."""
-    own, rate = law(s), s.acting.rate
-    pace = float(-(rate(0.0, s.v0, s.q0, np.ones(3)) - rate(0.0, s.v0, s.q0, np.zeros(3)))[0])
-    own.acting = Acting(load=lambda t, v, q, m: rate(t, v, q, np.zeros(3)) / pace)
+def without_lag(s: Sample, d: Draw, size: float) -> Rows:
+    """Return motors that follow at once: their states are those at which their rates are zero."""
+    own, rate, load, none = law(s), s.acting.rate, s.acting.load, 0 * s.acting.start
+    pace = float(-(rate(0.0, s.v0, s.q0, none + 1) - rate(0.0, s.v0, s.q0, none))[0])
+    own.acting = replace(
+        s.acting, load=lambda t, v, q, m: load(t, v, q, rate(t, v, q, none) / pace)
+    )
     return integrated(s, own)
 
 
@@ -82,7 +84,7 @@ LOADED_KINDS: Final = (
         lambda s, d, e: _taken(s, late=False),
         ("sampled",),
     ),
-    Kind("motor without lag", ("m ",), _without_lag, ("lagging",)),
+    Kind("motor without lag", ("m ",), without_lag, ("lagging",)),
 )
 # Where nobody need know them.
 NOT_KNOWN: Final = ("controller of another size", "controller a sample late", "motor without lag")

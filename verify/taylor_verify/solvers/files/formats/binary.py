@@ -165,7 +165,8 @@ def _of_one(file: Content, path: Path) -> Table:
     content = file.whole(BYTES)
     header = _header(content[:_LONGEST_HEADER], "1", len(content), path)
     _check([header], path)
-    if header.dtype.kind not in "fiu" or not 1 <= len(header.shape) <= 2:
+    is_matrix = 1 <= len(header.shape) <= 2 and all(header.shape)
+    if header.dtype.kind not in "fiu" or not is_matrix:
         got = f"shape {header.shape} of {header.dtype}"
         raise refusal("a matrix of numbers, a row for each time", got, path)
     matrix: Any = header.values(content).reshape(header.shape[0], -1)
