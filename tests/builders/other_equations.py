@@ -7,6 +7,7 @@ WITHOUT_GYROSCOPIC_TERM = (
     *("ammo?flags=0", "ammo?flags=4", "ammo?flags=8"),
     *("brax-positional", "brax-spring", "cannon", "havok"),
     *("jolt?gyroscopic=off", "rapier?version=0.19.3"),
+    *("bullet?gyroscopic=off", "ode?gyroscopic=off", "pybox3d"),
 )
 # Without what of the added mass goes with accelerations.
 WITHOUT_ADDED_MASS = ("mujoco_fluid-ellipsoid",)

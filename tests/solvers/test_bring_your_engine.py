@@ -39,7 +39,6 @@ SCENES = [
 ]
 TOLERANCE = 1e-3
 # Above what the classical method leaves with a step of 0.02, and a hundredth of what order two would.
-ORDER_FOUR = 1e-6
 
 # One engine three times: the classical method of Runge and Kutta, which asks for the moment in its stages.
 PYTHON = """

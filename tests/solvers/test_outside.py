@@ -96,7 +96,7 @@ def test_every_requirement_is_pinned(file: Path) -> None:
     """A script names exact versions, and fits every Python that the project fits, or says why not."""
     script = read_script(file)
     for requirement in script.requirements:
-        assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*", requirement)
+        assert re.fullmatch(r"[A-Za-z0-9_.-]+==\d+(\.\d+)*(b\d+)?", requirement)
     project = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
     wanted = set(pythons(project["requires-python"]))
     fitting = set(pythons(tomllib.loads(script.block)["requires-python"]))

@@ -29,7 +29,7 @@ BROKEN = {
     "solvers": ("gone = no_such_module:solve", "No module named 'no_such_module'"),
     "readers": ("csv = tv_broken:Csv", "the reader .csv of tv-broken is left out: there is one"),
     "scenes": ("mine = tv_broken:Csv", "to be the path of a folder"),
-    "engines": ("none = tv_broken:missing", "to be the path of a script (.py, .mjs)"),
+    "engines": ("none = tv_broken:missing", "to be the path of a script (.py, .mjs, .cpp)"),
     "causes": ("half = tv_broken", "to have candidates, got none"),
 }
 # Modules whose import, and a reader whose call, ends the program or writes lines of its own.
@@ -154,6 +154,25 @@ def test_its_reader_reads_a_file_and_its_cause_is_proven(tmp_path: Path) -> None
     assert not judged.passed
     assert "read by rows of the package tv-example" in judged.notes
     assert "the jet was on" in [cause.name for cause in judged.causes]
+
+
+@pytest.mark.usefixtures("example")
+def test_its_engine_and_its_files_stand_on_the_board(tmp_path: Path, capsys: Captured) -> None:
+    """`board add` judges the engine of a package, and files that its reader reads, on a local copy."""
+    scene = load("engines/oblique")
+    omega = taylor_verify.exact(scene, scene.clock.instants, 20)["omega"].astype(float)
+    rows = np.column_stack([[float(t) for t in scene.clock.instants], omega])
+    lines = (" ".join(map(repr, row)) for row in rows.tolist())
+    (tmp_path / "oblique.rows").write_text("\n".join(["t w1 w2 w3", *lines]))
+    place = ["--board", "engines", "--scene", "engines/oblique", "--from", str(tmp_path), "--json"]
+    for name, source in (
+        ("plugged", ["--solver", "outside:still"]),
+        ("filed", ["--files", str(tmp_path)]),
+    ):
+        assert main(["board", "add", name, *source, *place]) == 0
+        (row,) = json.loads(capsys.readouterr().out)["rows"]
+        assert (row["engine"], row["standing"]) == (name, "judged")
+    assert row["errors"]["omega"] < 1e-15
 
 
 def test_a_broken_plugin_is_named_in_one_line_and_harms_nobody(

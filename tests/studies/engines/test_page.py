@@ -62,10 +62,20 @@ def test_the_best_setting_is_advised() -> None:
     assert first.startswith("For free rotation take **Spinner** with lie-rk4 and a step of 0.05:")
 
 
+def test_a_tie_has_no_winner() -> None:
+    """Engines whose errors, or times, are within a small factor are named together, and as a tie."""
+    equal = advised(*with_errors(SPINNER, 1e-2, 1e-4, 1.2e-7), *with_errors(WOBBLER, 1, 1, 1e-7))
+    both = "take **Wobbler** with splitting and a step of 0.025 or **Spinner** with lie-rk4"
+    assert both in equal[0]
+    assert "a tie: their errors differ by less than a factor 1.5." in equal[0]
+    assert "among the cheapest" in equal[1]
+    assert "within a factor 3 of it, a tie, **" in equal[1]
+
+
 def test_the_cheapest_of_the_sufficient_is_advised() -> None:
     """The time decides among those whose error is small enough."""
     rows = [*with_errors(SPINNER, 1e-2, 1e-4, 1e-6), *with_errors(WOBBLER, 1e-4, 1e-5, 1e-9)]
-    seconds = dict(zip((row.key for row in rows), (1e-3, 0.5, 2.0, 0.2, 0.6, 5.0), strict=True))
+    seconds = dict(zip((row.key for row in rows), (1e-3, 0.9, 2.0, 0.2, 0.6, 5.0), strict=True))
     sentences = advised(*rows, **seconds)
     assert (
         "**Wobbler** with splitting and a step of 0.1 is the cheapest: 1.00e4 micro" in sentences[1]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 _GROUP: Final = "taylor_verify."
-_SCRIPTS: Final = (".py", ".mjs")
+_SCRIPTS: Final = (".py", ".mjs", ".cpp")
 
 
 class BrokenPlugin(ValueError):  # noqa: N818 (it names what it is)

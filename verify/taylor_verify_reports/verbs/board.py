@@ -75,7 +75,8 @@ def add(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--row",
         metavar="N",
-        help="write the trajectory of row N of --board (the numbers of `board --json`), for `check`",
+        help="write the trajectory of row N of --board (the numbers of its page and of `board --json`), "
+        "for `check`; what is not stored is made by its engine",
     )
     verb.add_argument("--out", metavar="FILE", help="the file of --row; default: standard output")
     verb.add_argument(
@@ -182,8 +183,9 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
     if not text.isdecimal() or int(text) >= len(answers):
         raise WrongCall(f"expected a row from 0 to {len(answers) - 1}, got {text!r:.40} @ --row")
     answer = answers[int(text)]
-    if not (columns := answer.columns()):
-        raise WrongCall(_lacking(answer, options.board))
+    if answer.states is None:
+        answer = _made_again(answer, options.board)
+    columns = answer.columns()
     check = f"taylor-verify check FILE --scene {answer.row.scene} --rung {answer.row.rung}"
     if options.out is None:
         return Answer(PASS, columns, lambda: answer.to_bytes().decode(), [check])
@@ -196,12 +198,20 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
     )
 
 
-def _lacking(answer: Run, board: str) -> str:
+def _made_again(answer: Run, board: str) -> Run:
+    """Return the answer of a row whose trajectory is not stored: its engine runs once more."""
+    from taylor_verify_reports.studies.engines.answer import answered
+    from taylor_verify_reports.studies.engines.entry import entry_list
+
     row = answer.row
-    if not row.is_judged:
-        return f"expected a row with a trajectory, got one that is {row.standing}: {row.detail} @ --row"
-    made = f"publish {board} --only {row.engine} --anew"
-    return f"expected a stored trajectory, got a row whose trajectory is made by `{made}` @ --row"
+    asked = next((run for run in entry_list(board).runs() if run.key == row.key), None)
+    if row.is_judged and asked is not None:
+        say(f"making the trajectory of {row.key}")
+        (answer,) = answered([asked])
+    if answer.states is None:
+        standing = f"{answer.row.standing}: {answer.row.detail}"
+        raise WrongCall(f"expected a row with a trajectory, got one that is {standing} @ --row")
+    return answer
 
 
 def _added(options: argparse.Namespace, folder: Path, boards: Sequence[str]) -> Answer:

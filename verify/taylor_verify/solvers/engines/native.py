@@ -71,7 +71,8 @@ def _compiled(name: str, script: Path, block: str, tell: Tell) -> Path:
 
 def _unpack(packages: list[str], made: Path, root: Path) -> None:
     """Download packages of Debian and unpack them below ``root``."""
-    output(["apt-get", "download", "-qq", *packages], made)
+    if packages:
+        output(["apt-get", "download", "-qq", *packages], made)
     for package in sorted(made.glob("*.deb")):
         output(["dpkg-deb", "-x", package.name, str(root)], made)
         package.unlink()

@@ -4,7 +4,7 @@
 # [tool.taylor-verify]
 # title = "JSBSim"
 # models = ["euler"]
-# loads = false
+# loads = "written"
 # data = "tensor"
 # [tool.taylor-verify.settings]
 # step = 0.01
@@ -21,7 +21,8 @@
 properties of the simulation, and ``defaults=shipped`` leaves them as they come. The body begins at rest
 above a point of the equator and falls straight down, so that the local axes do not turn. Moments are
 given in slug ft2; the unit does not matter. JSBSim reports Euler angles of the local axes, omega in
-body axes. There is no damping and no cap to switch off.
+body axes. There is no damping and no cap to switch off. What acts is a moment of its external reactions,
+set before a step; JSBSim steps the rates before it sums the moments, so that the next step has it.
 """
 
 from __future__ import annotations
@@ -31,7 +32,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from free_body import Engine, FreeBody, Settings, Solved, answer, repeated, stepped
+from free_body import (
+    Engine,
+    FreeBody,
+    Settings,
+    Solved,
+    answer,
+    pushed_body,
+    pushed_once,
+    repeated,
+    stepped,
+)
 
 # The numbers of JSBSim (FGPropagate.h) for its integrators.
 NUMBERS = {
@@ -50,7 +61,11 @@ AIRCRAFT = """<?xml version="1.0"?>
 <ixx unit="SLUG*FT2">{!r}</ixx><iyy unit="SLUG*FT2">{!r}</iyy><izz unit="SLUG*FT2">{!r}</izz>
 <emptywt unit="LBS">32.17</emptywt>
 <location name="CG" unit="FT"><x>0</x><y>0</y><z>0</z></location></mass_balance>
-<ground_reactions/><propulsion/><aerodynamics/></fdm_config>"""
+<ground_reactions/><propulsion/><aerodynamics/><external_reactions>
+<moment name="l" frame="BODY" unit="LBSFT"><direction><x>1</x><y>0</y><z>0</z></direction></moment>
+<moment name="m" frame="BODY" unit="LBSFT"><direction><x>0</x><y>1</y><z>0</z></direction></moment>
+<moment name="n" frame="BODY" unit="LBSFT"><direction><x>0</x><y>0</y><z>1</z></direction></moment>
+</external_reactions></fdm_config>"""
 PLANET = """<?xml version="1.0"?><planet name="still">
 <rotation_rate unit="RAD/SEC">0</rotation_rate></planet>"""
 
@@ -61,14 +76,19 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
     def start() -> Engine:
         fdm = aircraft_of(turned, settings)
 
-        def row() -> Any:
-            p, q, r = (fdm[f"velocities/{name}-rad_sec"] for name in "pqr")
+        def state() -> Any:
             angles = [fdm[f"attitude/{name}-rad"] for name in ("phi", "theta", "psi")]
-            return turned.row([p, q, r], attitude_of(angles))
+            return [fdm[f"velocities/{name}-rad_sec"] for name in "pqr"], attitude_of(angles)
 
-        return repeated(fdm.run), row
+        def pushed_step() -> None:
+            for name, entry in zip("lmn", turned.moment(*state()), strict=True):
+                fdm[f"external_reactions/{name}/magnitude-lbsft"] = entry
+            fdm.run()
 
-    return stepped(turned, settings.step, start)
+        return repeated(pushed_step if turned.is_pushed else fdm.run), lambda: turned.row(*state())
+
+    late = "; it reaches the body a step late" if turned.is_pushed else ""
+    return stepped(turned, settings.step, start, f"{pushed_once(turned)}{late}")
 
 
 def aircraft_of(body: FreeBody, settings: Settings) -> Any:
@@ -119,4 +139,4 @@ def attitude_of(angles: Any) -> list[float]:
 
 
 if __name__ == "__main__":
-    answer(solve)
+    answer(solve, pushed_body)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, groupby, pairwise, product
 from math import inf, isfinite
@@ -26,6 +26,9 @@ ENOUGH: Final = 1e-3
 LOST: Final = 0.05
 # A setting gets a warning if another one of its engine has an error this many times smaller.
 FAR_WORSE: Final = 10.0
+# Errors that differ by less than this factor are a tie; and times, of which only the order is reliable.
+TIE: Final = 1.5
+TIE_OF_TIMES: Final = 3.0
 # No way of giving a load is warned of whose error is below this one times FAR_WORSE.
 NEGLIGIBLE: Final = 1e-10
 # A warning of too small steps is given if they increase the error by more than this factor.
@@ -109,25 +112,35 @@ def _take(
     scenes: Sequence[str],
     names: dict[str, str],
 ) -> Iterator[str]:
-    """Yield the most accurate setting, and the cheapest of those that suffice for most uses."""
+    """Yield the most accurate settings, and the cheapest of those that suffice for most uses."""
     scores = [score for setting in engines for score in setting.scores(scenes)]
     if (best := best_of(scores)) is None:
         return
+    equal = _equals(scores, lambda score: score.error, TIE)
+    taken = _either([f"{named(score.setting, names)}{_step(score)}" for score in equal])
+    tie = f", a tie: their errors differ by less than a factor {TIE}" if len(equal) > 1 else ""
     yield (
-        f"For {job} take {named(best.setting, names)}{_step(best)}{_load(best)}: {_states(best)} are "
-        f"right to {figure(best.error)} on all of {_listed(scenes)}, the most that an engine reaches here."
+        f"For {job} take {taken}{_load(best)}: {_states(best)} are right to {figure(best.error)} on all "
+        f"of {_listed(scenes)}, the most that an engine reaches here{tie}."
     )
-    paced = [
-        (pace, score)
-        for score in scores
-        if score.error <= ENOUGH and (pace := board.pace(score.row))
-    ]
-    if paced:
-        pace, cheap = min(paced, key=lambda pair: pair[0])
+    if paced := [s for s in scores if s.error <= ENOUGH and board.pace(s.row)]:
+        cheapest, *others = _equals(paced, lambda score: board.pace(score.row) or inf, TIE_OF_TIMES)
+        also = _either([bold(prose(names[score.setting.engine])) for score in others], "and")
+        within = f"; within a factor {TIE_OF_TIMES:g} of it, a tie, {also}" if others else ""
         yield (
-            f"Where {ENOUGH} is enough, {named(cheap.setting, names)}{_step(cheap)} is the "
-            f"cheapest: {figure(1e6 * pace)} microseconds for each second of the motion."
+            f"Where {ENOUGH} is enough, {named(cheapest.setting, names)}{_step(cheapest)} is "
+            f"{'among ' if others else ''}the cheapest: {figure(1e6 * (board.pace(cheapest.row) or inf))} "
+            f"microseconds for each second of the motion{within}."
         )
+
+
+def _equals(scores: Sequence[Score], size: Callable[[Score], float], factor: float) -> list[Score]:
+    """Return the best score of each engine that is within a factor of the best of all, that one first."""
+    best: dict[str, Score] = {}
+    for score in sorted(scores, key=size):
+        best.setdefault(score.setting.engine, score)
+    least = min(map(size, best.values()))
+    return [score for score in best.values() if size(score) <= factor * least]
 
 
 def _ways_to_avoid(
@@ -214,10 +227,10 @@ def _energy(score: Score) -> str:
     return figure(score.row.errors.get("T"))
 
 
-def _either(words: Sequence[str]) -> str:
-    """Return the words as a list in a sentence, with "or" before the last one."""
-    *others, last = words
-    return f"{', '.join(others)} or {last}" if others else last
+def _either(words: Sequence[str], joint: str = "or") -> str:
+    """Return the words as a list in a sentence, with "or" before the last one; empty without words."""
+    *others, last = words or [""]
+    return f"{', '.join(others)} {joint} {last}" if others else last
 
 
 def _as_shipped(

@@ -21,7 +21,7 @@ from taylor_verify.records.json_text import complete, parsed
 from taylor_verify.records.store import laid_out
 from taylor_verify.run import solve
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.engines.engine import PREFIX, Outside, engines, solve_together
+from taylor_verify.solvers.engines.engine import PREFIX, SCRIPTS, Outside, engines, solve_together
 from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing
@@ -158,9 +158,12 @@ def version_of(asked: Asked) -> str:
 
 @cache
 def made_of(scene: str, solver: str) -> str:
-    """Return the digest of a scene and of the engine's script; another digest marks an outdated run."""
+    """Return the digest of a scene and of what moves it; another digest marks an outdated run."""
     digest = hashlib.sha256(load(scene).digest.encode())
-    for file in _programs(solver):
+    programs = _programs(solver)
+    if solver.startswith(PREFIX) and load(scene).body.loads:
+        programs.append(SCRIPTS / "acting.py")
+    for file in programs:
         digest.update(file.read_bytes())
     return digest.hexdigest()[:12]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from typing import Final
 
 from taylor_verify.records.provenance import Machine
@@ -110,6 +111,11 @@ class Board:
     study: EnginesStudy
     timings: EnginesTimings
     name: str = "engines"
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """The number of each run by its key, from 0 on."""
+        return {row.key: number for number, row in enumerate(self.study.rows)}
 
     def pace(self, row: EngineRow) -> float | None:
         """Return the seconds of a run per unit of the scene's time; None if they are unknown."""

@@ -23,6 +23,9 @@ _LEGEND: Final = (
     "decides the order more often than the integrator does.",
     "*order* is the observed order of the error over the steps, of the first quantity and of the "
     "attitude; a dash means that the steps show none.",
+    "*rows* are the numbers of the row's runs, from the largest step to the smallest: `taylor-verify board "
+    "--board NAME --row N --out row.json` makes the trajectory of one of them, in seconds, and says how "
+    "`check` judges it.",
     "*time* is that of the engine's own calls for a second of the motion at the smallest step, in "
     "microseconds. It comes from one run beside others: only its order of magnitude is reliable.",
 )
@@ -68,7 +71,7 @@ def _table(board: Board, own: Sequence[EngineSetting], scene: str, titles: dict[
         steps = sorted(values, key=_size)[::-1]
         head = [f"{knob} {steps[0]}:", *(f"{step or NOTHING}:" for step in steps[1:])]
         rows = [_cells(board, setting, scene, steps, titles) for setting in group]
-        tables.append(table(["engine", "setting", "load", *head, "order:", "time:"], rows))
+        tables.append(table(["engine", "setting", "load", *head, "order:", "time:", "rows:"], rows))
     return "\n\n".join(tables)
 
 
@@ -93,7 +96,14 @@ def _cells(
         *(figure(rows[step].worst) if step in rows else NOTHING for step in steps),
         _orders(setting, finest),
         figure(None if pace is None else 1e6 * pace),
+        _numbers(board, [*rows.values()]),
     ]
+
+
+def _numbers(board: Board, rows: Sequence[EngineRow]) -> str:
+    """Return the numbers of the first and the last of rows that stand in succession."""
+    first, last = (board.numbers[row.key] for row in (rows[0], rows[-1]))
+    return f"{first} to {last}" if last > first else f"{first}"
 
 
 def _orders(setting: EngineSetting, row: EngineRow) -> str:

@@ -8,6 +8,7 @@ registry that does not answer. Each environment is made once for all runs.
 
 from __future__ import annotations
 
+import resource
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -80,9 +81,18 @@ def measure(
             store.keep(answer)
             say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
 
+    before = _processor_seconds()
     made = run_all(answered, _sets(waiting), workers=workers or available_cores(), ended=ended)
+    if waiting:
+        say(f"{len(waiting)} runs took {_processor_seconds() - before:.0f} s of one core")
     answers |= {answer.row.key: answer for set_answers in made for answer in set_answers}
     return [answers[run.key] for run in every if run.key in answers]
+
+
+def _processor_seconds() -> float:
+    """Return the seconds that ended child processes, and theirs, have had of a core."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _sets(runs: Iterable[Asked]) -> list[list[Asked]]:

@@ -275,8 +275,9 @@ def remake(board: Board) -> list[str]:
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
         "page. Errors are the same on every machine. " + _stored_ones(name),
-        f"`taylor-verify board --row N --board {name}` writes the trajectory of row N, which `check` "
-        f"judges alone; `board --json` and the sheet, `{name}.csv`, have every row with its place.",
+        f"`taylor-verify board --board {name} --row N --out row.json` writes the trajectory of row N, "
+        "which `check` judges alone; what is not stored is made by its engine, in seconds. "
+        f"`board --json` and the sheet, `{name}.csv`, have every row with its number.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "
         f"time on {prose(machine.processor)}; no number but a time depends on the machine.",
         made_with(board.study.versions),
@@ -297,6 +298,7 @@ def sheet(board: Board) -> str:
     """Return a row for every run, with every quantity."""
     quantities = dict.fromkeys(name for row in board.study.rows for name in row.errors)
     names = [
+        "row",
         "engine",
         "version",
         "variant",
@@ -324,6 +326,7 @@ def _sheet_row(board: Board, row: EngineRow) -> dict[str, Any]:
     return {
         **vars(row),
         **row.errors,
+        "row": board.numbers[row.key],
         "array": row.array if row.is_stored else "",
         "place": row.place if row.is_stored else "",
         "file": places(board.name).trajectories if row.is_stored else "",
