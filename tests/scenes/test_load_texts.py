@@ -160,6 +160,8 @@ def test_texts_of_unusual_form_are_answered_at_once(text: str) -> None:
         ("2*1j", "a decimal number, got 1j @ body.moment[0], column 3"),
         ("w1*\u0661", "got '\\u0661' @ body.moment[0], column 4"),
         ("  w1 * / 2", "an expression, got `/ 2` @ body.moment[0], column 8"),
+        ("2 * (w1", "a `)` that closes this bracket, got none @ body.moment[0], column 5"),
+        ("w1^2)", "a `(` for this bracket, got none @ body.moment[0], column 5"),
         ("w1^2 + nix", "a known name, got `nix` @ body.moment[0], column 8"),
         ("u1", "a known name, got `u1` @ body.moment[0], column 1"),
         ("__import__(1)", "got `__import__` @ body.moment[0], column 1"),
