@@ -135,7 +135,7 @@ NARROW = axial(0, "-1e-9", vector("1/2", "3/5", "1/10"))
 
 @pytest.mark.slow
 def test_teeth_that_all_but_stop_the_body_are_summed_too() -> None:
-    """By balls as by the recursion; F is small there by its second order."""
+    """Balls agree with the recursion; F is small there by its second order."""
     times = [Fraction(0), Fraction(5)]
     expected = TaylorSolution(NARROW).motion(times, 25)
     exact = solution(NARROW, "arb")

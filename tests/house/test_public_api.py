@@ -199,7 +199,7 @@ def test_a_run_that_cannot_begin_is_an_outcome(
 def test_many_runs_refuse_a_wrong_call(
     changed: dict[str, Any], error: type[Exception], expected: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What cannot be run is an error of the call, before anything runs."""
+    """A run that is impossible is an error of the call, before anything runs."""
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", lambda *_: pytest.fail("it ran"))
     with pytest.raises(error, match=expected) as raised:
         taylor_verify.run_many(**{"scenes": SCENES, **changed})

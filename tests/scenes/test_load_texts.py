@@ -263,7 +263,7 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ],
 )
 def test_a_name_that_is_taken_is_refused(tables: str, place: str) -> None:
-    """By the other model too, by a component of a vector, by Python, or made twice."""
+    """Names of the other model, of a component of a vector, of Python, or made twice are taken."""
     lines = faults("w1", tables=tables)
     assert lines
     assert all(
