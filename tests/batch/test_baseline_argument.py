@@ -55,7 +55,7 @@ def test_a_result_passes_beside_itself_and_fails_beside_a_better_one(
 
 @pytest.mark.parametrize("call", [run, run_many])
 def test_the_gate_baseline_asks_the_comparison_alone(call: Any, document: dict[str, Any]) -> None:
-    """What fails its own bounds passes if it is no worse than it was, and not the other way round."""
+    """A run that fails its own bounds passes if it is no worse than it was, and not the other way round."""
     strict = {**ASKED, "tolerance": 1e-9}
     failed = run_many([COARSE], **strict).document()
     assert not call(COARSE, **strict, baseline=failed)

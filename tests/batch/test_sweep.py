@@ -174,7 +174,7 @@ def test_no_more_chunks_are_under_way_than_were_asked_for(template: str, tmp_pat
 def test_an_interrupted_sweep_goes_on(
     template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was finished is not judged again, a damaged part is, and the bytes are those of one go."""
+    """Finished parts are not judged again, a damaged part is, and the bytes are those of one go."""
     swept(template, tmp_path / "whole")
     out = tmp_path / "out"
     with pytest.raises(Interrupted) as interrupted:

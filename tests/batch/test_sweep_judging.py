@@ -62,7 +62,7 @@ def test_a_worst_case_that_failed_has_the_causes_that_run_finds(
 def test_causes_are_sought_for_the_worst_cases_alone(
     template: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, executor: str
 ) -> None:
-    """Of twenty bodies that fail, two are explained, by whatever executor judges them."""
+    """Two of twenty bodies that fail are explained, by whatever executor judges them."""
     explained: list[str] = []
 
     def counted(scene: Scene, *given: Any, causes: bool = True) -> Judgement:

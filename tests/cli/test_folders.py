@@ -197,7 +197,7 @@ def test_a_picture_that_cannot_be_written_costs_no_judgement(
 def test_a_trade_off_that_cannot_be_written_is_shown(
     short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    """What was measured is printed, with one message and exit status 2."""
+    """The measurement is printed, with one message and exit status 2."""
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device", "out")

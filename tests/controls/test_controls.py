@@ -56,7 +56,7 @@ def rows() -> tuple[Sight, ...]:
 
 @pytest.mark.parametrize("defect", COMPARED)
 def test_defect_is_seen_by_the_gates_that_physics_says_and_by_no_other(defect: Defect) -> None:
-    """What a defect conserves passes, everything else fails, the gate named for it among that."""
+    """Quantities that a defect conserves pass, all others fail, the gate named for it among them."""
     verdicts = sight_of(defect.name).verdicts
     start = set() if defect.wrong_start else {INITIAL}
     assert {
@@ -82,7 +82,7 @@ def test_defect_is_off_by_more_than_any_rounding(defect: Defect) -> None:
 
 @pytest.mark.parametrize("defect", COMPARED)
 def test_sound_twin_passes_every_gate(defect: Defect) -> None:
-    """What fails is the defect, not the scene and not the step: the twin passes all gates there."""
+    """The defect fails, not the scene and not the step: the twin passes all gates there."""
     sight = sight_of(defect.name)
     assert {v.verdict for v in sight.sound.values()} == {Status.PASS}
     # A quaternion has a row of its own only where it is no unit quaternion.
@@ -204,7 +204,7 @@ def test_faulty_twin_takes_the_gate_out_of_the_count() -> None:
 
 
 def test_rows_come_back_as_they_were_stored() -> None:
-    """What is read is what was run: status, error over bound, and the shift of every failed row."""
+    """Rows are read as they were run: status, error over bound, and the shift of every failed row."""
     for row, defect in zip(rows(), DEFECTS, strict=True):
         run = sight_of(defect.name).verdicts
         assert {q: v.verdict for q, v in row.verdicts.items()} == {

@@ -228,7 +228,7 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
 def test_widths_of_rows_are_those_of_each(
     cases: list[tuple[Enclosure, dict[str, Any]]], exponent: int
 ) -> None:
-    """By doubles or in balls, within the range of doubles or not, and nowhere less than the true ratio."""
+    """A width, by doubles or in balls, in the range of doubles or not, is at least the true ratio."""
     with ctx.workprec(300):
         rows = [[b * arb(2) ** exponent for b in np.array(case["omega"]).flat] for case, _ in cases]
         size = min(map(len, rows))

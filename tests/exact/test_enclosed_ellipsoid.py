@@ -66,7 +66,7 @@ def near(scene: Scene, bits: int) -> Scene:
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_the_balls_contain_lambs_coefficients(name: str) -> None:
-    """By a certified quadrature of Lamb's own integrands: along each axis the added mass."""
+    """A certified quadrature of Lamb's own integrands gives the added mass along each axis."""
     axes = SHAPES[name]
     with ctx.workprec(100):
         body = as_written(shaped(name)).body

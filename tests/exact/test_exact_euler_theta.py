@@ -215,7 +215,7 @@ RADIUS_SPINS = ("max-axis", "min-axis", "separatrix", "axisymmetric, oblate", "s
 
 @pytest.mark.parametrize("name", RADIUS_SPINS)
 def test_radius_covers_the_error(name: str) -> None:
-    """What a row says about its error holds where the error is known: at times blurred on purpose."""
+    """The radius of a row holds where the error is known: at times blurred on purpose."""
     radius_covers_the_error(SPINS[name])
 
 

@@ -148,7 +148,7 @@ def test_the_motion_beside_its_derivative_is_the_exact_one() -> None:
 
 
 def test_no_answer_where_doubles_are_not_enough() -> None:
-    """Of a difference of a thousandth float64 has no twenty digits of the motion."""
+    """Float64 has no twenty digits of the motion for a difference of a thousandth."""
     with mp.workdps(DIGITS + 20):
         scene = load("euler/gyrostat-moment")
         assert asked(scene, beside(scene, Fraction("1e-3")), 20) is None

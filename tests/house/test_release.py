@@ -91,7 +91,7 @@ def pins(name: str) -> dict[str, str]:
 
 
 def test_the_small_set_up_is_a_part_of_the_whole() -> None:
-    """What `make verify` installs has the versions that `make test` adds to, and nothing else."""
+    """The libraries of `make verify` have the versions that `make test` adds to, and nothing else."""
     small, whole = pins("requirements-verify.txt"), pins("requirements.txt")
     assert {"heyoka", "numpy", "python-flint", "hatchling"} <= set(small)
     assert small.items() <= whole.items()

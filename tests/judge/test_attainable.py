@@ -359,7 +359,7 @@ def _floor_again(asked: Scene, steps: int) -> Array:
 
 @pytest.mark.parametrize("samples", [3, 12, 41])
 def test_sound_driver_passes_however_it_is_sampled(samples: int) -> None:
-    """What the passages of the unstable axis do to roundings is in the floor, seen or not."""
+    """The floor has the effect of the passages of the unstable axis on roundings, seen or not."""
     verdicts = run(returning(samples), "taylor", "f64").verdicts
     assert {v.verdict for v in verdicts} == {Status.PASS}
 

@@ -279,7 +279,7 @@ BYTES_A_ROW = 1000
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no getrusage")
 def test_a_row_takes_a_kilobyte(tmp_path: Path) -> None:
-    """Of 30 000 further rows each takes a kilobyte at most; held in mpmath's numbers they took seven."""
+    """Each of 30 000 further rows takes a kilobyte at most; in mpmath's numbers they took seven."""
     taken = []
     for rows in (10_000, 40_000):
         path = tmp_path / f"{rows}.csv"

@@ -113,7 +113,7 @@ def test_no_more_steps_are_counted_than_a_processor_does() -> None:
 
 
 def test_a_solver_of_this_project_counts_its_own() -> None:
-    """What our own loop has counted is no claim."""
+    """Steps that our own loop has counted are no claim."""
     problem = pose(load(SCENE), rung("f64"))
     assert Taylor.counts_steps
     assert count_steps(problem, Taylor(), MANY, seconds=1e-9).counted == MANY

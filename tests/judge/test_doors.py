@@ -117,7 +117,7 @@ def test_the_terminal_begins_a_line_with_the_cause(doors: dict[str, str]) -> Non
 
 
 def test_a_convention_is_a_note_at_every_door_of_python() -> None:
-    """What was found out about a file is said by print, the notebook, the exception and the terminal."""
+    """Findings about a file are said by print, the notebook, the exception and the terminal."""
     times = np.linspace(0, 10, 11)
     states = np.array(taylor_verify.exact(SCENE, times)["omega"], dtype=float)
     columns = zip(("w1", "w2", "w3"), np.degrees(states).T, strict=True)

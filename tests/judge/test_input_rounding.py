@@ -111,7 +111,7 @@ def changes(scene: Scene) -> list[list[int]]:
 
 
 def test_up_to_eight_numbers_are_moved_one_at_a_time() -> None:
-    """Of more, every draw moves all of them, each up or down, no two draws alike."""
+    """Every draw of more numbers moves all of them, each up or down, no two draws alike."""
     spin = Spin((Fraction(1, 2), Fraction(1), Fraction(0)))
     few = changes(sample_scene(RigidBody(TENSOR), start=spin))
     assert sorted(few) == sorted([int(i == k) for i in range(8)] for k in range(8))

@@ -147,14 +147,14 @@ def test_two_steps_confirm_no_order() -> None:
 
 
 def test_errors_that_stall_at_the_printed_digits_are_of_the_file() -> None:
-    """Of files with seven digits the error stalls near 1e-7, which is neither roundoff nor the method."""
+    """The error of files with seven digits stalls near 1e-7: neither roundoff nor the method."""
     measured = read([max(e, 6e-8) for e in power(4)], digits=7)
     assert measured.stall is Stall.DIGITS
     assert "the error is that of the printed digits" in measured.sentence
 
 
 def test_errors_that_stall_far_above_roundoff_have_another_reason() -> None:
-    """What no step removes is told with its multiple of the floor, and is not called roundoff."""
+    """An error that no step removes is told with its multiple of the floor, and not called roundoff."""
     measured = read([e + 1e-7 for e in power(4)])
     assert measured.stall is Stall.OTHER
     assert "roundoff takes over" not in measured.sentence

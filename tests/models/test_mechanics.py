@@ -61,7 +61,7 @@ def test_every_number_is_a_part(kind: type[Parted]) -> None:
 
 
 def test_there_is_a_scene_of_every_kind_of_body() -> None:
-    """What is tested of a scene of each kind is tested of all kinds that there are."""
+    """Tests of a scene of each kind are tests of all kinds that there are."""
     # Other tests may make kinds of their own.
     ours = {kind for kind in kinds(Body) if kind.__module__.startswith("taylor_verify.")}
     assert {type(load(name).body) for name in SCENES} == ours

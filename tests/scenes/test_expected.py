@@ -193,7 +193,7 @@ def test_an_expected_verdict_is_shown_as_such(capsys: Captured) -> None:
 def test_an_unexpected_pass_fails(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, solved: Any
 ) -> None:
-    """What was expected to be vacuous and passes is a mismatch: exit status 1, and a line says so."""
+    """A pass that was expected to be vacuous is a mismatch: exit status 1, and a line says so."""
     start, omega, *others = solved.verdicts
     passed = replace(omega, verdict=Status.PASS)
     marred = replace(solved, verdicts=(start, passed, *others))

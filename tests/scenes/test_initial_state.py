@@ -70,7 +70,7 @@ def test_a_wrong_start_is_said_first() -> None:
 
 
 def test_a_wrong_end_is_no_wrong_start() -> None:
-    """What is wrong later only fails later."""
+    """Rows that are wrong later only fail later."""
     first, omega, *_ = taylor_verify.check("euler/generic", answered(last_moved)).verdicts
     assert (first.verdict, omega.verdict) == (Status.PASS, Status.FAIL)
 

@@ -160,6 +160,8 @@ def test_texts_of_unusual_form_are_answered_at_once(text: str) -> None:
         ("2*1j", "a decimal number, got 1j @ body.moment[0], column 3"),
         ("w1*\u0661", "got '\\u0661' @ body.moment[0], column 4"),
         ("  w1 * / 2", "an expression, got `/ 2` @ body.moment[0], column 8"),
+        ("2 * (w1", "a `)` that closes this bracket, got none @ body.moment[0], column 5"),
+        ("w1^2)", "a `(` for this bracket, got none @ body.moment[0], column 5"),
         ("w1^2 + nix", "a known name, got `nix` @ body.moment[0], column 8"),
         ("u1", "a known name, got `u1` @ body.moment[0], column 1"),
         ("__import__(1)", "got `__import__` @ body.moment[0], column 1"),
@@ -261,7 +263,7 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ],
 )
 def test_a_name_that_is_taken_is_refused(tables: str, place: str) -> None:
-    """By the other model too, by a component of a vector, by Python, or made twice."""
+    """Names of the other model, of a component of a vector, of Python, or made twice are taken."""
     lines = faults("w1", tables=tables)
     assert lines
     assert all(

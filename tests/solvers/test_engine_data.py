@@ -182,7 +182,7 @@ def errors(judgement: Judgement) -> dict[str, float]:
 def test_an_engine_that_takes_the_tensor_is_judged_on_the_tensor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What float32 makes of I and omega is in the truth, and no error of the engine remains of it."""
+    """The truth has float32's rounding of I and omega, and no error of the engine remains of it."""
     sizes = errors(judged(tmp_path, 'data = "tensor"', monkeypatch))
     # Doubles throughout, and twenty units of time: far below one rounding of float32.
     assert sizes["omega"] <= FLOAT32 / 10

@@ -247,7 +247,7 @@ def test_a_script_has_a_lock_of_what_it_pins(file: Path) -> None:
 
 @pytest.mark.parametrize("file", shipped(), ids=lambda file: file.stem)
 def test_a_script_loads_no_library_to_begin_with(file: Path) -> None:
-    """What it imports before it runs is of node and of the shared file: no other fault lacks a sentence."""
+    """Imports before a script runs are of node and of the shared file: no fault lacks a sentence."""
     text = file.read_text()
     imported = set(re.findall(r'^import .*? from "(.*)";$', text, re.MULTILINE))
     assert imported - {"node:fs"} == {"./free_body.mjs"}

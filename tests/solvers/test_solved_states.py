@@ -104,7 +104,7 @@ def in_space(problem: Problem, quantities: dict[str, Any], turning: Any) -> Any:
 @pytest.mark.parametrize("name", ["f32", "f64", "mp237"])
 @pytest.mark.parametrize("end", ["7.5", "-3"])
 def test_motors_leave_the_momentum_in_space_alone(end: str, name: str) -> None:
-    """What they give to the wheels they take from the body; forwards and backwards in time."""
+    """Motors take from the body what they give to the wheels, forwards and backwards in time."""
     problem = wheels(end=end, name=name)
     quantities = solved(problem)
     with mp.workprec(300):

@@ -157,7 +157,7 @@ def test_start_near_the_unstable_axis_keeps_its_first_flip(digits: int, name: st
 
 @pytest.mark.parametrize("bits", [24, 53, 64, 107, 113, 237, 1000])
 def test_the_longest_step_of_an_order_loses_nothing_small(bits: int) -> None:
-    """Of a component that grows or turns at the fastest rate a step leaves out a thousandth of a rounding.
+    """A step leaves out a thousandth of a rounding of a component that has the fastest rate.
 
     The rest of the series of exp(i h) and of exp(h), beside the whole, is below h^(p+1)/(p+1)! times
     1/(1 - h/(p+2)); p is the order that heyoka takes for so many bits.
@@ -312,7 +312,7 @@ def test_samples_cost_no_steps(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["f80", "f128", "mp113"])
 def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """How loops are compiled changes what they cost, and not a bit of what they compute."""
+    """The compilation of loops changes their cost, and not a bit of what they compute."""
     problem = pose(load("euler/with-attitude"), rung(name))
     runs = []
     for is_optimised in (True, False):

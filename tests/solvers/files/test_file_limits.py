@@ -155,7 +155,7 @@ def test_a_file_that_is_too_large_is_not_opened(tmp_path: Path) -> None:
 def test_members_that_are_no_columns_are_refused(
     members: dict[str, bytes], fault: str, tmp_path: Path
 ) -> None:
-    """What is no array, and what is not as long as it says, is the file's fault and nobody else's."""
+    """A member that is no array, or not as long as it says, is the file's fault and nobody else's."""
     with pytest.raises(Refused, match=fault):
         read(archive(tmp_path / "mine.npz", **members))
 

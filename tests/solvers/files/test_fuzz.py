@@ -197,7 +197,7 @@ def judged_alone(file: TrajectoryFile, groups: frozenset[str]) -> FileJudgement:
 
 
 def test_the_sound_files_pass(tmp_path: Path) -> None:
-    """What is damaged is right: the rows of each format are the answer, and an answer of others fails."""
+    """Files that are damaged next are right: their rows are the answer, and an answer of others fails."""
     for name in sound(tmp_path):
         file = read(tmp_path / name)
         groups = frozenset(file.groups)

@@ -51,7 +51,7 @@ def test_every_format_has_them_by_one_list(written: Any, tmp_path: Path) -> None
 
 @pytest.mark.parametrize("theirs", [("u", "v"), ("9", "10")])
 def test_they_may_have_other_names(theirs: tuple[str, str], tmp_path: Path) -> None:
-    """By a name or by a number; one that is not there is a fault."""
+    """Columns are given by a name or by a number; one that is not there is a fault."""
     file = csv(tmp_path, (*NAMES[:8], "u", "v", "h"))
     wanted = tuple(zip(("m1", "m2"), theirs, strict=True))
     np.testing.assert_array_equal(

@@ -126,7 +126,9 @@ def _loads(
     for number, (name, each) in enumerate(judged.items(), start=1):
         if LOAD in names or (not names and each.missing_load):
             suffix = f"-{number}" if len(judged) > 1 else ""
-            yield f"{LOAD}{suffix}", missing_load.picture(document, name, each.missing_load)
+            causes = [cause.name for cause in each.causes]
+            drawn = missing_load.picture(document, name, each.missing_load, causes)
+            yield f"{LOAD}{suffix}", drawn
 
 
 def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:

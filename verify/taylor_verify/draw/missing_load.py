@@ -41,14 +41,19 @@ def _panels(rows: Numbers) -> Iterator[Panel]:
     yield Panel("L", "missing couple, body axes", rows[:, 3:], is_held=True)
 
 
-def picture(document: Document, name: str, loads: Sequence[MissingLoad]) -> Picture:
+def picture(
+    document: Document, name: str, loads: Sequence[MissingLoad], causes: Sequence[str] = ()
+) -> Picture:
     """Return the load that the rows of a file of this name ask for.
 
-    ``document`` is the exact motion. Raises NotDrawn where nothing is missing, or a cause is proven.
+    ``document`` is the exact motion. Raises NotDrawn where nothing is missing, or some causes are proven.
     """
     if not loads:
+        got = (
+            f"rows that are explained: {', '.join(causes)}" if causes else "rows that ask for none"
+        )
         raise NotDrawn(
-            f"expected rows without a proven cause that a load explains, got none @ {name}"
+            f"expected rows that ask for a load without a proven cause, got {got} @ {name}"
         )
     alt = (
         f"The load that the rows of {name} ask for and {document['scene']} does not have, from "

@@ -26,6 +26,11 @@ _MOST_EXPONENT: Final = 5000
 _NOT_SO_DEEP: Final = f"brackets, or sums without brackets, at most {MOST_DEPTH} deep"
 _LITERAL: Final = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d+))?")
 _NOT_ALLOWED: Final = re.compile(r"[^\w \t.,+\-*/^()<>=]|[^\x00-\x7f]")
+# What Python says of a bracket that stands alone, and what is missing.
+_BRACKETS: Final = {
+    "'(' was never closed": "a `)` that closes this bracket",
+    "unmatched ')'": "a `(` for this bracket",
+}
 _OPERATIONS: Final[dict[type[ast.operator], str]] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
 }  # fmt: skip
@@ -98,6 +103,8 @@ class Grammar:
                 return ast.parse(self._source.python, mode="eval").body
         except SyntaxError as error:
             offset = (error.offset or 1) - 1
+            if error.msg in _BRACKETS:
+                raise self._refusal(offset, _BRACKETS[error.msg], "none") from None
             rest = self._source.python[offset:].replace("**", "^")[:20]
             raise self._refusal(
                 offset, "an expression", f"`{rest}`" if rest else "its end"
