@@ -113,7 +113,7 @@ class _Dynamics:
         return cause
 
     def _is_exact(self, candidate: Candidate) -> bool:
-        """Return True if a candidate leaves no more than the rounding of the file, or of a fair simulator."""
+        """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator."""
         return candidate.defects < max(3 * self.floor + _NOTHING, _FAIR)
 
     @property
