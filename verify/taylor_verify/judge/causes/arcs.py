@@ -86,7 +86,7 @@ def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
     return steps
 
 
-def _parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
+def parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
     """Yield sets that one flow may have; other texts have a flow each."""
     for is_text, alike in itertools.groupby(sets, lambda changes: "acting" in changes):
         part, most = [*alike], 1 if is_text else _SETS
@@ -149,7 +149,7 @@ class Arcs:
 
         Momenta have a further column: the first row against M nu of the scene's start.
         """
-        parts = [self._defects(part, steps) for part in _parts_of(sets)]
+        parts = [self._defects(part, steps) for part in parts_of(sets)]
         return np.concatenate(parts)
 
     @cached_property

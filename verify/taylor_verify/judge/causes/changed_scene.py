@@ -61,6 +61,9 @@ def _entries_by_key(loads: Loads | None) -> dict[str, str]:
         text = f'"{place.entry}"' if isinstance(place.entry, str) else number(float(place.entry))
         key, bracket, _ = place.key.partition("[")
         entries.setdefault(key + bracket, []).append(text)
+    for state in () if loads is None else loads.held_states:
+        entries[f"states.{state.name}.every"] = [number(float(state.every))]
+        entries[f"states.{state.name}.offset"] = [number(float(state.offset))]
     return {
         key.removesuffix("["): _list(texts) if key.endswith("[") else texts[0]
         for key, texts in entries.items()

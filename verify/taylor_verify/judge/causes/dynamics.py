@@ -53,6 +53,8 @@ _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
 _NOTHING: Final = 1e-9
+# What the steps of a fair simulator leave; a near family leaves a hundred times as much.
+_FAIR: Final = 1e-6
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
 _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
@@ -60,6 +62,7 @@ _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
+_NEARLY: Final = 0.02
 _FIT_ROWS: Final = 160
 _POLISHED: Final = 4
 _PROVEN: Final = 6
@@ -132,8 +135,8 @@ class _Dynamics:
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
-        """Return True if a candidate leaves no more than the rounding of the file."""
-        return candidate.defects < 3 * self.floor + _NOTHING
+        """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator."""
+        return candidate.defects < max(3 * self.floor + _NOTHING, _FAIR)
 
     @property
     def _floor(self) -> float:
@@ -208,9 +211,10 @@ class _Dynamics:
     ) -> Iterator[Candidate]:
         """Yield fitted families; with more numbers than one that reached the rounding, none is tried."""
         counts = [c.count for c in simple if self._is_exact(c)]
+        limit = _ALIKE if counts else _LINEAR
         for each in linear:
             family = each.family
-            if each.left > (_ALIKE if counts else _LINEAR) and family.kind != "clock":
+            if each.left > limit and family.kind != "clock":
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
@@ -221,6 +225,7 @@ class _Dynamics:
                 candidate = self._fitted(family, fit.numbers, fit.size)
                 if self._is_exact(candidate):
                     counts.append(family.count)
+                    limit = min(limit, max(BETTER * each.left, _NEARLY))
                 yield candidate
 
     def _fitted(self, family: Family, numbers: Floats, size: float) -> Candidate:

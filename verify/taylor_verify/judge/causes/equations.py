@@ -176,10 +176,10 @@ class Equations:
 
     def rates(self, time: Floats, z: Floats) -> Floats:
         """Return the rates of states with or without a quaternion, a centre, and the scene's own states."""
-        n, nu = self.size, self._velocities(time, z)
+        n, nu = self.size, self.velocities(time, z)
         moving = self._slopes @ self._expressions(time, z, nu)
         if self.loads is not None and self.loads.rotor:
-            moving = moving + np.cross(self._wheels(time, z), nu, axis=1)
+            moving = moving + np.cross(self.wheels(time, z), nu, axis=1)
         out = np.empty((max(len(moving), len(z)), *z.shape[1:]))
         out[:, :n] = moving
         if z.shape[1] > n:
@@ -188,15 +188,21 @@ class Equations:
             out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)
 
-    def _velocities(self, time: Floats, z: Floats) -> Floats:
+    @property
+    def mass_sets(self) -> Floats:
+        """The mass matrices of all parameter sets."""
+        return self.mass.reshape(-1, *self.mass.shape[-2:])
+
+    def velocities(self, time: Floats, z: Floats) -> Floats:
+        """Return nu of states, (parameters, components, arcs)."""
         momenta = z[:, : self.size]
         if not self.has_momenta:
             return momenta
         if self.loads is not None and self.loads.rotor:
-            momenta = momenta - self._wheels(time, z)
+            momenta = momenta - self.wheels(time, z)
         return np.asarray(self.inverse @ momenta)
 
-    def _wheels(self, time: Floats, z: Floats) -> Floats:
+    def wheels(self, time: Floats, z: Floats) -> Floats:
         """Return the momentum of wheels that a text writes, of the scene's own states."""
         assert self.acting is not None
         when = np.broadcast_to(self.start + time, (len(z), len(time)))
@@ -258,9 +264,7 @@ class Equations:
 
     def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads, or the rates of own states, that the scene writes as texts."""
-        n, late = self.size, np.asarray(self.late, dtype=float).reshape(-1, 1)
-        moving = nu if n == 3 or self.scene_mass is None else self.scene_mass @ nu
-        state = np.concatenate([moving, z[:, n:]], axis=1).transpose(0, 2, 1)
+        late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.seen(z, nu)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         state = np.broadcast_to(state, (*when.shape, state.shape[2]))
         held = self.held
@@ -269,6 +273,14 @@ class Equations:
         values = getattr(self.acting, what)(when, state, held)
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
         return np.asarray(stacked).transpose(0, 2, 1)
+
+    def seen(self, z: Floats, nu: Floats) -> Floats:
+        """Return states as the texts of the scene read them, (parameters, arcs, components)."""
+        n, is_rigid = self.size, self.size == 3 or self.scene_mass is None
+        moving = nu if is_rigid else self.scene_mass @ nu
+        parts_ = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
+        both = (np.broadcast_to(each, (parts_, *each.shape[1:])) for each in (moving, z[:, n:]))
+        return np.concatenate([*both], axis=1).transpose(0, 2, 1)
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
         right = attitude_rate(q, W)

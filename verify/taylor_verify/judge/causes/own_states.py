@@ -1,96 +1,183 @@
-"""Scenes with other states of their own, or with loads that are held, each compared as an exact motion."""
+"""Scenes with other states of their own, or with loads that are held: the causes of their answers.
+
+No file has all states of its own, so that no arc can begin at a row: each candidate moves from the start,
+as far as the first wrong rows for a look, and over the whole answer for the proof.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from itertools import product
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.bodies import faults_of_bodies
+from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.changed_scene import changed_body
-from taylor_verify.judge.causes.exact_motion import ExactMotion
-from taylor_verify.judge.causes.proof import ROUNDINGS, may_leave
-from taylor_verify.judge.causes.terms import faults_of_terms
-from taylor_verify.scenes.bodies import Body
+from taylor_verify.judge.causes.course import courses
+from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.fault import Fault, Sizes
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.misread_states import misread_states, numbers_of_sampling
+from taylor_verify.judge.causes.proof import may_leave
+from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
+from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.states import Continuous, Held, State
+from taylor_verify.scenes.loads.states import Held
+from taylor_verify.words.causes import with_numbers
 
-_RATES: Final = tuple(Fraction(f) for f in ("2", "1/2", "4", "1/4", "5", "1/5", "10", "1/10"))
-_WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
-# What a candidate leaves of the error at the first wrong row, at most; that is so many roundings large.
-_NEAR: Final = 0.01
+# What a candidate leaves of the error at the first wrong rows, at most; that is so many roundings large.
+_NEAR: Final = 0.02
 _CLEAR: Final = 300.0
-# The work of an exact motion: to begin it, and for each row and each instant of held states.
-_BEGIN: Final = 40_000.0
-_WORK: Final = 6_000.0
-
-
-@dataclass(frozen=True)
-class _Changed:
-    name: str
-    body: Body
-    is_fault: bool = False
-
-    @property
-    def loads(self) -> Loads:
-        assert self.body.loads is not None
-        return self.body.loads
+_ROWS: Final = 6
+# A linear fit that leaves more is not tried; a fit has so many rounds.
+_LINEAR: Final = 0.5
+_ROUNDS: Final = 5
+_SETTLED: Final = 1e-10
+_MOST_STEPS: Final = 8
+_ACCURATE: Final = 1e-6
 
 
 def cause_in_states(answer: Answer) -> list[Cause]:
-    """Return the change of states, or of held loads, whose scene moves as the answer does.
+    """Return the change of states, of held loads or of the body whose scene moves as the answer does.
 
     Other changes with the same motion stand beside it.
     """
-    scene, proven = answer.scene, list[Cause]()
-    if scene is None or scene.body.loads is None or not answer.moving:
+    if answer.right.loads is None or not answer.moving:
         return []
     with suppress(Spent):
-        for changed in _candidates(scene.body, answer):
-            if proven and changed.is_fault:
-                break
-            # A change may leave a text that no scene may have, such as a jump by the state.
-            with suppress(ValueError, ArithmeticError, Unsettled):
-                if leaves := _leaves(answer, changed):
-                    proven.append(Cause(changed.name, "states", leaves))
-    alike = tuple(cause.name for cause in proven[1:])
-    return [replace(cause, alike=alike) for cause in proven[:1]]
+        return _Search(answer).causes()
+    return []
 
 
-def _leaves(answer: Answer, changed: _Changed) -> dict[str, float]:
-    """Return what a changed scene leaves of each error; empty where it is not proven."""
-    assert answer.scene is not None
-    if next(changed.loads.faults(), None):
-        return {}
-    exact = ExactMotion(replace(answer.scene, body=changed.body), answer.file.c is not None)
+class _Search:
+    def __init__(self, answer: Answer) -> None:
+        self.answer = answer
+        self.few = answer.at(np.s_[: _first_wrong(answer) + _ROWS])
+        self.steps = 1
+        while self.steps < _MOST_STEPS and not self._is_accurate():
+            self.steps *= 2
 
-    def left(rows: list[int]) -> dict[str, float]:
-        part = answer.at(rows)
-        times = [Fraction(t) for t in part.times.tolist()]
-        instants = len(changed.loads.instants(times[-1]))
-        answer.budget.spend(_BEGIN + _WORK * (len(rows) + instants))
-        motion = exact.at(times, answer.right.has_momenta)
-        errors = part.errors(motion)
-        return {name: float(np.max(errors[name])) for name in answer.failed}
+    def causes(self) -> list[Cause]:
+        """Return the proven cause with the fewest numbers, and the others beside it."""
+        for tried in (
+            (self._without_numbers, self._with_one) if self.answer.has_states else (self._held,)
+        ):
+            proven = list[Cause]()
+            with suppress(Spent):
+                proven += tried()
+            if proven:
+                others = tuple(cause.text or cause.name for cause in proven[1:])
+                return [replace(proven[0], alike=others)]
+        return []
 
-    first = _first_wrong(answer)
-    near = left([first])
-    if any(
-        near[name] > max(_NEAR * answer.error[name][first], ROUNDINGS * answer.roundings[name])
-        for name in answer.failed
-    ):
-        return {}
-    parts = {name: each / answer.worst[name] for name, each in left([*range(answer.count)]).items()}
-    return parts if max(parts.values()) <= may_leave(answer, answer.failed) else {}
+    def _is_accurate(self) -> bool:
+        (motion,) = courses(self.few, [{}], self.steps)
+        apart = np.max(np.abs(motion.v - self.few.truth.v) / self.few.sizes)
+        return bool(apart < max(_ACCURATE * self.few.off, float(np.min(self.few.rounding))))
+
+    def _held(self) -> Iterator[Cause]:
+        loads = self.answer.right.loads
+        assert loads is not None
+        yield from self._proven_faults(held_loads(loads, self.answer))
+
+    def _without_numbers(self) -> Iterator[Cause]:
+        right, loads = self.answer.right, self.answer.right.loads
+        assert loads is not None
+        yield from self._proven_faults(misread_states(loads))
+        yield from self._proven(
+            [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_angles(right)]
+        )
+
+    def _proven_faults(self, misread: Iterator[tuple[str, Loads]]) -> Iterator[Cause]:
+        """Yield the proven causes among other loads; what no scene may have is none."""
+        acting = self.answer.right.acting
+        assert acting is not None
+        with suppress(ValueError):
+            for name, loads in misread:
+                if next(loads.faults(), None) is None:
+                    yield from self._proven([Fault(name, "states", {"acting": acting.of(loads)})])
+
+    def _proven(self, faults: Sequence[Fault]) -> Iterator[Cause]:
+        sizes = [float(np.linalg.norm(rest)) for rest in self._rests([f.changes for f in faults])]
+        for fault, size in zip(faults, sizes, strict=True):
+            if size < _NEAR * self._size and (leaves := self._leaves(fault.changes, 0)):
+                yield Cause(fault.name, fault.kind, leaves, changes=fault.changes)
+
+    def _with_one(self) -> Iterator[Cause]:
+        """Yield the proven causes with one number."""
+        right, sizes = self.answer.right, Sizes.of(self.answer)
+        families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
+        one = [each for each in families if each.count == 1 and each.kind != "clock"]
+        for of_kind in (self._families(), one):
+            proven = [
+                cause for family in self._near_linear(of_kind) for cause in self._fitted(family)
+            ]
+            yield from sorted(proven, key=lambda cause: max(cause.leaves.values()))
+            if proven:
+                return
+
+    def _families(self) -> list[Family]:
+        right, loads = self.answer.right, self.answer.right.loads
+        assert loads is not None
+        return [each.family(right) for each in (*numbers_of_sampling(loads), *numbers(loads))]
+
+    def _near_linear(self, families: Sequence[Family]) -> list[Family]:
+        """Return the families whose linear fit explains the first wrong rows, the best first."""
+        base, *shifted = self._rests([{}, *(family.ahead[0] for family in families)])
+        lefts = []
+        for rest in shifted:
+            slope = rest - base
+            size = float(slope @ slope)
+            left = base - slope * (float(slope @ base) / size) if size > 0 else base
+            lefts.append(float(np.linalg.norm(left)) / self._size)
+        order = sorted(range(len(families)), key=lambda k: lefts[k])
+        return [families[k] for k in order if lefts[k] < _LINEAR]
+
+    def _fitted(self, family: Family) -> Iterator[Cause]:
+        numbers_, shift = family.right.copy(), DIFFERENCE * family.scale
+        for rows in (self.few, self.answer):
+            before = np.inf
+            for _ in range(_ROUNDS):
+                with suppress(ValueError):
+                    base, ahead = self._rests(
+                        [family.changes(numbers_), family.changes(numbers_ + shift)], rows
+                    )
+                    size = float(np.linalg.norm(base))
+                    if not size < 0.5 * before or size < _SETTLED:
+                        break
+                    slope, before = (ahead - base) / shift[0], size
+                    numbers_ = numbers_ - float(slope @ base) / float(slope @ slope)
+                    continue
+                return
+            if rows is self.few and not size < _NEAR * self._size:
+                return
+        if leaves := self._leaves(family.changes(numbers_), 1):
+            text = with_numbers(family.name, family.labels, family.right, numbers_)
+            yield Cause(family.name, family.kind, leaves, text, changes=family.changes(numbers_))
+
+    @property
+    def _size(self) -> float:
+        return float(np.linalg.norm((self.few.file.v - self.few.truth.v) / self.few.sizes))
+
+    def _rests(self, sets: Sequence[Changes], rows: Answer | None = None) -> list[Floats]:
+        """Return what each set of changes leaves of the rows, by default of the first wrong ones."""
+        answer = rows or self.few
+        motions = courses(answer, sets, self.steps)
+        rests = [((answer.file.v - motion.v) / self.answer.sizes).ravel() for motion in motions]
+        return [rest if np.all(np.isfinite(rest)) else np.full_like(rest, 1e100) for rest in rests]
+
+    def _leaves(self, changes: Changes, count: int) -> dict[str, float]:
+        """Return what a changed scene leaves of each error; empty where it is not proven."""
+        (motion,) = courses(self.answer, [changes], self.steps)
+        leaves = self.answer.leaves(motion.signed_as(self.answer.file.first_attitude))
+        worst = max(leaves.values())
+        return leaves if worst <= may_leave(self.answer, self.answer.failed, count) else {}
 
 
 def _first_wrong(answer: Answer) -> int:
@@ -102,87 +189,7 @@ def _first_wrong(answer: Answer) -> int:
     return min((int(rows[0]) for rows in clear if len(rows)), default=answer.count - 1)
 
 
-def _candidates(body: Body, answer: Answer) -> Iterator[_Changed]:
-    """Yield changed states, or held loads, and then the faults of terms and bodies."""
-    loads = body.loads
-    assert loads is not None
-    own = _of_states(loads) if loads.states else _held(loads, answer)
-    for name, changed in own:
-        yield _Changed(name, body.with_loads(changed))
-    right = answer.right
-    for fault in (*faults_of_terms(right), *faults_of_bodies(right)) if answer.has_states else ():
-        if other := changed_body(body, right, fault.changes):
-            yield _Changed(fault.name, other, is_fault=True)
-
-
-def _of_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    held, own = loads.held_states, [s for s in loads.states if isinstance(s, Continuous)]
-    for state in held:
-        yield from _without_delay(loads, state)
-        yield _late(loads, state)
-    if held:
-        yield _continuous(loads, held)
-        yield from _at_other_rates(loads, held)
-    for each, (words, factor) in product(own, _WRONG_RATES):
-        rate = tuple(f"{factor}*({entry})" for entry in each.rate)
-        yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
-
-
-def _with(loads: Loads, old: State, *new: State) -> Loads:
-    """Return the loads with other states in the place of one."""
-    states = tuple(s for each in loads.states for s in (new if each is old else (each,)))
-    return replace(loads, states=states)
-
-
-def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[tuple[str, Loads]]:
-    has_offsets = any(state.offset for state in held)
-    for factor, keeps_offset in product(_RATES, (False, True)[: 1 + has_offsets]):
-        every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
-        names = " and ".join(state.name for state in held)
-        states = tuple(_slower(state, factor, keeps_offset) for state in loads.states)
-        name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
-        name += ", with the scene's offsets" if keeps_offset else ""
-        yield name, replace(loads, states=states)
-
-
-def _ratio(factor: Fraction) -> str:
-    return f"{factor} times" if factor.denominator == 1 else f"{factor} of"
-
-
-def _slower(state: State, factor: Fraction, keeps_offset: bool) -> State:
-    if not isinstance(state, Held):
-        return state
-    offset = state.offset if keeps_offset else factor * state.offset
-    return replace(state, every=factor * state.every, offset=offset)
-
-
-def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:
-    """Yield a state that only repeats another one, without its delay."""
-    for other in loads.held_states:
-        if other is not state and state.value == other.components:
-            taken = replace(other, name=state.name, start=state.start)
-            yield f"{state.name} without its delay", _with(loads, state, taken)
-
-
-def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
-    """Return a state whose values are used one sample late."""
-    now = replace(state, name=f"{state.name}_now")
-    start = state.start or (Fraction(0),) * len(state.components)
-    late = replace(state, start=start, value=now.components)
-    name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
-    return name, _with(loads, state, now, late)
-
-
-def _continuous(loads: Loads, held: tuple[Held, ...]) -> tuple[str, Loads]:
-    """Return held states as continuous functions of the state."""
-    texts = [pair for each in held for pair in zip(each.components, each.value, strict=True)]
-    left = tuple(state for state in loads.states if not isinstance(state, Held))
-    names = " and ".join(state.name for state in held)
-    changed = replace(loads, definitions=(*loads.definitions, *texts), states=left)
-    return f"{names} continuous, where the scene samples", changed
-
-
-def _held(loads: Loads, answer: Answer) -> Iterator[tuple[str, Loads]]:
+def held_loads(loads: Loads, answer: Answer) -> Iterator[tuple[str, Loads]]:
     """Yield loads that are taken once in a row, or several times, and held in between."""
     spacing = Fraction(float(np.median(np.diff(answer.times)))).limit_denominator(10**6)
     if not spacing > 0:

@@ -124,10 +124,10 @@ def _put_all(loads: Loads, literal: str, value: float) -> Loads:
     def changed(match: re.Match[str]) -> str:
         return _written(value) if match.group() == literal else match.group()
 
-    return _rewritten(loads, lambda text: _LITERAL.sub(changed, text))
+    return rewritten(loads, lambda text: _LITERAL.sub(changed, text))
 
 
-def _rewritten(loads: Loads, change: Callable[[str], str]) -> Loads:
+def rewritten(loads: Loads, change: Callable[[str], str]) -> Loads:
     """Return the loads with every text changed."""
     keys = [place.key for place in places(loads) if isinstance(place.entry, str)]
     for key in keys:

@@ -1,0 +1,74 @@
+"""The motion of changed scenes from the start, with states of their own, for many changes at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Motion, steady_signs
+from taylor_verify.judge.causes.arcs import moved, parts_of
+from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.models import own
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.states import Instant
+
+
+def courses(answer: Answer, sets: Sequence[Changes], steps: int) -> Iterator[Motion]:
+    """Yield the motion at the rows of an answer of each set of changes."""
+    for part in parts_of(sets):
+        right = answer.right
+        equations = right.copies(part) if len(part) > 1 else right.changed(part[0])
+        rows = _course(answer, replace(equations, has_momenta=True), len(part), steps)
+        yield from (_motion(answer, each) for each in rows)
+
+
+def _course(answer: Answer, equations: Equations, sets: int, steps: int) -> Floats:
+    """Return the velocities, attitudes and centres at the rows, (sets, rows, components)."""
+    loads = equations.loads
+    assert loads is not None
+    z = np.repeat(_start(answer, equations, loads), sets // len(equations.mass_sets), axis=0)
+    held = np.tile(np.array(own.held_starts(loads), dtype=float), (sets, 1))
+    taken = {float(i.time): i for i in loads.instants(Fraction(float(answer.times[-1])))}
+    marks = np.union1d(answer.times, [*taken])
+    equations, now, rows = replace(equations, held=held), answer.begins, list[Floats]()
+    for mark in marks:
+        since, span = np.array([now]), np.array([mark - now])
+        if mark > now:
+            z = moved(answer, equations, z, since, span, steps)
+        if mark in taken:
+            held = _taken(equations, taken[mark], z, held)
+            equations = replace(equations, held=held)
+        now = mark
+        if mark in answer.times:
+            nu = equations.velocities(np.array([now]), z)
+            rows.append(np.concatenate([nu, z[:, equations.size :]], axis=1)[:, :, 0])
+    return np.stack(rows, axis=1)
+
+
+def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
+    """Return the first states, (sets, components, 1)."""
+    nu, masses = answer.start.v[0], equations.mass_sets
+    frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
+    starts = np.array(own.starts(loads), dtype=float)
+    z = np.stack([np.concatenate([mass @ nu, *frame, starts]) for mass in masses])[:, :, None]
+    if loads.rotor:
+        z[:, : equations.size] += equations.wheels(np.array([0.0]), z)
+    return z
+
+
+def _taken(equations: Equations, instant: Instant, z: Floats, held: Floats) -> Floats:
+    assert equations.acting is not None
+    states = equations.seen(z, equations.velocities(np.array([float(instant.time)]), z))[:, 0]
+    taken = [equations.acting.taken(instant, *pair) for pair in zip(states, held, strict=True)]
+    return np.array(taken)
+
+
+def _motion(answer: Answer, rows: Floats) -> Motion:
+    n, right = answer.n, answer.right
+    v = rows[:, :n] @ right.mass.T if right.has_momenta else rows[:, :n]
+    q = steady_signs(rows[:, n : n + 4])
+    return Motion(v, q, rows[:, n + 4 : n + 7] if answer.file.c is not None else None)

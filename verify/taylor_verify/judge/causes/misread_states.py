@@ -1,0 +1,160 @@
+"""Loads whose own states are run otherwise: at other times, late, without limits, wheels half modelled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import Final
+
+from taylor_verify.judge.causes.written_numbers import Number, rewritten
+from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.states import Continuous, Held, State
+
+_RATES: Final = tuple(
+    Fraction(f) for f in ("2", "1/2", "4", "1/4", "5", "1/5", "10", "1/10", "5/4", "4/5")
+)
+_WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
+
+
+def misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield the loads of a scene with own states, run otherwise, with what was done."""
+    held, own = loads.held_states, [s for s in loads.states if isinstance(s, Continuous)]
+    for state in held:
+        yield from _without_delay(loads, state)
+        yield _late(loads, state)
+    if held:
+        yield _continuous(loads, held)
+        yield from _at_other_rates(loads, held)
+    for each, (words, factor) in product(own, _WRONG_RATES):
+        rate = tuple(f"{factor}*({entry})" for entry in each.rate)
+        yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
+    if loads.rotor:
+        yield from _half_wheels(loads)
+    free = rewritten(loads, _without_limits)
+    if free != loads:
+        yield "no limits: each clip gives what stands first in it", free
+
+
+def numbers_of_sampling(loads: Loads) -> Iterator[Number]:
+    """Yield the times of sampling as numbers: the offset of each held state, and all intervals at once."""
+    for state in loads.held_states:
+        if state.offset:
+            name = f"states.{state.name}.offset"
+
+            def put(value: float, state: Held = state) -> Loads:
+                return _with(loads, state, replace(state, offset=_time(value)))
+
+            yield Number(name, float(state.offset), put)
+    if loads.held_states:
+        every = loads.held_states[0].every
+
+        def scaled(value: float) -> Loads:
+            factor = _time(value) / every
+            states = (_slower(s, factor, keeps_offset=False) for s in loads.states)
+            return replace(loads, states=tuple(states))
+
+        yield Number("every", float(every), scaled)
+
+
+def _time(value: float) -> Fraction:
+    """Return a time of sampling; raises ValueError where it is none."""
+    if not value > 0:
+        raise ValueError(value)
+    return Fraction(value).limit_denominator(10**9)
+
+
+def _with(loads: Loads, old: State, *new: State) -> Loads:
+    """Return the loads with other states in the place of one."""
+    states = tuple(s for each in loads.states for s in (new if each is old else (each,)))
+    return replace(loads, states=states)
+
+
+def _at_other_rates(loads: Loads, held: tuple[Held, ...]) -> Iterator[tuple[str, Loads]]:
+    has_offsets = any(state.offset for state in held)
+    for factor, keeps_offset in product(_RATES, (False, True)[: 1 + has_offsets]):
+        every = " and ".join(f"{float(state.every * factor):.6g}" for state in held)
+        names = " and ".join(state.name for state in held)
+        states = tuple(_slower(state, factor, keeps_offset=keeps_offset) for state in loads.states)
+        name = f"{names} taken every {every}, {_ratio(factor)} the scene's time"
+        name += ", with the scene's offsets" if keeps_offset else ""
+        yield name, replace(loads, states=states)
+
+
+def _ratio(factor: Fraction) -> str:
+    return f"{factor} times" if factor.denominator == 1 else f"{factor} of"
+
+
+def _slower(state: State, factor: Fraction, *, keeps_offset: bool) -> State:
+    if not isinstance(state, Held):
+        return state
+    offset = state.offset if keeps_offset else factor * state.offset
+    return replace(state, every=factor * state.every, offset=offset)
+
+
+def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:
+    """Yield a state that only repeats another one, without its delay."""
+    for other in loads.held_states:
+        if other is not state and state.value == other.components:
+            taken = replace(other, name=state.name, start=state.start)
+            yield f"{state.name} without its delay", _with(loads, state, taken)
+
+
+def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
+    """Return a state whose values are used one sample late."""
+    now = replace(state, name=f"{state.name}_now")
+    start = state.start or (Fraction(0),) * len(state.components)
+    late = replace(state, start=start, value=now.components)
+    name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
+    return name, _with(loads, state, now, late)
+
+
+def _continuous(loads: Loads, held: tuple[Held, ...]) -> tuple[str, Loads]:
+    """Return held states as continuous functions of the state."""
+    texts = [pair for each in held for pair in zip(each.components, each.value, strict=True)]
+    left = tuple(state for state in loads.states if not isinstance(state, Held))
+    names = " and ".join(state.name for state in held)
+    changed = replace(loads, definitions=(*loads.definitions, *texts), states=left)
+    return f"{names} continuous, where the scene samples", changed
+
+
+def _half_wheels(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield wheels of text without their reaction, or without their gyroscopic term, and none."""
+    yield "wheels left out", replace(loads, rotor=("0", "0", "0"))
+    h, own = [str(entry) for entry in loads.rotor], dict(_rates(loads))
+    turning = [
+        f"({h[2]})*w2 - ({h[1]})*w3",
+        f"({h[0]})*w3 - ({h[2]})*w1",
+        f"({h[1]})*w1 - ({h[0]})*w2",
+    ]
+    yield "no gyroscopic term of the wheels", _with_moment(loads, turning)
+    if all(entry in own or entry.replace(".", "").isdigit() for entry in h):
+        reaction = [f"({own.get(entry, 0)})" for entry in h]
+        yield "no reaction of the wheels' motors", _with_moment(loads, reaction)
+
+
+def _rates(loads: Loads) -> Iterator[tuple[str, str]]:
+    for state in loads.states:
+        if isinstance(state, Continuous):
+            yield from zip(state.components, map(str, state.rate), strict=True)
+
+
+def _with_moment(loads: Loads, texts: list[str]) -> Loads:
+    ((name, entries),) = loads.vectors
+    added = tuple(f"{entry} + {text}" for entry, text in zip(entries, texts, strict=True))
+    return replace(loads, vectors=((name, added),))
+
+
+def _without_limits(text: str) -> str:
+    """Return a text with the first argument of each clip in its place."""
+    while (at := text.find("clip(")) >= 0:
+        depth, ends = 0, list[int]()
+        for k in range(at + 4, len(text)):
+            depth += (text[k] == "(") - (text[k] == ")")
+            if (text[k] == "," and depth == 1) or not depth:
+                ends.append(k)
+            if not depth:
+                break
+        text = f"{text[:at]}({text[at + 5 : ends[0]]}){text[ends[-1] + 1 :]}"
+    return text
