@@ -219,7 +219,7 @@ def in_steps() -> Columns:
         (lambda: held(rigid()), "attitude stands still from t = 4 on, and follows the motion"),
         (lambda: set_anew(rigid()), "attitude set anew at t = 4: each piece follows the motion"),
         (lambda: saved_twice(rigid()), "each row is saved twice; of every second row: clock = 0.5"),
-        (in_steps, "beside steps of explicit Euler, h = 0.02: damping = 0.07"),
+        (in_steps, "damping = 0.07, beside steps of explicit Euler, h = 0.02"),
     ],
 )
 def test_rows_that_are_held_or_stepped_have_their_cause(

@@ -124,7 +124,8 @@ class _Dynamics:
                 cause = _Dynamics(stepped(self.answer, steps)).cause()
                 if cause is not None:
                     method = (steps.method, steps.count)
-                    return replace(cause, where=steps.words(self.answer), method=method)
+                    text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
+                    return replace(cause, text=text, method=method)
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
