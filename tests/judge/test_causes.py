@@ -288,6 +288,17 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
     assert named == {"omega is in space axes", "gyroscopic term with the other sign"}
 
 
+@pytest.mark.parametrize("factor", [10.0, 57.0, 0.16])
+def test_a_factor_near_that_of_a_unit_is_no_unit(factor: float, tmp_path: Path) -> None:
+    """A factor of 10 is not the 9.55 of turns per minute: the factor is said, and no unit."""
+    scene = load(FREE)
+    columns = columns_at(scene, scene.clock.instants)
+    scaled = {name: [factor * float(value) for value in columns[name]] for name in VECTORS["omega"]}
+    judgement = judged(tmp_path, scene, columns | scaled)
+    assert judgement.conventions == ()
+    assert [cause.name for cause in judgement.causes] == [f"omega has the factor {factor:g}"]
+
+
 # Rows.
 
 

@@ -1,4 +1,4 @@
-"""Causes of attitudes alone, of parts of a run, of an added mass, under loads that read the attitude."""
+"""Causes of attitudes alone, of parts of a run, of an added mass, of steps, under loads by the attitude."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import pytest
 from builders.trajectories import QUATERNION, Columns, file_judgement, named, write_csv
 from builders.wrong_dynamics import failure, turned
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from taylor_verify.judge.causes.answers import explained
 from taylor_verify.judge.causes.material import material_of_file
@@ -174,6 +175,58 @@ def test_a_part_of_the_run_has_its_cause(
     named_ones = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
     assert len(named_ones) == len(words)
     assert all(title.startswith(own) for title, own in zip(named_ones, words, strict=True))
+
+
+def table(made: Columns) -> Array:
+    return np.array([made[name] for name in ("w1", "w2", "w3", *QUATERNION)]).T
+
+
+def held(made: Columns) -> Columns:
+    """The attitude of row 40 in all rows that follow."""
+    each = table(made)
+    each[41:, 3:] = each[40, 3:]
+    return columns(TIMES, each, ("w1", "w2", "w3"))
+
+
+def set_anew(made: Columns) -> Columns:
+    """The attitude turned by a fixed rotation from row 40 on."""
+    each, turn = table(made), Rotation.from_rotvec([0.3, -0.2, 0.5])
+    turned_on = turn * Rotation.from_quat(np.roll(each[40:, 3:], -1, axis=1))
+    each[40:, 3:] = np.roll(turned_on.as_quat(), 1, axis=1)
+    return columns(TIMES, each, ("w1", "w2", "w3"))
+
+
+def saved_twice(made: Columns) -> Columns:
+    return columns(TIMES[:80], np.repeat(table(made)[:40], 2, axis=0), ("w1", "w2", "w3"))
+
+
+def in_steps() -> Columns:
+    """Explicit Euler in five steps a row, with a drag."""
+    h, z, made = 0.02, np.array([0.8, -0.5, 1.1, *Q]), [np.array([0.8, -0.5, 1.1, *Q])]
+    for _ in TIMES[1:]:
+        for _ in range(5):
+            w, q = z[:3], z[3:]
+            rate = np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w)) - 0.07 * w
+            z = z + h * np.concatenate([rate, turned(q, w)])
+            z[3:] /= np.linalg.norm(z[3:])
+        made.append(z)
+    return columns(TIMES, np.array(made), ("w1", "w2", "w3"))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (lambda: held(rigid()), "attitude stands still from t = 4 on, and follows the motion"),
+        (lambda: set_anew(rigid()), "attitude set anew at t = 4: each piece follows the motion"),
+        (lambda: saved_twice(rigid()), "each row is saved twice; of every second row: clock = 0.5"),
+        (in_steps, "damping = 0.07, beside steps of explicit Euler, h = 0.02"),
+    ],
+)
+def test_rows_that_are_held_or_stepped_have_their_cause(
+    made: Callable[[], Columns], words: str, tmp_path: Path
+) -> None:
+    """An attitude held or set anew, rows saved twice, a fault beside coarse steps: each has its name."""
+    assert titles(tmp_path, RIGID.format(load=""), made())[0].startswith(words)
 
 
 @pytest.mark.parametrize(

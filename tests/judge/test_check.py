@@ -113,9 +113,11 @@ def test_times_are_the_files_own(tmp_path: Path) -> None:
 
 
 def test_rows_may_run_backwards(tmp_path: Path) -> None:
-    """A file whose times decrease is the same file."""
+    """A file whose times decrease is the same file, and that they do is said."""
     turned = {name: list(values)[::-1] for name, values in exact_columns(SCENE).items()}
-    assert all_pass(checked(tmp_path, SCENE, turned))
+    judgement = checked(tmp_path, SCENE, turned)
+    assert all_pass(judgement)
+    assert any(note.startswith("the rows are reversed: ") for note in judgement.notes)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,9 @@ from taylor_verify.judge.causes.proof import chained, may_leave, with_units
 # A turn between two rows that is wrong by so many roundings, and by this part of the largest, is a jump.
 _JUMP: Final = 40.0
 _PART: Final = 1e-3
+# Jumps are few: this many, and one in so many rows.
 _FEW: Final = 3
+_ONE_IN: Final = 10
 _LAST: Final = 3
 
 
@@ -35,7 +37,7 @@ def attitude_in_pieces(answer: Answer, right: Equations) -> Cause | None:
         return None
     if still[bad].all() and len(bad) >= _LAST and _is_one_part(bad):
         return _stands_still(answer, maps, bad)
-    if len(bad) > _FEW:
+    if len(bad) > min(_FEW, answer.count // _ONE_IN):
         return None
     begins = [0, *(int(row) + 1 for row in bad)]
     listed = ", ".join(f"{answer.times[row] + answer.right.start:.6g}" for row in begins[1:])

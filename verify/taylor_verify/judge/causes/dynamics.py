@@ -113,11 +113,11 @@ class _Dynamics:
             of_group = self._linear(group)
             linear += of_group
             candidates += self._families(of_group, candidates)
-        cause = self._settled(candidates, LEAVES)
-        is_method = any(candidate.kind == "method" for candidate in candidates)
+        cause = self._settled(candidates, _PAIR if is_stepped else LEAVES)
+        is_method = is_stepped or any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
             cause = self._settled([*self._pairs(linear)], _PAIR)
-        if cause is None and not is_method and self.answer.stepping is None:
+        if cause is None and not is_method:
             cause = self._beside_steps(linear)
         return cause
 
@@ -131,7 +131,8 @@ class _Dynamics:
                 cause = _Dynamics(stepped(self.answer, steps)).cause()
                 if cause is not None:
                     method = (steps.method, steps.count)
-                    return replace(cause, where=steps.words(self.answer), method=method)
+                    text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
+                    return replace(cause, text=text, method=method)
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:

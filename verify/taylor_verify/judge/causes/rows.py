@@ -35,12 +35,11 @@ def wrong_rows(answer: Answer) -> Cause | None:
 
 
 def are_saved_twice(answer: Answer) -> bool:
-    """Return True if every second row is the row before it."""
+    """Return True if every second row is the row before it, and no other is."""
     parts = [part for part in (answer.file.v, answer.file.q, answer.file.c) if part is not None]
-    even = answer.count // 2 * 2
-    return answer.count >= _MOST_BETWEEN and all(
-        np.array_equal(part[1:even:2], part[0:even:2]) for part in parts
-    )
+    are_same = np.all([np.all(part[1:] == part[:-1], axis=1) for part in parts], axis=0)
+    is_long = answer.count >= _MOST_BETWEEN
+    return is_long and bool(np.all(are_same[::2]) and not np.any(are_same[1::2]))
 
 
 def _repeated(answer: Answer, wrong: Places) -> Cause | None:

@@ -229,7 +229,7 @@ class _Search:
         fits = self._fits(world, known)
         return any(fit.explains(self.plain, self.noise) for fit in fits)
 
-    def _with_velocities(self, given: Scene, truth: dict[str, Any]) -> dict[str, Floats]:
+    def _with_velocities(self, given: Scene, truth: Mapping[str, Any]) -> dict[str, Floats]:
         """Return the motion in doubles, with the velocities of a body in a fluid."""
         if has_velocities(given.body):
             with mp.workdps(_DIGITS):
@@ -263,7 +263,7 @@ class _Search:
             values = rotations(values) if group == "quaternion" else values
             error = max(_distance(group, values, right), beyond)
             if reading.is_factor and error > self.noise and _has_another(values, right, error):
-                error = 1.0
+                error = inf
             errors.append(error)
         enough = AS_WELL * max(min(errors), self.noise)
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]

@@ -9,7 +9,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.rotation import conjugate
 from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.values import Value
@@ -48,7 +47,7 @@ class Vector:
         """Return the departures from the form that the numbers were read by."""
         noun = FORMS[self.form].words if self.form else "a quaternion"
         noun = "an angle and an axis" if self.places else noun
-        is_other = (self.form, self.factor, self.places) != (own, 1, ())
+        is_other = self != Vector(own, is_turned=self.is_turned)
         words = [f"are {_OF_ANGLES[self.factor].format(noun)}"] if is_other else []
         return [*words, *["take space to body axes"] * self.is_turned]
 
@@ -61,7 +60,7 @@ class Vector:
         angles = [name in form.angles for name in form.columns]
         turns = [self.factor * x if a else x for x, a in zip(ordered, angles, strict=True)]
         q = form.quaternion(turns)
-        return conjugate(q) if self.is_turned else q
+        return [q[0], *(-part for part in q[1:])] if self.is_turned else q
 
     def quaternions(self, rows: Floats) -> Floats:
         """Return the quaternions of rows in doubles; NaN where the numbers are none."""
@@ -75,5 +74,6 @@ def vectors(own: str) -> Iterator[Vector]:
     for form, places in _LIKE_VECTORS if own in _FORMS else _LIKE_QUATERNIONS:
         for factor in _OF_ANGLES if FORMS[form].angles else (Fraction(1),):
             for is_turned in (False, True):
-                if (form, factor, places, is_turned) != (own, 1, (), False):
-                    yield Vector(form, factor, places, is_turned)
+                meaning = Vector(form, factor, places, is_turned)
+                if meaning != Vector(own):
+                    yield meaning
