@@ -165,6 +165,7 @@ def test_texts_of_unusual_form_are_answered_at_once(text: str) -> None:
         ("w1^2 + nix", "a known name, got `nix` @ body.moment[0], column 8"),
         ("u1", "a known name, got `u1` @ body.moment[0], column 1"),
         ("__import__(1)", "got `__import__` @ body.moment[0], column 1"),
+        ("w1(t)", "`w1` alone, as a name of the scene takes no arguments, got `w1(..)`"),
         ("w1.real", "got `w1.real` @ body.moment[0], column 1"),
         ("sin(x=w1)", "got `sin(x=w1)` @ body.moment[0], column 1"),
         ("sin(1, 2)", "one number in sin(), got 2 @ body.moment[0], column 1"),

@@ -10,6 +10,7 @@ import ast
 import re
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from operator import ge, gt, le, lt
@@ -179,11 +180,16 @@ class Grammar:
         steps = self.steps
         return steps.function("exp", steps.combined("*", e, steps.function("log", a)))
 
+    def _no_function(self, name: str) -> tuple[str, str]:
+        """Return what was expected, and what came, where a name is called that is no function."""
+        with suppress(NoStep, Unread):
+            self._named(name)
+            return f"`{name}` alone, as a name of the scene takes no arguments", f"`{name}(..)`"
+        return f"a function ({', '.join(sorted(ALL_FUNCTIONS))})", f"`{name}`"
+
     def _call(self, node: ast.expr, name: str, arguments: list[ast.expr], depth: int) -> int | None:
         if name not in ALL_FUNCTIONS:
-            return self._fault(
-                node, f"a function ({', '.join(sorted(ALL_FUNCTIONS))})", f"`{name}`"
-            )
+            return self._fault(node, *self._no_function(name))
         count = _OTHERS.get(name, 1)
         if (name in _OF_SEVERAL and not arguments) or (
             name not in _OF_SEVERAL and len(arguments) != count
