@@ -5,7 +5,7 @@ Each function imports what it needs: the two routes load different libraries.
 
 from __future__ import annotations
 
-from taylor_verify.exact.euler.fixed_axis import kept_axis
+from taylor_verify.exact.euler.fixed_axis import axis_under
 from taylor_verify.exact.euler.moments.regime import LoadedSpin
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import Solution
@@ -31,9 +31,9 @@ def enclosed(scene: Scene) -> Solution:
     spin, attitude = FreeSpin(body.inertia, start.omega), _tracked(scene, start)
     if body.is_free:
         return theta.free_rotation(spin, attitude)
-    kept = kept_axis(spin, body.moment)
-    if kept is not None:
-        return in_balls(*kept, attitude)
+    steady_axis = axis_under(spin, body.moment)
+    if steady_axis is not None:
+        return in_balls(*steady_axis, attitude)
     return loaded_rotation(LoadedSpin(body.inertia, body.moment, start.omega), attitude)
 
 

@@ -16,7 +16,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler.closed import top
-from taylor_verify.exact.euler.fixed_axis import FixedAxisRegime, kept_axis
+from taylor_verify.exact.euler.fixed_axis import FixedAxisRegime, axis_under
 from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
@@ -65,7 +65,7 @@ _LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
     ),
 }
 
-_KEPT_AXIS_STORY: Final[Mapping[FixedAxisRegime, tuple[str, ...]]] = {
+_FIXED_AXIS_STORY: Final[Mapping[FixedAxisRegime, tuple[str, ...]]] = {
     FixedAxisRegime.STEADY: (
         "The gyroscopic moment of a steady rotation balances the constant moment: omega is constant.",
     ),
@@ -98,9 +98,10 @@ def story(spin: FreeSpin) -> str:
 
 def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
     """Return the elements of a body under a constant moment; T' = M.omega, so T is not conserved."""
-    kept = kept_axis(FreeSpin(body.inertia, omega), body.moment)
-    if kept is not None:
-        return Elements(kept[0].value, (), _KEPT_AXIS_STORY[kept[0]])
+    steady_axis = axis_under(FreeSpin(body.inertia, omega), body.moment)
+    if steady_axis is not None:
+        regime, _ = steady_axis
+        return Elements(regime.value, (), _FIXED_AXIS_STORY[regime])
     try:
         spin = LoadedSpin(body.inertia, body.moment, omega)
     except NoClosedForm:

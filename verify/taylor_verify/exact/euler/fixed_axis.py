@@ -64,7 +64,7 @@ class FixedAxis:
         return _GUARD_DIGITS + decades(1 + furthest**2 / self.axis_squared) / 2
 
 
-def kept_axis(spin: FreeSpin, moment: Vector) -> tuple[FixedAxisRegime, FixedAxis] | None:
+def axis_under(spin: FreeSpin, moment: Vector) -> tuple[FixedAxisRegime, FixedAxis] | None:
     """The motion of a body that keeps its axis under a moment (not zero); None where it does not.
 
     A straight motion of a body with two equal moments of inertia is left to its own regimes.
