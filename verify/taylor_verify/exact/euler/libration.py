@@ -99,13 +99,17 @@ def pitch_of(scene: Scene) -> Pitch | None:
         if sum(map(bool, body.inertia[k])) == 1 and not any(across):
             moment = _moment(scene, k)
             if moment is not None:
-                return _pitch(scene, k, body.inertia[k][k], *moment)
+                return _pitch(scene, k, (body.inertia[k][k], start.omega[k]), moment)
     return None
 
 
 def _pitch(
-    scene: Scene, k: int, I: Fraction, n: Fraction, z1: Fraction, z2: Fraction
+    scene: Scene,
+    k: int,
+    spin: tuple[Fraction, Fraction],
+    moment: tuple[Fraction, Fraction, Fraction],
 ) -> Pitch | None:
+    (I, omega), (n, z1, z2) = spin, moment
     size = exact_root(z1**2 + z2**2)
     if not size:
         return None
@@ -119,7 +123,7 @@ def _pitch(
     # No two moments or masses are alike, so that the body has no axis of symmetry.
     linear, angular = vector(one, 1 + D, 2 + D), vector(2 / I, 3 / I, 1 / I)
     solid = ImmersedBody(diagonal(linear), ZERO_MATRIX, diagonal(angular))
-    y = vector(zero, zero, I * (scene.initial.omega[k] - n))
+    y = vector(zero, zero, I * (omega - n))
     start = Impulse(vector(a, b, zero), y, attitude=IDENTITY)
     return Pitch(replace(scene, model="kirchhoff", body=solid, initial=start), k, n)
 
