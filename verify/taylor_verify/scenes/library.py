@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import hashlib
 import os
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
@@ -73,13 +72,6 @@ def names(*folders: str) -> tuple[str, ...]:
         for file in files
         if not file.stem.isupper()
     )
-
-
-def names_by_digest() -> dict[str, str]:
-    """Return the name of each shipped scene by the digest of its text, as Scene has it."""
-    files = {name: find(name) for name in _all_names()}
-    texts = {name: file.read_text(encoding="utf-8") for name, file in files.items()}
-    return {hashlib.sha256(text.encode()).hexdigest(): name for name, text in texts.items()}
 
 
 def folders_of_plugins() -> dict[str, Path]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import index
-from taylor_verify.scenes.library import names_by_digest
+from taylor_verify.scenes import library
+from taylor_verify.scenes.reading.reader import text_of
 from taylor_verify.words.entry import Page
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.accuracy import quoted
@@ -61,7 +63,7 @@ def _with_own_names(place: Path) -> tuple[Verdict, ...]:
 
     A name that ends in .toml is that of a file, which may be a copy.
     """
-    verdicts, own = store.load(place), names_by_digest()
+    verdicts, own = store.load(place), _names_by_digest()
     for k, verdict in enumerate(verdicts):
         name = own.get(verdict.provenance["scene"], verdict.scene)
         if verdict.scene != name and not verdict.scene.endswith(".toml"):
@@ -71,6 +73,13 @@ def _with_own_names(place: Path) -> tuple[Verdict, ...]:
                 f"{expected}, got {verdict.scene!r:.60} @ verdicts[{k}].scene @ {file}"
             )
     return verdicts
+
+
+def _names_by_digest() -> dict[str, str]:
+    """Return the name of each shipped scene by the digest of its text, as Scene has it."""
+    folders = (*library.STANDARD_SET, library.EXTREMES, library.WORST, library.ENGINES)
+    texts = {name: text_of(library.find(name)) for name in library.names(*folders)}
+    return {sha256(text.encode()).hexdigest(): name for name, text in texts.items()}
 
 
 def _with_caution(place: Path, texts: Mapping[str, str]) -> dict[str, str]:

@@ -155,13 +155,16 @@ class Name:
 
     def _between_frames(self) -> tuple[Reading, ...]:
         """Return the readings of a name that has a frame in its middle: ``q_eci_w``."""
-        words = re.split("_", self._parts[0])
+        *path, name = re.split(r"[/.]", self._parts[0])
+        words = re.findall(r"[^_\[\](),\s]+", name)
         frames = [word for word in words[1:] if word in _FRAMES or word in _FRAMES_OR_AXES]
         if not frames:
             return ()
         bare = "_".join(word for word in words if word not in (*frames, _IN_BODY_AXES))
         return tuple(
-            reading._replace(spelling=_relative(reading.spelling, frames), path="_".join(frames))
+            reading._replace(
+                spelling=_relative(reading.spelling, frames), path="/".join((*path, *frames))
+            )
             for reading in self._of("", bare)
             if reading.spelling.group not in _VELOCITIES or frames[0] in _FRAMES
         )
