@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import shlex
-import shutil
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -414,7 +411,7 @@ def test_the_time_limit_is_an_environment_variable(monkeypatch: pytest.MonkeyPat
             named("process:true")
 
 
-# The worked examples.
+# The worked example.
 
 RK4 = f"process:{shlex.join([sys.executable, '-S', str(OUTSIDE / 'rk4.py')])}"
 
@@ -436,43 +433,3 @@ def test_the_example_converges_with_order_four(scene: str) -> None:
         assert other.max is not None
         # Half an order leaves room for the next term of the error, and none for orders 3 and 5.
         assert 2**3.5 <= one.max / other.max <= 2**4.5
-
-
-@pytest.fixture(scope="module")
-def rk4_in_c(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The name of the solver that is rk4.c."""
-    compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc")
-    if compiler is None:
-        pytest.skip("no C compiler")
-    built = tmp_path_factory.mktemp("c") / "rk4"
-    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2"]
-    subprocess.run([compiler, *strict, "-o", built, OUTSIDE / "rk4.c", "-lm"], check=True)
-    return f"process:{shlex.quote(str(built))}"
-
-
-@pytest.mark.parametrize("scene", SCENES)
-def test_the_example_in_c_is_the_example_in_python(scene: str, rk4_in_c: str) -> None:
-    """rk4.c and rk4.py, which need no library, answer every kind of scene alike, but for rounding."""
-    asked = pose(load(scene), rung("f64"))
-    python, c = (named(name).solve(asked) for name in (f"{RK4} step=0.1", f"{rk4_in_c} 0.1"))
-    assert python.outcome is c.outcome is Outcome.FINISHED
-    assert python.steps == c.steps
-    assert python.quantities.keys() == c.quantities.keys()
-    # A component rounds some thirty times a step, and these orbits carry it on thirtyfold.
-    allowed = 1000 * c.steps * 2.0**-53
-    for name, rows in python.quantities.items():
-        scale = max(1.0, max(abs(float(v)) for v in rows.flat))
-        assert max(abs(float(v)) for v in (rows - c.quantities[name]).flat) <= allowed * scale
-
-
-def test_the_example_in_c_passes_every_gate(rk4_in_c: str) -> None:
-    """A step short enough leaves rounding alone, and steps as the program counts them allow it."""
-    verdicts = run("euler/generic", f"{rk4_in_c} 0.001").verdicts
-    assert {v.verdict for v in verdicts} == {Status.PASS}
-
-
-def test_the_example_in_c_refuses_what_it_cannot_do(rk4_in_c: str) -> None:
-    """A step that is not positive ends it with a word on stderr, which the outcome repeats."""
-    trajectory = named(f"{rk4_in_c} 0").solve(three_instants())
-    assert trajectory.outcome is Outcome.CRASHED
-    assert trajectory.detail == "exit status 1; stderr: rk4: expected a positive step"

@@ -8,7 +8,6 @@
 
 question.py reads the question and writes the answer, equations.py has the equations; both stand beside it,
 and nothing but the standard library is needed. ``step`` is the longest step, in the scene's own time.
-rk4.c is the same program in C, in one file.
 """
 
 from __future__ import annotations
