@@ -43,7 +43,7 @@ def test_every_time_is_answered_missed_or_invented(
     assert bool(judged) is not bool(missed or invented)
     assert str(judged).count("missed: ") == missed
     if not judged:
-        with pytest.raises(AssertionError, match="missed: |invented: "):
+        with pytest.raises(AssertionError, match=r"missed: |invented: "):
             judged.raise_for_failure()
 
 
