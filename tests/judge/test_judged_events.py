@@ -40,7 +40,11 @@ def test_every_time_is_answered_missed_or_invented(
     judged = check(SCENE, times, event="w2 = 0")
     assert (len(judged.missed), len(judged.invented)) == (missed, invented)
     assert all(each.digits >= digits for each in judged.answered)
-    assert judged.passed is not (missed or invented)
+    assert bool(judged) is not bool(missed or invented)
+    assert str(judged).count("missed: ") == missed
+    if not judged:
+        with pytest.raises(AssertionError, match=r"missed: |invented: "):
+            judged.raise_for_failure()
 
 
 def test_a_tolerance_is_relative_to_the_time() -> None:

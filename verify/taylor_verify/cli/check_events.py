@@ -9,12 +9,12 @@ from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, w
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
-from taylor_verify.exact.printed_events import event_row
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.events import EventsJudgement, judge_events
 from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.files.events import read_events
+from taylor_verify.words.judged_events import event_lines
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -37,18 +37,8 @@ def answer(options: argparse.Namespace) -> Answer:
 
 
 def _text(judged: EventsJudgement) -> str:
-    page, digits = Page(), judged.true.digits
-    count = len(judged.answered)
-    page.line(bold(judged.true.text), f": {count} of {len(judged.true)} events of {judged.scene}")
-    for each in judged.answered:
-        page.line(
-            f"t = {float(each.given):.17g}: right to {each.digits} digits (off by {each.error:.1e})"
-        )
-    for event in judged.missed:
-        page.line(f"missed: t = {event_row(event, digits)['t']}")
-    for time in judged.invented:
-        page.line(f"invented: t = {float(time):.17g}")
-    for event in judged.true.undecided:
-        row = event_row(event, digits)
-        page.line(f"undecided: t = {row['t']}, within {row['radius']}")
+    page = Page()
+    page.line(bold(judged.true.text), judged.heading.removeprefix(judged.true.text))
+    for line in event_lines(judged.document()):
+        page.line(line)
     return page.text()

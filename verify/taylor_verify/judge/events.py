@@ -7,17 +7,24 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import floor, inf, log10
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.event_times import Events, EventTime, events_of
 from taylor_verify.exact.printed_events import event_row
+from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.models.problem import pose_as_stored
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import brief, refusal
+from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.words.judged_events import event_lines
 
+if TYPE_CHECKING:
+    import pandas
+
+_HEADINGS: Final = ("t", "radius", "given", "error", "digits")
 _DIGITS: Final = 30
 # A time answers an event if it is nearer than this share of the distance to the next one.
 _NEAR: Final = 4
@@ -32,9 +39,9 @@ class Answered(NamedTuple):
     digits: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EventsJudgement:
-    """The times of an event that were given, against ``true``: answered, missed, invented."""
+    """The times given for an event, against ``true``: answered, missed, invented; true if it passed."""
 
     scene: str
     true: Events
@@ -42,6 +49,34 @@ class EventsJudgement:
     missed: tuple[EventTime, ...]
     invented: tuple[Fraction, ...]
     tolerance: float | None = None
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+    def __repr__(self) -> str:
+        word = "passed" if self.passed else "failed" if self.is_wrong else "undecided"
+        return f"<{type(self).__name__}: {self.heading}: {word}>"
+
+    def __str__(self) -> str:
+        return "\n".join([self.heading, *event_lines(self.document())])
+
+    def _repr_html_(self) -> str:
+        rows = [[str(value) for value in row.values()] for row in self.document()["events"]]
+        return html_table(repr(self)[1:-1], _HEADINGS, rows, event_lines(self.document()))
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame, a row an answered event. Raises ModuleNotFoundError without pandas."""
+        return dataframe(self.document()["events"])
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""
+        if not self.passed:
+            raise NotPassed(str(self))
+
+    @property
+    def heading(self) -> str:
+        """What was asked, and how many of all events have an answer."""
+        return f"{self.true.text}: {len(self.answered)} of {len(self.true)} events of {self.scene}"
 
     @property
     def is_wrong(self) -> bool:
