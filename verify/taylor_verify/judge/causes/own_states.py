@@ -35,14 +35,14 @@ from taylor_verify.words.causes import with_numbers
 _NEAR: Final = 0.02
 _CLEAR: Final = 300.0
 _ROWS: Final = 6
-_SPREAD: Final = 12
+_SPREAD: Final = 8
 # A linear fit that leaves more is not tried; a fit has so many rounds.
 _LINEAR: Final = 0.5
 _ROUNDS: Final = 5
 _GAIN: Final = 0.5
 _SETTLED: Final = 1e-10
 _MOST_STEPS: Final = 8
-_ACCURATE: Final = 1e-6
+_ACCURATE: Final = 1e-5
 
 
 def cause_in_states(answer: Answer) -> list[Cause]:
