@@ -82,14 +82,14 @@ def names(changed: str) -> list[str]:
                 ),
                 "m and a continuous, where the scene samples",
             ),
-            (BODY.replace('kp = "0.8"', 'kp = "0.81"'), None),
+            (BODY.replace('kp = "0.8"', 'kp = "0.81"'), "kp"),
         ],
         2,
     ),
     ids=["rate", "taken later", "no delay", "late", "continuous", "gain"],
 )
 def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
-    """Another rate, a sample more or no delay has its name; another instant or gain has none."""
+    """Another rate or gain, a sample more or no delay has its name; another instant has none."""
     assert names(changed) == ([] if name is None else [name])
 
 

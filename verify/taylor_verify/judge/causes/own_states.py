@@ -35,12 +35,14 @@ from taylor_verify.words.causes import with_numbers
 _NEAR: Final = 0.02
 _CLEAR: Final = 300.0
 _ROWS: Final = 6
+_SPREAD: Final = 8
 # A linear fit that leaves more is not tried; a fit has so many rounds.
 _LINEAR: Final = 0.5
 _ROUNDS: Final = 5
+_GAIN: Final = 0.5
 _SETTLED: Final = 1e-10
 _MOST_STEPS: Final = 8
-_ACCURATE: Final = 1e-6
+_ACCURATE: Final = 1e-5
 
 
 def cause_in_states(answer: Answer) -> list[Cause]:
@@ -58,7 +60,12 @@ def cause_in_states(answer: Answer) -> list[Cause]:
 class _Search:
     def __init__(self, answer: Answer) -> None:
         self.answer = answer
-        self.few = answer.at(np.s_[: _first_wrong(answer) + _ROWS])
+        loads = answer.right.loads
+        is_held = loads is not None and loads.held_states
+        # Each instant costs as much as a row.
+        self.few = (
+            answer.at(np.s_[: _first_wrong(answer) + _ROWS]) if is_held else answer.thinned(_SPREAD)
+        )
         self.steps = 1
         while self.steps < _MOST_STEPS and not self._is_accurate():
             self.steps *= 2
@@ -70,7 +77,7 @@ class _Search:
         ):
             proven = list[Cause]()
             with suppress(Spent):
-                proven += tried()
+                proven.extend(tried())
             if proven:
                 others = tuple(cause.text or cause.name for cause in proven[1:])
                 return [replace(proven[0], alike=others)]
@@ -115,11 +122,14 @@ class _Search:
         families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
         one = [each for each in families if each.count == 1 and each.kind != "clock"]
         for of_kind in (self._families(), one):
-            proven = [
-                cause for family in self._near_linear(of_kind) for cause in self._fitted(family)
-            ]
-            yield from sorted(proven, key=lambda cause: max(cause.leaves.values()))
-            if proven:
+            is_found = False
+            for family in self._near_linear(of_kind):
+                # A step may lead to a number that no scene has.
+                with suppress(ValueError):
+                    for cause in self._fitted(family):
+                        is_found = True
+                        yield cause
+            if is_found:
                 return
 
     def _families(self) -> list[Family]:
@@ -140,26 +150,28 @@ class _Search:
         return [families[k] for k in order if lefts[k] < _LINEAR]
 
     def _fitted(self, family: Family) -> Iterator[Cause]:
-        numbers_, shift = family.right.copy(), DIFFERENCE * family.scale
-        for rows in (self.few, self.answer):
-            before = np.inf
-            for _ in range(_ROUNDS):
-                with suppress(ValueError):
-                    base, ahead = self._rests(
-                        [family.changes(numbers_), family.changes(numbers_ + shift)], rows
-                    )
-                    size = float(np.linalg.norm(base))
-                    if not size < 0.5 * before or size < _SETTLED:
-                        break
-                    slope, before = (ahead - base) / shift[0], size
-                    numbers_ = numbers_ - float(slope @ base) / float(slope @ slope)
-                    continue
-                return
-            if rows is self.few and not size < _NEAR * self._size:
-                return
-        if leaves := self._leaves(family.changes(numbers_), 1):
+        numbers_ = self._fit(family, family.right, self.few)
+        if numbers_ is None:
+            return
+        leaves = self._leaves(family.changes(numbers_), 1)
+        if not leaves and (numbers_ := self._fit(family, numbers_, self.answer)) is not None:
+            leaves = self._leaves(family.changes(numbers_), 1)
+        if leaves and numbers_ is not None:
             text = with_numbers(family.name, family.labels, family.right, numbers_)
             yield Cause(family.name, family.kind, leaves, text, changes=family.changes(numbers_))
+
+    def _fit(self, family: Family, begin: Floats, rows: Answer) -> Floats | None:
+        """Return the number that fits some rows best by Newton's method; None where none fits."""
+        value, shift, size, before = begin, DIFFERENCE * family.scale, 0.0, np.inf
+        for _ in range(_ROUNDS):
+            sets = [family.changes(value), family.changes(value + shift)]
+            base, ahead = self._rests(sets, rows)
+            size = float(np.linalg.norm(base))
+            slope = (ahead - base) / shift[0]
+            if not size < _GAIN * before or size < _SETTLED or not np.any(slope):
+                break
+            value, before = value - float(slope @ base) / float(slope @ slope), size
+        return value if size < _NEAR * self._size or rows is self.answer else None
 
     @property
     def _size(self) -> float:

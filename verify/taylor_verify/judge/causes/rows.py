@@ -112,7 +112,12 @@ def _unit(q: Floats) -> Floats:
 
 
 def _rates(answer: Answer) -> tuple[Floats, Floats]:
-    """Return the rates of v and q along the truth, with the file's sign of q."""
+    """Return the rates of v and q along the truth, with the file's sign of q.
+
+    They are unknown where they depend on states of the scene's own.
+    """
+    if answer.has_states:
+        return np.full((answer.count, answer.n), np.nan), np.full((answer.count, 4), np.nan)
     parts = [answer.truth.v, answer.truth.q]
     if answer.right.reads > 4:
         parts.append(answer.truth.c)
