@@ -25,6 +25,8 @@ _FINE: Final = 16
 _NEAR: Final = 0.2
 _MOST: Final = 200
 _METHODS: Final = 3
+# Of each method the best fits give its numbers of steps.
+_FITS: Final = 4
 _SLIGHT: Final = 1e-3
 
 
@@ -51,36 +53,60 @@ def steps_beside(
 
     ``slopes`` are those of families, (entries, numbers).
     """
-    bases = [np.zeros((arcs.of_right.size, 0)), *slopes]
-    changes = [{}, *faults]
-    every = arcs.defects(changes)
-    best = []
-    for name, method in METHODS.items():
-        if not method.is_implicit:
-            tried = _tried(
-                arcs, stride, name, method, bases, list(zip(changes, every, strict=True))
-            )
-            best += sorted(tried, key=lambda each: each.left)[:1]
-    return sorted(best, key=lambda each: each.left)[:_METHODS]
+    bases, sets = [np.zeros((arcs.of_right.size, 0)), *slopes], [{}, *faults]
+    every = list(zip(sets, arcs.defects(sets), strict=True))
+    found = [
+        Steps(name, method, count, _stepped_left(arcs, stride, method, count, changes, bases))
+        for name, method in METHODS.items()
+        if not method.is_implicit
+        for changes, count in _counts(arcs, stride, method, bases, every)
+    ]
+    best = dict[tuple[str, int], Steps]()
+    for each in sorted(found, key=lambda each: each.left):
+        best.setdefault((each.name, each.count), each)
+    return [each for each in best.values() if each.left < _NEAR][:_METHODS]
 
 
-def _tried(
+def _counts(
     arcs: Arcs,
     stride: int,
-    name: str,
     method: Method,
     bases: list[Floats],
     faults: list[tuple[Changes, Floats]],
-) -> Iterator[Steps]:
+) -> Iterator[tuple[Changes, int]]:
+    """Yield the changes that explain the defects beside a method, with numbers of steps from row to row."""
     for changes, defects in faults:
-        error = _error(arcs, method, arcs.answer.right.changed(changes))
-        size = float(np.linalg.norm(arcs.of_right))
-        for basis in bases if not changes else bases[:1]:
-            part, left = _fitted(defects.ravel(), error.ravel(), basis)
-            if part > 0 and left < _NEAR * size:
-                count = round(_FINE / stride * part ** (-1 / method.order))
-                if 1 <= count <= _MOST:
-                    yield Steps(name, method, count, left / size)
+        error = _error(arcs, method, arcs.answer.right.changed(changes)).ravel()
+        fits = [
+            _fitted(defects.ravel(), error, basis)
+            for basis in (bases if not changes else bases[:1])
+        ]
+        near = sorted((left, part) for part, left in fits if part > 0 and left < _NEAR * arcs.size)
+        some = [round(_FINE / stride * part ** (-1 / method.order)) for _, part in near[:_FITS]]
+        around = {count + more for count in some for more in (-1, 0, 1)}
+        yield from ((changes, count) for count in sorted(around) if 1 <= count <= _MOST)
+
+
+def _stepped_left(
+    arcs: Arcs, stride: int, method: Method, count: int, changes: Changes, bases: list[Floats]
+) -> float:
+    """Return the part of the defects that so many steps leave beside a family."""
+    answer, equations = arcs.answer, arcs.answer.right.changed(changes)
+    begin = arcs.begin(max(answer.n, equations.coupled))
+    (ends,) = replay(answer, method, equations, begin, arcs.since, arcs.spans, count * stride)
+    defects = ((arcs.end - ends[: answer.n]) / answer.sizes[:, None]).ravel()
+    if not np.all(np.isfinite(defects)):
+        return np.inf
+    lefts = [_across(defects, basis) for basis in (bases if not changes else bases[:1])]
+    return min(lefts) / arcs.size
+
+
+def _across(defects: Floats, columns: Floats) -> float:
+    """Return the size of what the columns leave of the defects."""
+    if not columns.shape[1]:
+        return float(np.linalg.norm(defects))
+    numbers = np.linalg.lstsq(columns, defects, rcond=1e-9)[0]
+    return float(np.linalg.norm(defects - columns @ numbers))
 
 
 def _error(arcs: Arcs, method: Method, equations: Equations) -> Floats:

@@ -114,12 +114,12 @@ class _Dynamics:
             linear += of_group
             candidates += self._families(of_group, candidates)
         cause = self._settled(candidates, _PAIR if is_stepped else LEAVES)
-        is_method = is_stepped or any(candidate.kind == "method" for candidate in candidates)
+        if is_stepped:
+            return cause
+        is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
             cause = self._settled([*self._pairs(linear)], _PAIR)
-        if cause is None and not is_method:
-            cause = self._beside_steps(linear)
-        return cause
+        return cause or self._beside_steps(linear)
 
     def _beside_steps(self, linear: list[_Linear]) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""

@@ -126,7 +126,7 @@ class _Search:
         # Every body and clock that can be tested here, the scene's own first.
         others = [w for w in worlds(self.scene, self.file.times) if self._may_explain(w)]
         own = self._fits(World(self.scene), self.own_truth)
-        tried = (*own, *(fit for world in others for fit in self.fits(world)))
+        tried = (*own, *(fit for w in others for fit in self._fits(w, self._truth(w))))
         fits = [self.plain, *(fit for fit in tried if fit.explains(self.plain, self.noise))]
         return findings_of(self.plain, *simplest(fits, self.noise), self.spacing)
 
@@ -181,12 +181,11 @@ class _Search:
         tracked = replace(given, track=frozenset(track))
         return tracked, solution(tracked)
 
-    def fits(self, world: World) -> list[Fit]:
-        """Return the best readings in a world under each renaming that leaves no group unexplained."""
-        return self._fits(world, self._truth(world))
-
     def _fits(self, world: World, known: _Truth, frames: Sequence[Frames] = ()) -> list[Fit]:
-        """Return the best readings in a world under each of ``frames``, beside a motion."""
+        """Return the best readings in a world whose motion is known, under each of ``frames``.
+
+        Without these, only renamings that leave no group unexplained are used.
+        """
         near, truth = known
         only = [group for group in self.values if not GROUPS[group].is_frame]
         columns = COLUMNS[only[0]] if len(only) == len(self.values) == 1 else ()
