@@ -1,5 +1,6 @@
-"""A rigid body under a constant moment in balls. Legend as in regime;
-|n| phi = turning t + bending t^2, c = bending/|n|, b = turning/|n|. The moment's share of w_perp is
+"""A rigid body under a constant moment in balls.
+
+Legend as in regime; |n| phi = turning t + bending t^2, c = bending/|n|, b = turning/|n|. The moment's share of w_perp is
 (1/J_d) (Re Y + Im Y e x) M_perp with
 
     Y = e^(i phi) int_0^t e^(-i phi) dt
