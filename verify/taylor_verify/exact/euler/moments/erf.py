@@ -1,6 +1,7 @@
-"""A rigid body under a constant moment in balls. Legend as in regime;
-|n| phi = turning t + bending t^2, c = bending/|n|, b = turning/|n|. The moment's share of w_perp is
-(1/J_d) (Re Y + Im Y e x) M_perp with
+"""A rigid body under a constant moment in balls.
+
+Legend as in regime; |n| phi = turning t + bending t^2, c = bending/|n|, b = turning/|n|. The moment's
+share of w_perp is (1/J_d) (Re Y + Im Y e x) M_perp with
 
     Y = e^(i phi) int_0^t e^(-i phi) dt
       = t e^(ibt/2) sinc(bt/2)                                         if c = 0,
