@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Final
 
 from taylor_verify.exact.invariants import invariants
-from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
 
 NO_MOMENTA: Final = (
@@ -34,11 +33,12 @@ def breaks_of(scene: Scene) -> str:
     return " and ".join(parts)
 
 
-def load_notes(scene: Scene, verdicts: Sequence[Verdict]) -> Iterator[str]:
-    """Yield the notes of a judged answer; none without written loads."""
+def load_notes(scene: Scene) -> Iterator[str]:
+    """Yield the notes of an answer that is judged; none without written loads."""
     if scene.body.loads is None:
         return
-    if not any(invariant.is_conserved for invariant in invariants(scene)):
+    known = invariants(scene)
+    if not any(invariant.is_conserved for invariant in known):
         yield NOTHING_CONSERVED
-    if scene.body.loads.rotor and not any(verdict.quantity == "H2" for verdict in verdicts):
+    if scene.model == "euler" and all(invariant.name != "H2" for invariant in known):
         yield NO_MOMENTA

@@ -173,7 +173,7 @@ def judge_file(
     else:
         explained = Explained()
     if judged.record is not None:
-        notes += tuple(load_notes(scene, judged.verdicts))
+        notes += tuple(load_notes(scene))
     left = () if accept_conventions else known.findings
     verdicts = with_file_kinds(judged.verdicts, file, rung, left)
     of_file = (file, known.findings, accept_conventions, breaks_of(scene))
