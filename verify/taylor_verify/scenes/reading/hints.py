@@ -201,7 +201,7 @@ def advice(part: str, model: str = "") -> Callable[[str, object], str]:
 
     def advise(key: str, value: object) -> str:
         if sentence := sentences.get(key.lower()):
-            return sentence + (_lines(key.lower(), value) if part == "initial" else "")
+            return sentence + _lines(key.lower(), value, sentence) * (part == "initial")
         here = f"[{part}]" if part else "at the top"
         places = [place for place, keys in _PLACES.items() if key in keys and place != here]
         return f"write `{key}` {'in ' * places[0].startswith('[')}{places[0]}" if places else ""
@@ -209,7 +209,7 @@ def advice(part: str, model: str = "") -> Callable[[str, object], str]:
     return advise
 
 
-def _lines(key: str, value: object) -> str:
+def _lines(key: str, value: object, sentence: str) -> str:
     """Return the lines with the numbers of a start in other people's order; empty for any other."""
     numbers = value if isinstance(value, list) else []
     if not all(isinstance(n, int | Decimal) for n in numbers):
@@ -221,7 +221,8 @@ def _lines(key: str, value: object) -> str:
         lines = _array(numbers[:3]), _array(numbers[3:])
         return ": `linear_velocity = {}`, `angular_velocity = {}`".format(*lines)
     # The largest of four numbers is the scalar as a rule.
-    if len(numbers) != 4 or abs(numbers[3]) <= max(map(abs, numbers[:3])):
+    is_attitude = "attitude" in sentence and len(numbers) == 4
+    if not is_attitude or abs(numbers[3]) <= max(map(abs, numbers[:3])):
         return ""
     last = _array([numbers[3], *numbers[:3]])
     return f"; where the scalar stands last in your file, it stands first here: `attitude = {last}`"
