@@ -231,7 +231,8 @@ class Acting:
             values = self._piece.values(self._piece.taken, self._known(self.t, state, {}))
             taken = dict(zip(self._held, values, strict=True))
             self._values |= {name: taken[name] for name in due}
-        self._begin, self._foreseen = [*map(float, state[:3]), *self._attitude], {}
+        self._begin = [*map(float, state[:3]), *self._attitude]
+        self._foreseen: dict[float, dict[str, float]] = {}
 
     def _known(self, t: float, state: Vector, own: Mapping[str, float]) -> dict[str, float]:
         attitude = continued(state[3:], self._attitude)
