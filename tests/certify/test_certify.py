@@ -234,6 +234,11 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
             {},
             r"got None @ quantities.omega\[0\]\[0\]\[1\]\n.* got 3 @ quantities.omega\[0\]\[2\]",
         ),
+        (
+            SimpleNamespace(times=[0, 4], tcs=np.full((1, 3, 1), mpf(1))),
+            {},
+            "or long double, got object",
+        ),
         (TABLE, {}, "a dense answer"),
         (SPLINE, {"tolerance": -1.0}, "a positive number"),
     ],

@@ -60,8 +60,10 @@ def _piece(names: Sequence[str], begin: Fraction, end: Fraction, row: Polynomial
 
 
 def finite_number(value: Any, place: str) -> Fraction:
+    """Return the rational that a number in binary is."""
     try:
-        return Fraction(float(value))
+        number = value if isinstance(value, float | np.floating) else float(value)
+        return Fraction(*map(int, number.as_integer_ratio()))
     except (TypeError, ValueError, OverflowError):
         raise refusal("finite numbers", brief(value), place) from None
 
@@ -133,7 +135,10 @@ def of_ode_solution(answer: Any, scene: Scene) -> Pieces:
 
 def of_taylor(answer: Any, scene: Scene) -> Pieces:
     """Return the pieces of heyoka's continuous output: powers of the time since each step began."""
-    rows = ([polynomial(c) for c in step.tolist()] for step in np.asarray(answer.tcs))
+    steps = np.asarray(answer.tcs)
+    if not issubclass(steps.dtype.type, np.floating):
+        raise refusal("coefficients in float64 or long double", f"{steps.dtype}", "answer")
+    rows = ([polynomial(c) for c in step.tolist()] for step in steps)
     return named(columns_of(scene, answer.tcs.shape[1]), list(answer.times), rows)
 
 

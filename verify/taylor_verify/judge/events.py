@@ -75,7 +75,7 @@ class EventsJudgement:
 
     @property
     def heading(self) -> str:
-        """What was asked, and how many of all events have an answer."""
+        """The question, and the number of events that have an answer."""
         return f"{self.true.text}: {len(self.answered)} of {len(self.true)} events of {self.scene}"
 
     @property
