@@ -179,7 +179,7 @@ def test_a_part_of_the_run_has_its_cause(
 @pytest.mark.parametrize(
     ("moment", "words"),
     [
-        (lambda t, w, q: -0.4 * q[1:], "one drag on all rates of turn = -0.1"),
+        (lambda t, w, q: -0.4 * q[1:], "all terms with velocities (drag) left out"),
         (lambda t, w, q: (-0.4 * q[1:] - 0.1 * w) * [1, -1, 1], "moment 2 with the other sign"),
     ],
 )
