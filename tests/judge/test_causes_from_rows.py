@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import QUATERNION, Columns, file_judgement, named, write_csv
+from builders.turns import by_turns
 from builders.wrong_dynamics import failure, turned
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
@@ -232,13 +233,42 @@ def test_rows_that_are_held_or_stepped_have_their_cause(
 @pytest.mark.parametrize(
     ("moment", "words"),
     [
-        (lambda t, w, q: -0.4 * q[1:], "one drag on all rates of turn = -0.1"),
+        (lambda t, w, q: -0.4 * q[1:], "all terms with velocities (drag) left out"),
         (lambda t, w, q: (-0.4 * q[1:] - 0.1 * w) * [1, -1, 1], "moment 2 with the other sign"),
     ],
 )
 def test_a_text_reads_the_quaternion_with_its_sign(moment: Law, words: str, tmp_path: Path) -> None:
     """A load of q1 q2 q3 has the sign of the scene's start, of which the scalar is negative here."""
     assert titles(tmp_path, RIGID.format(load=SPRING), rigid(moment=moment))[0].startswith(words)
+
+
+TEXTS = 'moment = ["0.1*sin(2*t)", "-0.05*w2", "k*(w1 - w3)"]\n[define]\nk = "1/30"'
+
+
+def waving(size: float = 0.1, pace: float = 2.0, k: float = 1 / 30) -> Law:
+    return lambda t, w, q: np.array([size * np.sin(pace * t), -0.05 * w[1], k * (w[0] - w[2])])
+
+
+@pytest.mark.parametrize(
+    ("moment", "words"),
+    by_turns(
+        [
+            (waving(size=0.12), ["`0.1` in moment 1, 0.1*sin(2*t), = 0.12 for 0.1 (+20 %)"]),
+            (waving(pace=2.1), ["`2` in moment 1, 0.1*sin(2*t), = 2.1 for 2 (+5 %)"]),
+            (waving(k=0.04), ["k = 0.04 for 0.03333333 (+20 %)"]),
+            (
+                waving(pace=2 * np.pi / 180),
+                ["`2` in moment 1, 0.1*sin(2*t), radians read as degrees"],
+            ),
+            (waving(pace=2.1, k=0.04), []),
+            (lambda t, w, q: waving(pace=2.1)(t, w, q) - 1e-3 * w**3, []),
+        ],
+        2,
+    ),
+)
+def test_one_number_of_a_text_is_named(moment: Law, words: list[str], tmp_path: Path) -> None:
+    """A number of a load's text is named by its place; two at once, or one and a cubic drag, are not."""
+    assert titles(tmp_path, RIGID.format(load=TEXTS), rigid(moment=moment)) == words
 
 
 def test_steps_under_a_load_that_reads_the_attitude_are_replayed(tmp_path: Path) -> None:

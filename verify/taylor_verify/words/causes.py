@@ -56,12 +56,20 @@ def with_numbers(
         return "clock = 0: the motion stands still"
     if name == "clock" and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
+    if labels and name.startswith("factor of ") and (words := _of_term(values[0])):
+        return f"{name.removeprefix('factor of ')} {words}"
     if labels:
         changes = _changes(labels, [float(number) for number in right], values)
         return changes if [*labels] == [name] else f"{name}: {changes}"
     largest = max(map(abs, values)) or 1.0
     cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
     return f"{name} = {' '.join(f'{value:.6g}' for value in cut)}"
+
+
+def _of_term(factor: float) -> str:
+    """Return what a factor makes of a term, in words; empty where no word says it."""
+    words = {0: "left out", -1: "with the other sign", 2: "twice"}
+    return words.get(round(factor), "") if abs(factor - round(factor)) < _WHOLE else ""
 
 
 def _pace(clock: float) -> str:

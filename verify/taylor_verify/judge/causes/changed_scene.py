@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
-from fractions import Fraction
-from typing import Any, Final, cast
+from typing import Final
 
 import numpy as np
 
@@ -13,7 +11,6 @@ from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
-from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
 
@@ -84,23 +81,6 @@ def number(value: float) -> str:
 
 def _list(parts: Iterable[str]) -> str:
     return f"[{', '.join(parts)}]"
-
-
-def changed_body(body: Body, right: Equations, changes: Changes) -> Body | None:
-    """Return a rigid body whose loads are texts, with changes of its inertia and its loads; else None."""
-    other, loads = right.changed(changes), body.loads
-    if loads is None or {"rotor", *_NO_SCENE} & set(changes) or not _is_written(other, changes):
-        return None
-    if "mass" in changes and body.MODEL == "euler":
-        inertia = tuple(tuple(map(Fraction, row)) for row in _symmetric(other.mass).tolist())
-        body = replace(cast("Any", body), inertia=inertia)
-    elif "mass" in changes:
-        return None
-    texts = load_texts(other)
-    names = VECTORS[loads.model]
-    vectors = tuple((name, tuple(texts[3 * i : 3 * i + 3])) for i, name in enumerate(names))
-    changed = body.with_loads(replace(loads, vectors=vectors))
-    return changed.with_damping(Fraction(float(other.damping)))
 
 
 def _is_written(other: Equations, changes: Changes) -> bool:

@@ -378,11 +378,16 @@ class _Dynamics:
         as_well = max(BETTER * best.defects, 5 * self.floor, _NOTHING)
         alike = [p for p in proven if p.candidate.defects <= as_well]
         # What the scene writes is nearer to its user than a term of the equations.
-        alike.sort(key=lambda each: (each.candidate.count, each.candidate.kind != WRITTEN))
+        alike.sort(key=lambda each: self._nearness(each.candidate))
         first, best = alike[0], alike[0].candidate
         text, changes = self._described(best)
         others = tuple(self._described(each.candidate)[0] for each in alike[1:])
         return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
+
+    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool]:
+        """Return how far a candidate is from the text of the scene: one without a number is nearer."""
+        has_number = " = " in self._described(candidate)[0]
+        return candidate.count, candidate.kind != WRITTEN, has_number
 
     def _described(self, candidate: Candidate) -> tuple[str, Changes]:
         """Return a candidate in words, with its changes; a body has the factor that changes the least."""

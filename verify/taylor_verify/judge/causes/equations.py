@@ -276,8 +276,8 @@ class Equations:
 
     def seen(self, z: Floats, nu: Floats) -> Floats:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""
-        n, is_rigid = self.size, self.size == 3 or self.scene_mass is None
-        moving = nu if is_rigid else self.scene_mass @ nu
+        n, mass = self.size, self.scene_mass
+        moving = nu if n == 3 or mass is None else mass @ nu
         parts_ = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
         both = (np.broadcast_to(each, (parts_, *each.shape[1:])) for each in (moving, z[:, n:]))
         return np.concatenate([*both], axis=1).transpose(0, 2, 1)

@@ -16,7 +16,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
-from taylor_verify.judge.causes.budget import Spent
+from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.course import courses
 from taylor_verify.judge.causes.equations import Changes
@@ -57,6 +57,24 @@ def cause_in_states(answer: Answer) -> list[Cause]:
     return []
 
 
+def cause_in_numbers(answer: Answer) -> list[Cause]:
+    """Return the one number of the loads' texts with which the scene moves as the answer does.
+
+    At most half of the work that may be done is done for it.
+    """
+    part = replace(answer, budget=Budget(answer.budget.left / 2))
+    with suppress(Spent):
+        search = _Search(part)
+        return _beside([*search.fitted(search.families())])
+    return []
+
+
+def _beside(proven: list[Cause]) -> list[Cause]:
+    """Return the first of some causes, with the others beside it."""
+    others = tuple(cause.text or cause.name for cause in proven[1:])
+    return [replace(cause, alike=others) for cause in proven[:1]]
+
+
 class _Search:
     def __init__(self, answer: Answer) -> None:
         self.answer = answer
@@ -79,8 +97,7 @@ class _Search:
             with suppress(Spent):
                 proven.extend(tried())
             if proven:
-                others = tuple(cause.text or cause.name for cause in proven[1:])
-                return [replace(proven[0], alike=others)]
+                return _beside(proven)
         return []
 
     def _is_accurate(self) -> bool:
@@ -121,18 +138,22 @@ class _Search:
         right, sizes = self.answer.right, Sizes.of(self.answer)
         families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
         one = [each for each in families if each.count == 1 and each.kind != "clock"]
-        for of_kind in (self._families(), one):
-            is_found = False
-            for family in self._near_linear(of_kind):
-                # A step may lead to a number that no scene has.
-                with suppress(ValueError):
-                    for cause in self._fitted(family):
-                        is_found = True
-                        yield cause
-            if is_found:
-                return
+        is_found = False
+        for cause in self.fitted(self.families()):
+            is_found = True
+            yield cause
+        if not is_found:
+            yield from self.fitted(one)
 
-    def _families(self) -> list[Family]:
+    def fitted(self, families: Sequence[Family]) -> Iterator[Cause]:
+        """Yield the proven causes among families of one number."""
+        for family in self._near_linear(families):
+            # A step may lead to a number that no scene has.
+            with suppress(ValueError):
+                yield from self._fitted(family)
+
+    def families(self) -> list[Family]:
+        """Return the families of the numbers of the texts and of sampling."""
         right, loads = self.answer.right, self.answer.right.loads
         assert loads is not None
         return [each.family(right) for each in (*numbers_of_sampling(loads), *numbers(loads))]

@@ -21,7 +21,7 @@ from taylor_verify.judge.causes.dynamics import dynamics
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.own_states import cause_in_states
+from taylor_verify.judge.causes.own_states import cause_in_numbers, cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import are_saved_twice, wrong_rows
@@ -90,9 +90,10 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     if has_wrong_attitude and _turns_too_little(answer):
         moving = []
     if moving:
-        causes = _pieces(answer) or []
-        cause = causes[-1] if causes else dynamics(answer)
-        causes = causes or ([cause] if cause else [])
+        # Another pulse is nearer than a part of the run without it.
+        causes = cause_in_numbers(answer) if len(answer.right.switches) else []
+        causes = causes or _pieces(answer) or [*filter(None, [dynamics(answer)])]
+        cause = causes[-1] if causes else None
     if not has_wrong_attitude:
         return causes
     if cause is not None and cause.leaves.get("attitude", 1.0) <= _PROVEN:

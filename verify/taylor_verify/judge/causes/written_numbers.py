@@ -112,27 +112,38 @@ def _written(value: float) -> str:
 
 
 def _repeated(loads: Loads) -> Iterator[Number]:
-    """Yield the numbers that several texts have, to be changed in all of them."""
-    texts = [place.entry for place in places(loads) if isinstance(place.entry, str)]
-    counts = Counter(match for text in texts for match in _LITERAL.findall(text))
-    for literal, count in counts.items():
-        if count > 1 and float(literal):
-            yield Number(f"every `{literal}`", float(literal), partial(_put_all, loads, literal))
+    """Yield the numbers that several texts have, of one key or of all, to be changed in all of them."""
+    counts: dict[str, Counter[str]] = {}
+    for place in places(loads):
+        if isinstance(place.entry, str):
+            for key in ("", _key(place)):
+                counts.setdefault(key, Counter()).update(_LITERAL.findall(place.entry))
+    for key, of_key in counts.items():
+        for literal, count in of_key.items():
+            is_part = not key or count < counts[""][literal]
+            if count > 1 and is_part and float(literal):
+                name = f"every `{literal}`" + (f" of {key}" if key else "")
+                yield Number(name, float(literal), partial(_put_all, loads, key, literal))
 
 
-def _put_all(loads: Loads, literal: str, value: float) -> Loads:
+def _key(place: Place) -> str:
+    return place.key.partition("[")[0]
+
+
+def _put_all(loads: Loads, key: str, literal: str, value: float) -> Loads:
     def changed(match: re.Match[str]) -> str:
         return _written(value) if match.group() == literal else match.group()
 
-    return rewritten(loads, lambda text: _LITERAL.sub(changed, text))
+    return rewritten(loads, lambda text: _LITERAL.sub(changed, text), key)
 
 
-def rewritten(loads: Loads, change: Callable[[str], str]) -> Loads:
-    """Return the loads with every text changed."""
-    keys = [place.key for place in places(loads) if isinstance(place.entry, str)]
-    for key in keys:
-        place = next(each for each in places(loads) if each.key == key)
-        loads = place.put(change(str(place.entry)))
+def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:
+    """Return the loads with every text changed, or every text of one key."""
+    texts = [place for place in places(loads) if isinstance(place.entry, str)]
+    for place in texts:
+        if key in ("", _key(place)):
+            same = next(each for each in places(loads) if each.key == place.key)
+            loads = same.put(change(str(place.entry)))
     return loads
 
 
