@@ -55,14 +55,14 @@ def steps_beside(
     """
     bases, sets = [np.zeros((arcs.of_right.size, 0)), *slopes], [{}, *faults]
     every = list(zip(sets, arcs.defects(sets), strict=True))
-    found = [
+    tried = [
         Steps(name, method, count, _stepped_left(arcs, stride, method, count, changes, bases))
         for name, method in METHODS.items()
         if not method.is_implicit
         for changes, count in _counts(arcs, stride, method, bases, every)
     ]
     best = dict[tuple[str, int], Steps]()
-    for each in sorted(found, key=lambda each: each.left):
+    for each in sorted(tried, key=lambda each: each.left):
         best.setdefault((each.name, each.count), each)
     return [each for each in best.values() if each.left < _NEAR][:_METHODS]
 
