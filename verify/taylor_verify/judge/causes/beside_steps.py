@@ -53,6 +53,8 @@ def steps_beside(
 
     ``slopes`` are those of families, (entries, numbers).
     """
+    if arcs.of_right.shape != (arcs.answer.n, len(arcs.first)):
+        return []  # momenta are compared beside the start or the attitude, which no step of v leads to
     bases, sets = [np.zeros((arcs.of_right.size, 0)), *slopes], [{}, *faults]
     every = list(zip(sets, arcs.defects(sets), strict=True))
     tried = [
