@@ -53,16 +53,18 @@ def steps_beside(
 
     ``slopes`` are those of families, (entries, numbers).
     """
+    if arcs.of_right.shape != (arcs.answer.n, len(arcs.first)):
+        return []  # momenta are compared beside the start or the attitude, which no step of v leads to
     bases, sets = [np.zeros((arcs.of_right.size, 0)), *slopes], [{}, *faults]
     every = list(zip(sets, arcs.defects(sets), strict=True))
-    found = [
+    tried = [
         Steps(name, method, count, _stepped_left(arcs, stride, method, count, changes, bases))
         for name, method in METHODS.items()
         if not method.is_implicit
         for changes, count in _counts(arcs, stride, method, bases, every)
     ]
     best = dict[tuple[str, int], Steps]()
-    for each in sorted(found, key=lambda each: each.left):
+    for each in sorted(tried, key=lambda each: each.left):
         best.setdefault((each.name, each.count), each)
     return [each for each in best.values() if each.left < _NEAR][:_METHODS]
 

@@ -17,10 +17,12 @@ from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.scene import Scene
 
-# Steps are doubled until the ends change by less than this part of the motion.
-_SETTLED: Final = 1e-9
+# Steps of half a radian are doubled, as often as this, until the ends change by less than this part.
+_STEP: Final = 0.5
+_DOUBLINGS: Final = 3
+_SETTLED: Final = 1e-6
 _FEWEST: Final = 4
-_MOST: Final = 2048
+_MOST: Final = 512
 
 
 def quick_motion(
@@ -29,7 +31,7 @@ def quick_motion(
     """Return the motion of a rounded scene at ``times``, each from the nearest of the rows at ``since``.
 
     ``known`` has the rows by quantity, as the motion that is returned. Times are since the start of the
-    scene. None where the body has loads or terms of its own, or where float64 does not follow it.
+    scene. None where the body has loads or terms of its own. What float64 does not follow is wrong.
     """
     names = MOMENTA[scene.model]
     if scene.body.loads is not None or not are_known(scene.body) or not set(names) <= set(known):
@@ -44,26 +46,32 @@ def quick_motion(
         parts.append(rows["centre"])
     nearest = np.argmin(np.abs(times[:, None] - since[None, :]), axis=1)
     begin = np.hstack(parts)[nearest].T[None]
+    n = right.size
+    omega = (begin[0, :n].T @ right.inverse.T if right.has_momenta else begin[0, :n].T)[:, -3:]
+    turn = np.max(np.linalg.norm(omega, axis=1) * np.abs(times - since[nearest]))
+    if not turn < np.inf:
+        return None
     with np.errstate(all="ignore"):
-        ends = _settled(lambda steps: _ends(right.rates, begin, since[nearest], times, steps))
-    return None if ends is None else _by_name(ends, rows, names)
+        ends = _settled(
+            lambda steps: _ends(right.rates, begin, since[nearest], times, steps),
+            int(min(max(np.ceil(turn / _STEP), _FEWEST), _MOST)),
+        )
+    return _by_name(ends, rows, names)
 
 
 def _ends(rates: Any, begin: Floats, since: Floats, times: Floats, steps: int) -> Floats:
     return np.asarray(flow(rates, begin, since, times - since, steps)[0].T)
 
 
-def _settled(ends: Any) -> Floats | None:
-    """Return the ends of as many steps as they need; None if they do not settle."""
-    steps, before = _FEWEST, ends(_FEWEST)
-    while steps < _MOST:
-        steps, after = 2 * steps, ends(2 * steps)
-        if not np.all(np.isfinite(after)):
-            return None
+def _settled(ends: Any, steps: int) -> Floats:
+    """Return the ends of as many steps as they need, or of the most."""
+    before = after = ends(steps)
+    for _ in range(_DOUBLINGS):
+        steps, before = 2 * steps, after
+        after = ends(steps)
         if np.all(np.abs(after - before) <= _SETTLED * np.max(np.abs(after), axis=0)):
-            return np.asarray(after)
-        before = after
-    return None
+            break
+    return np.asarray(after)
 
 
 def _by_name(ends: Floats, rows: Mapping[str, Floats], names: tuple[str, ...]) -> dict[str, Floats]:
