@@ -62,7 +62,9 @@ def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
 
 def _taken(equations: Equations, instant: Instant, z: Floats, held: Floats) -> Floats:
     assert equations.acting is not None
-    states = equations.seen(z, equations.velocities(np.array([float(instant.time)]), z))[:, 0]
+    states = equations.states_of_texts(z, equations.velocities(np.array([float(instant.time)]), z))[
+        :, 0
+    ]
     taken = [equations.acting.taken(instant, *pair) for pair in zip(states, held, strict=True)]
     return np.array(taken)
 

@@ -264,7 +264,7 @@ class Equations:
 
     def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads, or the rates of own states, that the scene writes as texts."""
-        late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.seen(z, nu)
+        late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.states_of_texts(z, nu)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         state = np.broadcast_to(state, (*when.shape, state.shape[2]))
         held = self.held
@@ -274,7 +274,7 @@ class Equations:
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
         return np.asarray(stacked).transpose(0, 2, 1)
 
-    def seen(self, z: Floats, nu: Floats) -> Floats:
+    def states_of_texts(self, z: Floats, nu: Floats) -> Floats:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""
         n, mass = self.size, self.scene_mass
         moving = nu if n == 3 or mass is None else mass @ nu
