@@ -152,6 +152,7 @@ def test_every_regime_is_documented() -> None:
     kirchhoff = (
         *("rest", "steady", "four-roots", "two-roots", "cubic", "hyperbolic"),
         *("trigonometric", "algebraic", "heteroclinic", "euler-top"),
+        *("planar-swing", "planar-turn", "planar-front", "planar-uniform", "planar-steady"),
     )
     euler = regimes()
     assert {"max-axis", "separatrix", "oblique-moment"} <= euler

@@ -25,6 +25,7 @@ from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.euler.theta import _Precession
 from taylor_verify.exact.kirchhoff import wave
+from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
@@ -61,9 +62,18 @@ REGIMES = {
     "hyperbolic": "kirchhoff/falling-away",
     "algebraic": "kirchhoff/algebraic-path",
     "heteroclinic": "kirchhoff/half-turn-path",
+    "planar-swing": "kirchhoff/pendulum",
+    "planar-turn": "kirchhoff/pendulum-front",
+    "planar-front": "kirchhoff/pendulum-front",
     # Begun where cn is negative.
     "min-axis, cn < 0": "euler/with-attitude",
     "two-roots, cn < 0": "kirchhoff/no-axial-impulse",
+}
+# Starts that are in the middle of a swing: from where it turns back, both senses are one motion. The
+# last stays on the border: r (p3 - p2) x2^2 = (r y1)^2 with p3 - p2 = 1/4 and r = 1.
+STARTS = {
+    "planar-turn": ((0, "4/5", "3/5"), ("9/10", 0, 0)),
+    "planar-front": ((0, "4/5", "3/5"), ("2/5", 0, 0)),
 }
 
 
@@ -77,7 +87,11 @@ def scene(regime: str) -> Scene:
             omega = (*omega[:2], -omega[2])
         initial = replace(shipped.initial, omega=omega)
         return replace(shipped, track=frozenset({"attitude"}), initial=initial)
-    return replace(shipped, track=frozenset({"attitude", "centre"}))
+    start = shipped.initial
+    if regime in STARTS:
+        linear, angular = (tuple(map(Fraction, vector)) for vector in STARTS[regime])
+        start = replace(start, linear=linear, angular=angular)
+    return replace(shipped, track=frozenset({"attitude", "centre"}), initial=start)
 
 
 def off_taylor(asked: Scene, route: str, times: Sequence[Fraction]) -> mpf:
@@ -109,9 +123,10 @@ def norm(entries: Any) -> mpf:
 
 def _backward_kirchhoff(patch: Patch) -> None:
     """x3 starts the other way, or x and y turn the other way where x3 rests; both routes ask this."""
-    right, turn = Nutation.of, Nutation.turn_rate.func
+    right, turn, rate = Nutation.of, Nutation.turn_rate.func, Plane.rate.fget
     patch.setattr(Nutation, "of", lambda *a: replace(right(*a), speed=-right(*a).speed))
     patch.setattr(Nutation, "turn_rate", property(lambda self: -turn(self)))
+    patch.setattr(Plane, "rate", property(lambda self: -rate(self)))
 
 
 def _backward_balls(patch: Patch) -> None:
