@@ -31,6 +31,7 @@ OTHERS = {
     "judge/provenance.py": "the processor, by Linux",
     "records/replacement.py": "files that it writes",
     "scenes/expected.py": "expectations of this package",
+    "solvers/engines/native.py": "scripts of engines",
     "solvers/engines/node.py": "scripts and locks of engines",
     "solvers/engines/script.py": "scripts of engines",
     "solvers/files/formats/memory.py": "the memory of its own process, by Linux",

@@ -23,9 +23,10 @@ from taylor_verify.judge.causes.bodies import (
 )
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.clock_factor import by_factor
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, both
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fitted, gauss_newton
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays
@@ -66,9 +67,6 @@ _NEARLY: Final = 0.02
 _FIT_ROWS: Final = 160
 _POLISHED: Final = 4
 _PROVEN: Final = 6
-# Factors of a clock that is not nearly right.
-_CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
-_FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
 
 
 @dataclass(frozen=True)
@@ -221,7 +219,7 @@ class _Dynamics:
                 continue
             fit = gauss_newton(self.arcs, family)
             if family.kind == "clock" and not fit.size < CAPS[1] * self.arcs.size:
-                fit = self._clock(family, fit)
+                fit = by_factor(self.arcs, family, fit)
             if np.isfinite(fit.size):
                 candidate = self._fitted(family, fit.numbers, fit.size)
                 if self._is_exact(candidate):
@@ -231,24 +229,6 @@ class _Dynamics:
 
     def _fitted(self, family: Family, numbers: Floats, size: float) -> Candidate:
         return self._candidate(family, size, family.changes(numbers), numbers)
-
-    def _clock(self, family: Family, best: Fitted) -> Fitted:
-        """Return the fit from the best factor of a grid, if that is better."""
-        tried = [
-            (float(np.linalg.norm(defects)), factor)
-            for factors, steps in ((_CLOCKS, max(self.arcs.steps, 4)), (_FRAMES, 32))
-            for defects, factor in zip(
-                self.arcs.defects([{"clock": f} for f in factors], steps), factors, strict=True
-            )
-        ]
-        size, factor = min((each for each in tried if np.isfinite(each[0])), default=(np.inf, 1.0))
-        if not size < best.size:
-            return best
-        arcs = self.arcs
-        if factor > 3:
-            arcs = replace(arcs, steps_given=min(128, int(arcs.steps * np.ceil(factor))))
-        fit = gauss_newton(arcs, family, np.array([factor]))
-        return fit if fit.size < best.size else best
 
     def _pairs(self, linear: Sequence[_Linear]) -> Iterator[Candidate]:
         """Yield the best pairs of families with at most six numbers together."""
