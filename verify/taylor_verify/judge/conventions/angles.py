@@ -151,6 +151,7 @@ def _numbers(file: TrajectoryFile) -> Rows | None:
     return numbers if numbers.width == len(FORMS[file.form].columns) else None
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
 def _are_unit(q: Floats) -> bool:
     """Return True if most rows are quaternions near unit length."""
     return bool(np.median(np.abs(np.linalg.norm(q, axis=1) - 1)) < _UNIT)
