@@ -123,6 +123,7 @@ def _sequences(own: str) -> tuple[Angles, ...]:
     return tuple(meaning for count, meaning in counted if count <= _MOST)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
 def with_angles(
     file: TrajectoryFile, scene: Scene, rung: Rung
 ) -> tuple[TrajectoryFile, Finding | None]:
@@ -151,7 +152,6 @@ def _numbers(file: TrajectoryFile) -> Rows | None:
     return numbers if numbers.width == len(FORMS[file.form].columns) else None
 
 
-@np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
 def _are_unit(q: Floats) -> bool:
     """Return True if most rows are quaternions near unit length."""
     return bool(np.median(np.abs(np.linalg.norm(q, axis=1) - 1)) < _UNIT)
