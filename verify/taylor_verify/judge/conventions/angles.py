@@ -123,6 +123,7 @@ def _sequences(own: str) -> tuple[Angles, ...]:
     return tuple(meaning for count, meaning in counted if count <= _MOST)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an answer may diverge
 def with_angles(
     file: TrajectoryFile, scene: Scene, rung: Rung
 ) -> tuple[TrajectoryFile, Finding | None]:
