@@ -71,7 +71,7 @@ def test_an_engine_of_ones_own_stands_on_a_copy(added: tuple[Path, Any]) -> None
     assert Path(page) == folder / own.LOCAL / "engines.md"
     text = Path(page).read_text(encoding="utf-8")
     assert "take **mine** with geometric:lie-rk4?step=h and a step of 0.25: omega" in text
-    assert (folder / own.LOCAL / "engines.csv").read_text(encoding="utf-8").count("\nmine,") == 2
+    assert (folder / own.LOCAL / "engines.csv").read_text(encoding="utf-8").count(",mine,") == 2
     assert "To send it" in answer.messages[0]
     assert not (folder / "data").exists()
 
@@ -95,7 +95,7 @@ def test_what_is_stored_is_not_run_again(folder: Path, monkeypatch: pytest.Monke
     called(folder, *ADD, *SOLVER)
     assert messages == []
     called(folder, *ADD, *SOLVER[:-1], "0.25,0.125")
-    assert [words.partition(" ")[0] for words in messages] == ["1/1"]
+    assert [words.partition(" ")[0] for words in messages] == ["1/1", "1"]
     assert len(rows_of(folder)) == 3
 
 
