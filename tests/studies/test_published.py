@@ -115,10 +115,9 @@ def clone(tmp_path: Path) -> Path:
 
 
 def test_a_repository_one_likes_to_receive() -> None:
-    """The published files are at most 250 and at most 9 MB, 2 MB for the trajectories of engines."""
+    """The published files are at most 250 and at most 9 MB."""
     assert len(committed()) <= 250
     assert sum((REPORTS / path).stat().st_size for path in committed()) <= 9 * MEGABYTE
-    assert (REPORTS / "data/engines/trajectories.npz").stat().st_size <= 2 * MEGABYTE
 
 
 def test_git_leaves_out_what_is_made() -> None:

@@ -194,11 +194,6 @@ class EntryList:
         return jobs
 
     @property
-    def stored(self) -> list[str]:
-        """The scenes whose trajectories are stored: the first one of each job."""
-        return [scenes[0] for scenes in self.jobs.values()]
-
-    @property
     def titles(self) -> dict[str, str]:
         """The titles of the engines by their names."""
         return {row.name: row.title for row in self.entry}

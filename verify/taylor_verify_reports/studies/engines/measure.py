@@ -29,7 +29,7 @@ from taylor_verify_reports.studies.engines.document import (
     EnginesTimings,
     Standing,
 )
-from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList, entry_list
+from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList
 from taylor_verify_reports.studies.engines.replay import errors_of, judged
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
@@ -171,7 +171,7 @@ def board_of(
     answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]
 ) -> tuple[Board, bytes]:
     """Return the document of the board made from answers, and the file of their trajectories."""
-    rows, file = trajectories.packed(answers, entry_list(name).stored)
+    rows, file = trajectories.packed(answers)
     seconds = {
         answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
     }

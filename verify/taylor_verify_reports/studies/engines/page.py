@@ -17,7 +17,7 @@ from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.engines.advice import advice, like
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.engine_page import place
-from taylor_verify_reports.studies.engines.entry import BOARDS, EntryList, entry_list, list_of
+from taylor_verify_reports.studies.engines.entry import EntryList, entry_list, list_of
 from taylor_verify_reports.studies.engines.findings import findings
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
 from taylor_verify_reports.studies.engines.ranking import (
@@ -32,8 +32,8 @@ from taylor_verify_reports.studies.engines.stored import places
 _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same "
     "numbers. Energy and angular momentum are compared too, although they do not show whether the "
-    "body is in the right place. The authors of this page sell no engine. The trajectories "
-    "on the first scene are stored, and anybody can judge them again."
+    "body is in the right place. The authors of this page sell no engine. The trajectory "
+    "of every row can be made again and judged alone: the end of this page says how."
 )
 _LEGEND: Final = (
     "*omega* is the largest error of all samples relative to the largest omega, *attitude* the largest "
@@ -274,7 +274,8 @@ def remake(board: Board) -> list[str]:
         f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
         f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
         f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
-        "page. Errors are the same on every machine. " + _stored_ones(name),
+        "page. Errors are the same on every machine. That file is made by a measurement: a clone does not "
+        "have it.",
         f"`taylor-verify board --board {name} --row N --out row.json` writes the trajectory of row N, "
         "which `check` judges alone; what is not stored is made by its engine, in seconds. "
         f"`board --json` and the sheet, `{name}.csv`, have every row with its number.",
@@ -282,16 +283,6 @@ def remake(board: Board) -> list[str]:
         f"time on {prose(machine.processor)}; no number but a time depends on the machine.",
         made_with(board.study.versions),
     ]
-
-
-def _stored_ones(board: str) -> str:
-    """Return a sentence on which trajectories there are."""
-    if board == BOARDS[0]:
-        return (
-            "That file has the newest version of each engine on the first scene of the advice; all others "
-            "are made by a measurement."
-        )
-    return "That file is made by a measurement: a clone does not have it."
 
 
 def sheet(board: Board) -> str:

@@ -46,6 +46,10 @@ def _measure(
             f"expected engines among {', '.join(entries.engines)}, got {', '.join(unknown)}"
         )
     store = Unfinished(folder / UNFINISHED / name)
+    if rejudge and known and all(answer.states is None for answer in known):
+        raise NotMeasured(
+            f"expected {stored.places(name).trajectories} below {folder}, got none: measure the board first"
+        )
     if rejudge:
         answers = judged_again(known, progress.say, workers)
     else:

@@ -8,7 +8,7 @@ of the file depend only on the numbers.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -26,20 +26,16 @@ from taylor_verify_reports.studies.engines.replay import States
 from taylor_verify_reports.studies.engines.stored import places
 
 
-def packed(
-    answers: Iterable[Answer], scenes: Collection[str] | None = None
-) -> tuple[list[EngineRow], bytes]:
+def packed(answers: Iterable[Answer]) -> tuple[list[EngineRow], bytes]:
     """Return the rows of answers with the places of their trajectories, and the file of trajectories.
 
-    The file has the trajectories of the newest version of each engine, the first in its rows; on some
-    ``scenes``, or on all.
+    The file has the trajectories of the newest version of each engine, the first in its rows.
     """
     rows, arrays, newest = [], dict[str, list[States]](), dict[str, str]()
     for answer in answers:
         place = NOT_STORED
         is_newest = newest.setdefault(answer.row.engine, answer.row.version) == answer.row.version
-        is_asked = scenes is None or answer.row.scene in scenes
-        if answer.states is not None and is_newest and is_asked:
+        if answer.states is not None and is_newest:
             stored = arrays.setdefault(answer.row.array, [])
             place = len(stored)
             stored.append(answer.states)
@@ -54,7 +50,7 @@ def packed(
 def load(folder: Path, board: str = BOARDS[0]) -> Mapping[str, States]:
     """Return the arrays of a board that are stored below a report folder, by their names.
 
-    There are none before the board was measured in this checkout: most boards' files are not committed.
+    There are none before the board was measured in this checkout: their files are not committed.
     Raises OSError for a file that cannot be read, and ValueError for one that is something else.
     """
     place = folder / places(board).trajectories
