@@ -258,7 +258,7 @@ def waving(size: float = 0.1, pace: float = 2.0, k: float = 1 / 30) -> Law:
             (waving(k=0.04), ["k = 0.04 for 0.03333333 (+20 %)"]),
             (
                 waving(pace=2 * np.pi / 180),
-                ["`2` in moment 1, 0.1*sin(2*t), radians read as degrees"],
+                ["`2` in moment 1, 0.1*sin(2*t), degrees and radians exchanged"],
             ),
             (waving(pace=2.1, k=0.04), []),
             (lambda t, w, q: waving(pace=2.1)(t, w, q) - 1e-3 * w**3, []),

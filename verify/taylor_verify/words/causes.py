@@ -108,13 +108,14 @@ def _change(label: str, old: float, value: float) -> str:
 
 def missing_load_line(loads: Sequence[MissingLoad]) -> str:
     """Return the load between rows as a sentence, at a few of its times."""
-    noun = "moment" if len(loads[0].load) == 3 else "force and couple"
+    is_moment = len(loads[0].load) == 3
+    noun, what = ("moment", "omega") if is_moment else ("force and couple", "the velocities")
     few = [loads[k * (len(loads) - 1) // (_TIMES - 1)] for k in range(_TIMES)]
     some = list(dict.fromkeys(few))
     listed = "; ".join(f"t = {each.t:.6g}: {_vector(each.load)}" for each in some)
     return (
-        f"no cause is proven; the rows follow if from t = {loads[0].t:.6g} to {loads[-1].until:.6g} a "
-        f"{noun} acts (body axes) that the scene does not have: {listed}"
+        f"no cause is proven; the rows of {what} follow if from t = {loads[0].t:.6g} to "
+        f"{loads[-1].until:.6g} a {noun} acts (body axes) that the scene does not have: {listed}"
     )
 
 

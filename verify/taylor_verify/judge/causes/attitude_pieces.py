@@ -31,9 +31,12 @@ def attitude_in_pieces(answer: Answer, right: Equations) -> Cause | None:
     maps = np.asarray(ends[:, n:].transpose(2, 1, 0))
     turned = np.einsum("aij,aj->ai", maps, q[:-1])
     wrong = angles(q[1:], turned / np.linalg.norm(turned, axis=1, keepdims=True))
+    # What turns more than the file's own omega lets it is no jump of the attitude alone.
+    apart = np.linalg.norm(arcs.end[-3:] - ends[0, n - 3 : n], axis=0)
+    by_omega = np.abs(arcs.spans) * apart
     bad = np.flatnonzero(wrong > max(_JUMP * answer.roundings["attitude"], _PART * np.max(wrong)))
     still = np.all(q[1:] == q[:-1], axis=1)
-    if not len(bad) or bad[0] == 0:
+    if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= by_omega[bad]):
         return None
     if still[bad].all() and len(bad) >= _LAST and _is_one_part(bad):
         return _stands_still(answer, maps, bad)

@@ -41,6 +41,16 @@ class Candidate:
             return self.name
         return with_numbers(self.name, self.family.labels, self.family.right, self.numbers)
 
+    @property
+    def is_nothing(self) -> bool:
+        """True for a factor that prints as 1, and for a step back in time: no causes."""
+        if self.numbers is None:
+            return False
+        if self.kind == "damping step":
+            return not self.numbers[0] > 0
+        is_factor = self.kind == "clock" or self.name.startswith("factor")
+        return is_factor and f"{self.numbers[0]:.6g}" == "1"
+
 
 @dataclass(frozen=True)
 class Cause:

@@ -26,10 +26,11 @@ from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.clock_factor import by_factor
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, both
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family, gauss_newton
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, across, gauss_newton, orthonormal
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays
+from taylor_verify.judge.causes.short_numbers import shortened
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
@@ -196,14 +197,10 @@ class _Dynamics:
             first += family.count
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
             if np.all(np.isfinite(slopes)) and np.any(slopes):
-                basis = _basis(slopes * family.scale, 1e-6)
-                rest = self._across(basis, self.arcs.of_right.ravel())
+                basis = orthonormal(slopes * family.scale, 1e-6)
+                rest = across(basis, self.arcs.of_right.ravel())
                 linear.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
         return sorted(linear, key=lambda each: (each.family.count, each.left))
-
-    @staticmethod
-    def _across(basis: Floats, vector: Floats) -> Floats:
-        return np.asarray(vector - basis @ (basis.T @ vector))
 
     def _families(
         self, linear: Sequence[_Linear], simple: Sequence[Candidate]
@@ -234,10 +231,10 @@ class _Dynamics:
         """Yield the best pairs of families with at most six numbers together."""
         few = [each for each in linear if each.family.count <= 3]
         defects, size = self.arcs.of_right.ravel(), self.arcs.size
-        bases = [_basis(each.slopes * each.family.scale, 1e-6) for each in few]
+        bases = [orthonormal(each.slopes * each.family.scale, 1e-6) for each in few]
         classes = [_OF_INERTIA.get(each.family.kind, each.family.kind) for each in few]
         tried = []
-        rests = [self._across(basis, defects) for basis in bases]
+        rests = [across(basis, defects) for basis in bases]
         for i, k in combinations(range(len(few)), 2):
             count = few[i].family.count + few[k].family.count
             if (
@@ -246,8 +243,8 @@ class _Dynamics:
                 or min(few[i].left, few[k].left) > 0.97
             ):
                 continue
-            basis = _basis(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
-            left = float(np.linalg.norm(self._across(basis, rests[i]))) / size
+            basis = orthonormal(bases[k] - bases[i] @ (bases[i].T @ bases[k]), 1e-9)
+            left = float(np.linalg.norm(across(basis, rests[i]))) / size
             if left < 0.15:
                 tried.append((left * 3.0**count, i, k))
         for _, i, k in sorted(tried)[:8]:
@@ -313,7 +310,7 @@ class _Dynamics:
                 candidate, leaves, worst = better.candidate, better.leaves, better.worst
         part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
         allowed = max(most * part, self._floor)
-        if worst > min(allowed, CAPS[min(candidate.count, 1)]) or _is_nothing(candidate):
+        if worst > min(allowed, CAPS[min(candidate.count, 1)]) or candidate.is_nothing:
             return None
         return _Proven(candidate, leaves, worst)
 
@@ -359,10 +356,29 @@ class _Dynamics:
         alike = [p for p in proven if p.candidate.defects <= as_well]
         # What the scene writes is nearer to its user than a term of the equations.
         alike.sort(key=lambda each: self._nearness(each.candidate))
-        first, best = alike[0], alike[0].candidate
+        first, best = alike[0], self._shortened(alike[0])
         text, changes = self._described(best)
         others = tuple(self._described(each.candidate)[0] for each in alike[1:])
         return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
+
+    def _shortened(self, proven: _Proven) -> Candidate:
+        """Return a candidate whose numbers print with few digits, if these explain as much."""
+        candidate = proven.candidate
+        family, numbers = candidate.family, candidate.numbers
+        if family is None or numbers is None or family.count > _FEW:
+            return candidate
+        size, moving = candidate.defects * self.arcs.size, self.answer.moving
+
+        def leaves(short: Floats) -> float:
+            with suppress(Spent, ValueError):
+                motion = self._fitted(family, short, size).prove()
+                if motion is not None:
+                    left = self.answer.leaves(motion)
+                    return max(left[name] for name in moving)
+            return float("inf")
+
+        worst = max(proven.worst, self._floor / ROUNDINGS)
+        return self._fitted(family, shortened(numbers, family.scale, worst, leaves), size)
 
     def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool]:
         """Return how far a candidate is from the text of the scene: one without a number is nearer."""
@@ -383,17 +399,3 @@ class _Dynamics:
 
 def _simplest(candidate: Candidate) -> tuple[int, float]:
     return candidate.count, candidate.defects
-
-
-def _is_nothing(candidate: Candidate) -> bool:
-    """Return True for a factor that prints as 1, and for a step back in time: no causes."""
-    if candidate.kind == "damping step" and candidate.numbers is not None:
-        return not candidate.numbers[0] > 0
-    is_factor = candidate.kind == "clock" or candidate.name.startswith("factor")
-    return is_factor and candidate.numbers is not None and f"{candidate.numbers[0]:.6g}" == "1"
-
-
-def _basis(columns: Floats, least: float) -> Floats:
-    """Return an orthonormal basis of the columns, without directions below a part of the largest."""
-    U, singular, _ = np.linalg.svd(columns, full_matrices=False)
-    return np.asarray(U[:, singular > least * max(singular[0], 1e-300)])

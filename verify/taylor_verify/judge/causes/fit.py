@@ -111,3 +111,14 @@ def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> list[Floats]
 def _sizes(defects: Floats) -> Floats:
     sizes = np.linalg.norm(defects.reshape(len(defects), -1), axis=1)
     return np.where(np.isfinite(sizes), sizes, np.inf)
+
+
+def orthonormal(columns: Floats, least: float) -> Floats:
+    """Return an orthonormal basis of the columns, without directions below a part of the largest."""
+    U, singular, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(U[:, singular > least * max(singular[0], 1e-300)])
+
+
+def across(basis: Floats, vector: Floats) -> Floats:
+    """Return a vector without its part in the span of an orthonormal basis."""
+    return np.asarray(vector - basis @ (basis.T @ vector))

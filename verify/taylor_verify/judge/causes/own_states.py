@@ -25,6 +25,7 @@ from taylor_verify.judge.causes.fit import DIFFERENCE, Family
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.misread_states import misread_states, numbers_of_sampling
 from taylor_verify.judge.causes.proof import may_leave
+from taylor_verify.judge.causes.short_numbers import shortened
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
 from taylor_verify.scenes.loads.loads import Loads
@@ -178,8 +179,20 @@ class _Search:
         if not leaves and (numbers_ := self._fit(family, numbers_, self.answer)) is not None:
             leaves = self._leaves(family.changes(numbers_), 1)
         if leaves and numbers_ is not None:
+            worst = max(leaves.values())
+            numbers_ = shortened(
+                numbers_, family.scale, worst, lambda short: self._worst_left(family, short)
+            )
+            leaves = self._leaves(family.changes(numbers_), 1)
             text = with_numbers(family.name, family.labels, family.right, numbers_)
             yield Cause(family.name, family.kind, leaves, text, changes=family.changes(numbers_))
+
+    def _worst_left(self, family: Family, numbers_: Floats) -> float:
+        """Return the largest part of an error that a family leaves; infinite where it is not proven."""
+        try:
+            return max(self._leaves(family.changes(numbers_), 1).values(), default=float("inf"))
+        except ValueError:
+            return float("inf")
 
     def _fit(self, family: Family, begin: Floats, rows: Answer) -> Floats | None:
         """Return the number that fits some rows best by Newton's method; None where none fits."""

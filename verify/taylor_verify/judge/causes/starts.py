@@ -66,8 +66,8 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
             leaves,
         )
     name = (
-        f"exact motion between jumps at t = {times}: each piece is the scene's motion from its own "
-        "first row"
+        f"exact motion between jumps at t = {times}, or loads for a short time before them: each piece is "
+        "the scene's motion from its own first row"
     )
     return Cause(name, "jump", leaves)
 

@@ -25,7 +25,9 @@ _LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _VELOCITY: Final = re.compile(r"\b[uw][123]\b")
 _NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
-_ANGLES: Final = (("radians read as degrees", pi / 180), ("degrees read as radians", 180 / pi))
+# A number below a fraction line makes the one of the other.
+_ANGLES: Final = (pi / 180, 180 / pi)
+_EXCHANGED: Final = "degrees and radians exchanged"
 _DIGITS: Final = 15
 _MOST: Final = 60
 
@@ -60,9 +62,9 @@ def numbers(loads: Loads) -> list[Number]:
 def faults_of_angles(right: Equations) -> Iterator[Fault]:
     """Yield the numbers of sines and cosines in degrees for radians, and the other way round."""
     for number in () if right.loads is None else numbers(right.loads):
-        for words, factor in _ANGLES if number.is_angle else ():
+        for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
-            yield Fault(f"{number.name} {words}", KIND, changes)
+            yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
 
 
 def _is_free(number: Number) -> bool:
