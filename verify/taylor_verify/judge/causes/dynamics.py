@@ -187,11 +187,8 @@ class _Dynamics:
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         sets = [changes for family in families for changes in family.ahead]
-        defects, first, linear = (
-            self.arcs.defects([{}, *sets], self.arcs.few_steps),
-            1,
-            list[_Linear](),
-        )
+        defects, first = self.arcs.defects([{}, *sets], self.arcs.few_steps), 1
+        linear = list[_Linear]()
         for family in families:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
