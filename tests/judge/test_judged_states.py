@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -17,7 +17,7 @@ from builders.turns import by_turns
 from builders.written_loads import End, Evaluated, end_of
 from mpmath import mp, mpf
 
-from taylor_verify import check, explain
+from taylor_verify import check, explain, solve
 from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.path_times import times_of_run
 from taylor_verify.exact.route import solution
@@ -97,6 +97,26 @@ def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str])
             values = [*end.state[:7], *(v for name in names for v in end.own[name])]
             out.writerow([repr(float(value)) for value in (time, *values)])
     return path
+
+
+@pytest.mark.parametrize("form", [repr, "{:.17g}".format], ids=["shortest", "seventeen digits"])
+def test_a_row_on_an_instant_is_one_however_its_time_is_written(
+    form: Callable[[float], str], tmp_path: Path
+) -> None:
+    """0.1 in a text is a little earlier than the double at which a value was taken, and means it."""
+    tenths = tuple(Fraction(k, 10) for k in range(21))
+    scene = replace(satellite(states("1/10")), clock=Clock(Fraction(0), tenths))
+    answer = solve(scene)
+    rows = np.hstack([answer[name] for name in ("omega", "quaternion", "m", "i")]).astype(float)
+    header = "t,w1,w2,w3,q0,q1,q2,q3,m1,m2,i1,i2"
+    lines = [
+        ",".join([form(float(t)), *map(repr, row)])
+        for t, row in zip(tenths, rows.tolist(), strict=True)
+    ]
+    file = tmp_path / "run.csv"
+    file.write_text("\n".join([header, *lines]))
+    judgement = check(scene, file)
+    assert judgement.passed, str(judgement)
 
 
 @cache

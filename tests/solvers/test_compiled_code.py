@@ -77,8 +77,6 @@ def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
         {"name": "mp237"},
         {"name": "mp113"},
         {"name": "mp113", "tolerance": Fraction(1, 1000)},
-        {"literals": problem.parameters},
-        {"literals": tuple(2 * value for value in problem.parameters)},
     ):
         before = len(files(folder))
         compile_afresh(**other)

@@ -18,9 +18,9 @@ def shortened(
     numbers: Floats, scale: Floats, worst: float, leaves: Callable[[Floats], float]
 ) -> Floats:
     """Return the numbers with the fewest digits that leave at most ``worst``; else as they are."""
-    kept = np.where(np.abs(numbers) > _NOTHING * scale, numbers, 0.0)
+    large = np.where(np.abs(numbers) > _NOTHING * scale, numbers, 0.0)
     for digits in _DIGITS:
-        short = np.array([float(f"{number:.{digits}g}") for number in kept])
+        short = np.array([float(f"{number:.{digits}g}") for number in large])
         if leaves(short) <= worst:
             return short
     return numbers
