@@ -65,7 +65,6 @@ _no_compilation.__name__ = "taylor_adaptive"
 
 def test_unlike_integrators_are_unlike_files(folder: Path) -> None:
     """Rung, tolerance, equations, literals and optimisation are each in the name of a file."""
-    problem = pose(load("euler/generic"), rung("f64"))
     compile_afresh()
     compile_afresh("f80")
     for other in (

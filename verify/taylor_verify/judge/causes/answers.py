@@ -15,7 +15,6 @@ from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.material import (
-    MOVING,
     are_known,
     material_of_file,
     material_of_trajectory,
@@ -50,6 +49,8 @@ _NO_ROTATION: Final = 1e-5
 _MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
+# What may be spent on the load that explains the rows: it is told where the search has ended.
+_FOR_A_LOAD: Final = 3_000_000.0
 
 
 @dataclass(frozen=True)
@@ -81,9 +82,9 @@ def causes_of_file(
         answer = material_of_file(first, rung, conventions, judged.verdicts, every)
         if answer is not None:
             known = explained(answer)
-            # A convention reaches the rounding of what it reads: no load is missing there.
-            is_read = not MOVING.isdisjoint(conventions.readings)
-            return replace(known, facts=facts, missing_load=() if is_read else known.missing_load)
+            # A convention tells the story of the rows: no load is missing beside it.
+            missing = () if conventions.findings else known.missing_load
+            return replace(known, facts=facts, missing_load=missing)
     return Explained(facts=facts)
 
 
@@ -123,16 +124,15 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
 
 def explained(answer: Answer) -> Explained:
     """Return the causes of an answer with their sentences; none at the end of the budget."""
-    try:
+    causes: list[Cause] = []
+    with suppress(*_SILENT):
         causes = causes_of(answer)
-    except _SILENT:
-        return Explained()
     causes = [*causes, *plugged_causes(answer)] if answer.has_rates else _of_frame(answer, causes)
     is_motion = bool(causes) and not any(map(_is_convention, causes))
     missing: tuple[MissingLoad, ...] = ()
-    if not causes and answer.has_rates:
+    if not causes and answer.has_rates and not set(answer.moving).isdisjoint(answer.failed):
         with suppress(*_SILENT):
-            missing = missing_load(replace(answer, budget=Budget()))
+            missing = missing_load(replace(answer, budget=Budget(_FOR_A_LOAD)))
     likely = tuple(_likely(cause, answer) for cause in causes)
     return Explained(likely, is_motion, missing_load=missing)
 

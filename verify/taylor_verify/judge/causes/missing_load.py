@@ -21,6 +21,8 @@ _SHIFT: Final = 1e-3
 # the largest: what is less may be the noise of the method.
 _STANDS_OUT: Final = 30.0
 _PART: Final = 1e-4
+# Rows whose defects are so small a part of the error follow the scene, from elsewhere or at another time.
+_FOLLOWS: Final = 1e-6
 # The rows must follow to this part of their defects.
 _LEAVES: Final = 1e-3
 
@@ -30,6 +32,8 @@ def missing_load(answer: Answer) -> tuple[MissingLoad, ...]:
     if answer.count < 4 or not answer.moving or answer.has_states:
         return ()
     arcs = row_to_row(answer)
+    if np.max(np.abs(arcs.of_right[: answer.n])) < _FOLLOWS * answer.off:
+        return ()
     load, slopes, left = _fitted(answer, arcs)
     if not left < _LEAVES * np.linalg.norm(arcs.of_right[: answer.n]):
         return ()
