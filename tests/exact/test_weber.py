@@ -145,10 +145,6 @@ DECLINED = {
     "only the motions with FG = 0": built(
         vector(1, "1/2", 1), vector(1, 1, 1), *BODIES["theta > 0"]
     ),
-    # x stays in a plane of the body.
-    "branch points of Weber's curve": built(
-        vector(1, "1/2", 0), vector(0, 0, "1/3"), *BODIES["theta > 0"], Fraction(0)
-    ),
     "of Clebsch's form": built(vector(1, 0, 1), vector(1, 1, -1), vector(1, 2, 3), vector(1, 2, 4)),
 }
 

@@ -248,7 +248,10 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     own = {name for name in loaded if name.startswith("taylor_verify")}
     below = {tuple(name.split(".")[:2]) for name in own if "." in name}
     first = {room for package, room in below if package == "taylor_verify"}
-    assert first == {"plotting", "records", "report", "tradeoff", "words"}
+    assert first == {"plotting", "records", "report", "scenes", "tradeoff", "words"}
+    # The names of the shipped scenes, and none of them.
+    of_scenes = {name for name in own if name.startswith("taylor_verify.scenes.")}
+    assert of_scenes == {"taylor_verify.scenes.library"}
     assert "taylor_verify_reports.claims.document" in own
     assert not [name for name in own if name.endswith((".measure", ".measurement"))]
 

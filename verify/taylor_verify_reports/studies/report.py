@@ -13,7 +13,6 @@ from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import index
 from taylor_verify.scenes import library
-from taylor_verify.scenes.reading.reader import text_of
 from taylor_verify.words.entry import Page
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.accuracy import quoted
@@ -78,7 +77,8 @@ def _with_own_names(place: Path) -> tuple[Verdict, ...]:
 def _names_by_digest() -> dict[str, str]:
     """Return the name of each shipped scene by the digest of its text, as Scene has it."""
     folders = (*library.STANDARD_SET, library.EXTREMES, library.WORST, library.ENGINES)
-    texts = {name: text_of(library.find(name)) for name in library.names(*folders)}
+    files = {name: library.find(name) for name in library.names(*folders)}
+    texts = {name: file.read_text(encoding="utf-8-sig") for name, file in files.items()}
     return {sha256(text.encode()).hexdigest(): name for name, text in texts.items()}
 
 
