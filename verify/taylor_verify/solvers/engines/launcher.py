@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import ClassVar, Final
 
 from platformdirs import user_cache_path
@@ -54,6 +56,31 @@ class Launcher(ABC):
 def cache_folder() -> Path:
     """Return the folder of the user's cache that environments are made in, or made from."""
     return user_cache_path("taylor-verify") / "outside"
+
+
+def made_once(
+    name: str, is_whole: Callable[[Path], bool], make: Callable[[Path, Path], object]
+) -> Path:
+    """Return a folder of the cache, made if it is not whole: apart, and put in its place at the end.
+
+    ``make`` gets the folder apart, which is empty, and its last place.
+    """
+    place = cache_folder() / name
+    if is_whole(place):
+        return place
+    shutil.rmtree(place, ignore_errors=True)
+    cache_folder().mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(dir=cache_folder(), prefix=".unfinished-") as apart:
+        made = Path(apart, name)
+        made.mkdir()
+        make(made, place)
+        try:
+            made.rename(place)
+        except OSError:
+            # Another process may have made it meanwhile.
+            if not is_whole(place):
+                raise
+    return place
 
 
 def output(

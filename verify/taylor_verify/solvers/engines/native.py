@@ -13,10 +13,9 @@ import shutil
 import sys
 import tomllib
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final, final
 
-from taylor_verify.solvers.engines.launcher import Launcher, NotMade, Tell, cache_folder, output
+from taylor_verify.solvers.engines.launcher import Launcher, NotMade, Tell, made_once, output
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -52,20 +51,16 @@ class Native(Launcher):
 def _compiled(name: str, script: Path, block: str, tell: Tell) -> Path:
     """Return the library of an engine, which is made if it is not there."""
     made_of = script.read_bytes() + block.encode()
-    place = cache_folder() / f"{name}-{hashlib.sha256(made_of).hexdigest()[:12]}"
-    if (place / _LIBRARY).exists():
-        return place / _LIBRARY
-    tell(f"making the environment of {name}, once: a download and a compilation")
-    cache_folder().mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory(dir=cache_folder(), prefix=".unfinished-") as apart:
-        made = Path(apart, name)
+    digest, metadata = hashlib.sha256(made_of).hexdigest()[:12], tomllib.loads(block)
+
+    def make(made: Path, place: Path) -> None:
+        tell(f"making the environment of {name}, once: a download and a compilation")
         root = made / "root"
-        root.mkdir(parents=True)
-        metadata = tomllib.loads(block)
+        root.mkdir()
         _unpack(metadata.get("dependencies", []), made, root)
         _compile(script, metadata["tool"]["taylor-verify"].get("flags", ""), made, place)
-        shutil.rmtree(place, ignore_errors=True)
-        made.rename(place)
+
+    place = made_once(f"{name}-{digest}", lambda place: (place / _LIBRARY).exists(), make)
     return place / _LIBRARY
 
 

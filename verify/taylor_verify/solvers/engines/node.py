@@ -23,7 +23,14 @@ from tempfile import TemporaryDirectory
 from typing import Final, final
 
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.solvers.engines.launcher import Launcher, NotMade, Tell, cache_folder, output
+from taylor_verify.solvers.engines.launcher import (
+    Launcher,
+    NotMade,
+    Tell,
+    cache_folder,
+    made_once,
+    output,
+)
 from taylor_verify.solvers.solver import Lack
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -105,24 +112,14 @@ def _dependencies(block: str) -> dict[str, str]:
 
 def _environment(name: str, files: Mapping[str, str], tell: Tell) -> Path:
     """Return the folder that has the packages of package.json, made if it is not there."""
-    place = cache_folder() / f"{name}-{_digest(files)}"
     packages = json.loads(files[_PACKAGE])["dependencies"]
-    if _is_whole(place, packages):
-        return place
-    shutil.rmtree(place, ignore_errors=True)
-    cache_folder().mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory(dir=cache_folder(), prefix=".unfinished-") as apart:
-        made = Path(apart, name)
+
+    def make(made: Path, _: Path) -> None:
         replace_files(made, files)
         if packages:
             _install(made, name, tell)
-        try:
-            made.rename(place)
-        except OSError:
-            # Another process may have made it meanwhile.
-            if not _is_whole(place, packages):
-                raise
-    return place
+
+    return made_once(f"{name}-{_digest(files)}", lambda place: _is_whole(place, packages), make)
 
 
 def _is_whole(place: Path, packages: Iterable[str]) -> bool:
