@@ -31,17 +31,17 @@ def _course(answer: Answer, equations: Equations, sets: int, steps: int) -> Floa
     loads = equations.loads
     assert loads is not None
     z = np.repeat(_start(answer, equations, loads), sets // len(equations.mass_sets), axis=0)
-    held = np.tile(np.array(own.held_starts(loads), dtype=float), (sets, 1))
+    values = np.tile(np.array(own.held_starts(loads), dtype=float), (sets, 1))
     taken = {float(i.time): i for i in loads.instants(Fraction(float(answer.times[-1])))}
     marks = np.union1d(answer.times, [*taken])
-    equations, now, rows = replace(equations, held=held), answer.begins, list[Floats]()
+    equations, now, rows = replace(equations, held=values), answer.begins, list[Floats]()
     for mark in marks:
         since, span = np.array([now]), np.array([mark - now])
         if mark > now:
             z = moved(answer, equations, z, since, span, steps)
         if mark in taken:
-            held = _taken(equations, taken[mark], z, held)
-            equations = replace(equations, held=held)
+            values = _taken(equations, taken[mark], z, values)
+            equations = replace(equations, held=values)
         now = mark
         if mark in answer.times:
             nu = equations.velocities(np.array([now]), z)
@@ -60,12 +60,12 @@ def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
     return z
 
 
-def _taken(equations: Equations, instant: Instant, z: Floats, held: Floats) -> Floats:
+def _taken(equations: Equations, instant: Instant, z: Floats, values: Floats) -> Floats:
+    """Return the values that are held after an instant, by those before it, (sets, components)."""
     assert equations.acting is not None
-    states = equations.states_of_texts(z, equations.velocities(np.array([float(instant.time)]), z))[
-        :, 0
-    ]
-    taken = [equations.acting.taken(instant, *pair) for pair in zip(states, held, strict=True)]
+    nu = equations.velocities(np.array([float(instant.time)]), z)
+    states = equations.states_of_texts(z, nu)[:, 0]
+    taken = [equations.acting.taken(instant, *pair) for pair in zip(states, values, strict=True)]
     return np.array(taken)
 
 

@@ -90,10 +90,15 @@ class Equations:
         loads = self.loads
         return 0 if loads is None else 4 * loads.reads_attitude + 3 * loads.reads_centre
 
-    @property
+    @cached_property
     def switches(self) -> Floats:
         """The times between which the loads are smooth."""
         return np.array([] if self.loads is None else self.loads.switches, dtype=float)
+
+    @cached_property
+    def current(self) -> Floats:
+        """The velocity of the fluid, in space axes."""
+        return np.array((0, 0, 0) if self.loads is None else self.loads.current, dtype=float)
 
     @property
     def own(self) -> int:
@@ -217,11 +222,8 @@ class Equations:
         for i, component in enumerate(self._turned(q, parts(W))):
             out[:, n + i] = component
         if z.shape[1] > n + 4 + self.own:
-            current = (
-                np.zeros(3) if self.loads is None else np.array(self.loads.current, dtype=float)
-            )
             for i, component in enumerate(centre_rate(q, parts(nu[:, :3]))):
-                out[:, n + 4 + i] = component + current[i]
+                out[:, n + 4 + i] = component + self.current[i]
 
     def _expressions(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the values of the expressions that have an effect, (parameters, columns, arcs)."""
@@ -267,10 +269,10 @@ class Equations:
         late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.states_of_texts(z, nu)
         when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
         state = np.broadcast_to(state, (*when.shape, state.shape[2]))
-        held = self.held
-        if held is not None:
-            held = np.broadcast_to(held[:, None], (*when.shape, held.shape[-1]))
-        values = getattr(self.acting, what)(when, state, held)
+        taken = self.held
+        if taken is not None:
+            taken = np.broadcast_to(taken[:, None], (*when.shape, taken.shape[-1]))
+        values = getattr(self.acting, what)(when, state, taken)
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
         return np.asarray(stacked).transpose(0, 2, 1)
 
@@ -278,8 +280,8 @@ class Equations:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""
         n, mass = self.size, self.scene_mass
         moving = nu if n == 3 or mass is None else mass @ nu
-        parts_ = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
-        both = (np.broadcast_to(each, (parts_, *each.shape[1:])) for each in (moving, z[:, n:]))
+        sets = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
+        both = (np.broadcast_to(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
         return np.concatenate([*both], axis=1).transpose(0, 2, 1)
 
     def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:

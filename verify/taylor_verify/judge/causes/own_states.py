@@ -172,25 +172,25 @@ class _Search:
         return [families[k] for k in order if lefts[k] < _LINEAR]
 
     def _fitted(self, family: Family) -> Iterator[Cause]:
-        numbers_ = self._fit(family, family.right, self.few)
-        if numbers_ is None:
+        values = self._fit(family, family.right, self.few)
+        if values is None:
             return
-        leaves = self._leaves(family.changes(numbers_), 1)
-        if not leaves and (numbers_ := self._fit(family, numbers_, self.answer)) is not None:
-            leaves = self._leaves(family.changes(numbers_), 1)
-        if leaves and numbers_ is not None:
+        leaves = self._leaves(family.changes(values), 1)
+        if not leaves and (values := self._fit(family, values, self.answer)) is not None:
+            leaves = self._leaves(family.changes(values), 1)
+        if leaves and values is not None:
             worst = max(leaves.values())
-            numbers_ = shortened(
-                numbers_, family.scale, worst, lambda short: self._worst_left(family, short)
+            values = shortened(
+                values, family.scale, worst, lambda short: self._worst_left(family, short)
             )
-            leaves = self._leaves(family.changes(numbers_), 1)
-            text = with_numbers(family.name, family.labels, family.right, numbers_)
-            yield Cause(family.name, family.kind, leaves, text, changes=family.changes(numbers_))
+            leaves = self._leaves(family.changes(values), 1)
+            text = with_numbers(family.name, family.labels, family.right, values)
+            yield Cause(family.name, family.kind, leaves, text, changes=family.changes(values))
 
-    def _worst_left(self, family: Family, numbers_: Floats) -> float:
+    def _worst_left(self, family: Family, values: Floats) -> float:
         """Return the largest part of an error that a family leaves; infinite where it is not proven."""
         try:
-            return max(self._leaves(family.changes(numbers_), 1).values(), default=float("inf"))
+            return max(self._leaves(family.changes(values), 1).values(), default=float("inf"))
         except ValueError:
             return float("inf")
 
