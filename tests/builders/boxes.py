@@ -11,13 +11,14 @@ import pytest
 from flint import arb, ctx
 
 from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, vector
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import step
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.walk import Row
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin, State

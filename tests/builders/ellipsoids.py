@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from flint import acb, arb
 
-from taylor_verify.exact.balls import ball
+from taylor_verify.numbers.irrational import ball
 
 
 def quadrature(axes: tuple[Fraction, ...], of: tuple[int, ...]) -> arb:

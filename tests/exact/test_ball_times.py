@@ -13,10 +13,11 @@ from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp
 
-from taylor_verify.exact.balls import Enclosed, ball
+from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.carried import carried
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact import balls as module
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, midpoint, sign, upper
+from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, midpoint, sign, upper
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value, held_exactly
 from taylor_verify.scenes.motion import Motion
 

@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball
-from taylor_verify.numbers.irrational import PI
+from taylor_verify.numbers.irrational import PI, ball
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes import ellipsoid
 from taylor_verify.scenes.bodies import Ellipsoid, ImmersedBody

@@ -12,12 +12,13 @@ import pytest
 from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody

@@ -13,7 +13,7 @@ import pytest
 from builders.scenes import one_instant, vector
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import box, flow, tape
 from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
@@ -23,6 +23,7 @@ from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import Piece, System, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin

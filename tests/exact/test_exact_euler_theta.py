@@ -18,7 +18,7 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import balls
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball, ball_matrix
+from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix
 from taylor_verify.exact.euler import closed, fixed_axis, jacobi, phase, theta
 from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.euler.moduli import Moduli
@@ -28,6 +28,7 @@ from taylor_verify.exact.euler.theta import free_rotation
 from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene

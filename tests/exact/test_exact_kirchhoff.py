@@ -37,7 +37,7 @@ from flint import acb, arb, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact import lattice
-from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.kirchhoff import orbit
 from taylor_verify.exact.kirchhoff.closed import enclosed
 from taylor_verify.exact.kirchhoff.quartic import Nutation, value
@@ -49,6 +49,7 @@ from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import CLOSED_ROUTES, solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Motion

@@ -11,8 +11,9 @@ from flint import acb, arb, ctx
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.lattice import Lattice, lattice
+from taylor_verify.numbers.irrational import ball
 
 BITS = 400
 # Balls that overlap say nothing unless they are narrow: a quarter of the bits may be lost, half of

@@ -11,7 +11,6 @@ import pytest
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Functions, Image
 from taylor_verify.exact.enclosure.loaded import posed
@@ -21,6 +20,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.rows import quaternions
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import arcs
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.reading.reader import read

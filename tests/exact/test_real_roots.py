@@ -10,11 +10,11 @@ from flint import arb, ctx, fmpq, fmpq_poly
 from hypothesis import given
 from hypothesis import strategies as st
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.lattice import Periods, lattice
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Matrix
 
 BITS = 200

@@ -17,7 +17,6 @@ from builders.written_loads import FUNCTIONS, about_axes
 from flint import arb, ctx
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure import functions, kinks, operations, powers
 from taylor_verify.exact.enclosure.box import Box, within
 from taylor_verify.exact.enclosure.loaded import posed
@@ -26,6 +25,7 @@ from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.route import solution
+from taylor_verify.numbers.irrational import ball
 
 # Numbers in them are dyadic, so that Python reads them exactly.
 TEXTS = {

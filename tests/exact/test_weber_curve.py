@@ -10,7 +10,6 @@ from flint import arb, ctx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.kirchhoff.weber import surd as surds
 from taylor_verify.exact.kirchhoff.weber.characteristics import (
     at_branches,
@@ -20,6 +19,7 @@ from taylor_verify.exact.kirchhoff.weber.curve import curve
 from taylor_verify.exact.kirchhoff.weber.integrals import branch_points
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Vector
 
 # The curve.

@@ -15,8 +15,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball
-from taylor_verify.numbers.irrational import PI, Constant, Irrational, Pi, Undecided, generator
+from taylor_verify.numbers.irrational import (
+    PI,
+    Constant,
+    Irrational,
+    Pi,
+    Undecided,
+    ball,
+    generator,
+)
 from taylor_verify.numbers.precision import exact_value, floor_log2
 
 DIGITS: Final = 60

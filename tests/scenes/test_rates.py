@@ -8,10 +8,9 @@ from typing import Any
 import pytest
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
-from taylor_verify.numbers.irrational import PI
+from taylor_verify.numbers.irrational import PI, ball
 from taylor_verify.numbers.tensors import apply
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.bodies import ImmersedBody

@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball, midpoint, upper
-from taylor_verify.numbers.irrational import Irrational
+from taylor_verify.exact.balls import midpoint, upper
+from taylor_verify.numbers.irrational import Irrational, ball
 from taylor_verify.numbers.precision import exact_value
 
 Array = np.ndarray[Any, Any]

@@ -15,11 +15,11 @@ from math import ceil, log2
 from typing import Any, Final, final
 
 import numpy as np
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, arb_mat, ctx
 from mpmath import libmp, mp, mpf
 
 from taylor_verify.exact.solution import Solution, Time, Unsettled
-from taylor_verify.numbers.irrational import Irrational, Undecided
+from taylor_verify.numbers.irrational import Undecided, ball
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.motion import Motion
 
@@ -228,18 +228,9 @@ def max_or_nan(a: mpf, b: mpf) -> mpf:
 # Between rationals, balls and mpmath.
 
 
-def ball(value: Fraction | int | Irrational | arb) -> arb:
-    """A ball about an exact number, narrow at the ambient precision; a ball as it is."""
-    if isinstance(value, arb):
-        return value
-    if isinstance(value, Irrational):
-        return value.around(ctx.prec) * 1
-    return arb(fmpq(*value.as_integer_ratio()))
-
-
 def balls_of(times: Iterable[Time]) -> list[arb]:
     """The smallest balls about times; those that are balls as they are."""
-    return [t if isinstance(t, arb) else arb(fmpq(*t.as_integer_ratio())) for t in times]
+    return [ball(t) for t in times]
 
 
 def balls(vector: Iterable[Fraction]) -> list[arb]:

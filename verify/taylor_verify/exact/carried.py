@@ -8,8 +8,9 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, ball
+from taylor_verify.exact.balls import Enclosed, Enclosure
 from taylor_verify.exact.solution import Number, Quantities, Settled, Solution, Time
+from taylor_verify.numbers.irrational import ball
 
 _GUARD_DIGITS: Final = 6
 # Digits of an inner time before its point that cost no second evaluation.

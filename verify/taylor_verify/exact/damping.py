@@ -20,7 +20,6 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.carried import carried
 from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.registry import kind_of
@@ -31,6 +30,7 @@ from taylor_verify.exact.solution import (
     Time,
     Unsettled,
 )
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import floor_log2
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import alike

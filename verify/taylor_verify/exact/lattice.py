@@ -16,7 +16,8 @@ from typing import Final, final
 
 from flint import acb, arb, ctx
 
-from taylor_verify.exact.balls import Undecidable, ball, sign
+from taylor_verify.exact.balls import Undecidable, sign
+from taylor_verify.numbers.irrational import ball
 
 _I: Final = acb(0, 1)
 # An argument is told from its neighbours, 2 pi away, by a sum that is known to about this much.

@@ -17,7 +17,7 @@ from typing import NamedTuple, Self
 
 from flint import arb
 
-from taylor_verify.exact.balls import ball
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Matrix, cross, dot
 
 

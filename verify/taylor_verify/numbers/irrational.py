@@ -17,7 +17,7 @@ from functools import cached_property, lru_cache
 from numbers import Rational
 from typing import Any, Final
 
-from flint import Ordering, arb, ctx, fmpz_mpoly, fmpz_mpoly_ctx
+from flint import Ordering, arb, ctx, fmpq, fmpz_mpoly, fmpz_mpoly_ctx
 
 # More constants than any scene has: pi, two of Lamb's three integrals, and three tangents or roots.
 _PLACES: Final = fmpz_mpoly_ctx.get(("c1", "c2", "c3", "c4", "c5", "c6"), Ordering.lex)
@@ -247,6 +247,15 @@ class Irrational:
             values = [_evaluated(constant, bits) for constant in self.constants]
             above = _polynomial_at(self.numerator_polynomial, values)
             return above / _polynomial_at(self.denominator_polynomial, values)
+
+
+def ball(value: Fraction | int | Irrational | arb) -> arb:
+    """A ball about an exact number, narrow at the ambient precision; a ball as it is."""
+    if isinstance(value, arb):
+        return value
+    if isinstance(value, Irrational):
+        return value.around(ctx.prec) * 1
+    return arb(fmpq(*value.as_integer_ratio()))
 
 
 def generator(constants: tuple[Constant, ...], place: int) -> Irrational:

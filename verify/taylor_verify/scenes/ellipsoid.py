@@ -19,9 +19,9 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Final, NamedTuple, final
 
-from flint import acb, arb, fmpq
+from flint import acb, arb
 
-from taylor_verify.numbers.irrational import Constant, Pi, generator
+from taylor_verify.numbers.irrational import Constant, Pi, ball, generator
 from taylor_verify.numbers.tensors import Vector
 
 _MOST_CACHED: Final = 256
@@ -39,7 +39,7 @@ class LambIntegral(Constant):
 
     def evaluated(self) -> arb:
         """Return (2/3) (a_j/a_i)(a_k/a_i) R_D((a_j/a_i)^2, (a_k/a_i)^2, 1), by Arb."""
-        y, z = (arb(fmpq(square.numerator, square.denominator)) for square in self.squares)
+        y, z = map(ball, self.squares)
         return 2 * (y * z).sqrt() * acb.elliptic_rd(y, z, acb(1)).real / 3
 
 

@@ -13,15 +13,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from math import isqrt, pi, remainder
+from math import pi, remainder
 from typing import Any, Final, NamedTuple, final
 
-from flint import arb, ctx, fmpq
+from flint import arb
 
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.irrational import PI, Constant, Irrational, generator
+from taylor_verify.numbers.irrational import PI, Constant, Irrational, ball, generator
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.scenes.loads.steps import exact_root
 from taylor_verify.scenes.motion import Quaternion
 
 DECIMALS: Final = 20
@@ -53,7 +54,7 @@ class Root(Constant):
         return "roots"
 
     def evaluated(self) -> arb:
-        return _ball(self.square).sqrt()
+        return ball(self.square).sqrt()
 
 
 @final
@@ -69,17 +70,16 @@ class HalfTangent(Constant):
         return "tangents"
 
     def evaluated(self) -> arb:
-        half = _ball(self.angle) / 2
+        half = ball(self.angle) / 2
         if self.degrees:
             half *= arb.pi() / (_HALF * _QUARTER)
-        return half.tan() / _ball(self.square).sqrt()
+        return half.tan() / ball(self.square).sqrt()
 
 
 def length(axis: Vector) -> Any:
     """Return the length of a vector exactly, as a Fraction or an Irrational."""
     square = tensors.dot(axis, axis)
-    root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
-    return root if root * root == square else generator((Root(square),), 0)
+    return exact_root(square) or generator((Root(square),), 0)
 
 
 def product(turns: Iterable[Turn]) -> tuple[Any, ...]:
@@ -183,12 +183,6 @@ def _tangent(turn: Turn) -> Any:
 
 def _near(number: Any) -> Fraction:
     return number.near() if isinstance(number, Irrational) else number
-
-
-def _ball(number: Any) -> arb:
-    if isinstance(number, Irrational):
-        return number.around(ctx.prec)
-    return arb(fmpq(number.numerator, number.denominator))
 
 
 def times(a: Sequence[Any], b: Sequence[Any]) -> Sequence[Any]:

@@ -14,13 +14,14 @@ from typing import Final, NamedTuple
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.enclosure.bounds import Bounds, minimum, value_at
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import ZERO
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value, floor_log2, power_of_two
 
 # The first zero of a polynomial is looked for on so many parts of the step.

@@ -17,7 +17,6 @@ from typing import Any, Final, NamedTuple
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.jumps import Choice, Jump, OnJump
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm, sign_of
@@ -26,6 +25,7 @@ from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.series import Nodes
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS
+from taylor_verify.numbers.irrational import ball
 
 _EITHER_SIGN: Final = arb(0, 1)
 Gradient = dict[int, arb]

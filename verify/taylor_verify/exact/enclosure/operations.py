@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import floor_log2
 
 if TYPE_CHECKING:

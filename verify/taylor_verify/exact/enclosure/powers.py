@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Self
 
 from flint import arb
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.operations import (
     ONE,
     ZERO,
@@ -20,6 +19,7 @@ from taylor_verify.exact.enclosure.operations import (
     Part,
     Slope,
 )
+from taylor_verify.numbers.irrational import ball
 
 if TYPE_CHECKING:
     from taylor_verify.exact.enclosure.bounds import Bounds

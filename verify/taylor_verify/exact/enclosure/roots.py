@@ -16,9 +16,9 @@ from typing import Final, NamedTuple
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.enclosure.kinks import sign_of
+from taylor_verify.numbers.irrational import ball
 
 _NEWTON_STEPS: Final = 12
 # A step of Newton that leaves more of an interval than this is the last one.

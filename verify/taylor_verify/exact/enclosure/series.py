@@ -13,11 +13,11 @@ from operator import mul
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.coefficients import Rows, falling_bits
 from taylor_verify.exact.enclosure.kinks import Norm, sign_of
 from taylor_verify.exact.enclosure.operations import ZERO, Domain, Factors, State
 from taylor_verify.exact.enclosure.tape import Tape
+from taylor_verify.numbers.irrational import ball
 
 
 def convolved(forward: Sequence[arb], backward: Sequence[arb]) -> arb:

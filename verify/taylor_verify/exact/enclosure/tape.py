@@ -16,7 +16,6 @@ from typing import Any, Final
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.functions import HyperbolicTangent, Paired
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import (
@@ -27,7 +26,7 @@ from taylor_verify.exact.enclosure.operations import (
     State,
     Time,
 )
-from taylor_verify.numbers.irrational import Undecided
+from taylor_verify.numbers.irrational import Undecided, ball
 
 _ZERO: Final = Bilinear(Fraction(0))
 # A polynomial of the time of a higher degree is a series like any other.

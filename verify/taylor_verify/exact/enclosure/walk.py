@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.enclosure.box import (
     Box,
     carried,
@@ -30,6 +29,7 @@ from taylor_verify.exact.enclosure.step import Step, size_of
 from taylor_verify.exact.enclosure.stopping import Coarse, Unreached, Watch
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.scenes.loads.states import Instant
 

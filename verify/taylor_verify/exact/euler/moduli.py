@@ -13,10 +13,11 @@ from __future__ import annotations
 
 from flint import arb
 
-from taylor_verify.exact.balls import ball, balls, sign
+from taylor_verify.exact.balls import balls, sign
 from taylor_verify.exact.euler.principal import principal_balls
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
 from taylor_verify.exact.rotation import cross, scalar_product
+from taylor_verify.numbers.irrational import ball
 
 Triple = tuple[arb, arb, arb]
 

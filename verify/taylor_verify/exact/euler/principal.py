@@ -13,9 +13,10 @@ from typing import NamedTuple
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import Undecidable, ball, balls
+from taylor_verify.exact.balls import Undecidable, balls
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 
 Axis = list[arb]  # three components in body axes
 

@@ -15,7 +15,7 @@ from typing import final
 from flint import arb, arb_mat
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.euler.fixed_axis import FixedAxis, in_balls
 from taylor_verify.exact.euler.moduli import Moduli, Triple
 from taylor_verify.exact.euler.phase import Periodic, Separatrix
@@ -23,6 +23,7 @@ from taylor_verify.exact.euler.regime import CONSTANT, FreeSpin, Regime
 from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.exact.solution import Time
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes import motion
 
 

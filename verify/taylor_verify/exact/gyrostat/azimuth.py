@@ -17,11 +17,12 @@ from typing import Any, Final, NamedTuple
 
 from flint import acb, arb
 
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap
 from taylor_verify.exact.rotation import cross, rotation_matrix, scalar_product
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Vector, dot
 
 

@@ -17,7 +17,7 @@ from typing import NamedTuple, final
 
 from flint import acb, arb, arb_mat
 
-from taylor_verify.exact.balls import Undecidable, ball, balls, balls_of
+from taylor_verify.exact.balls import Undecidable, balls, balls_of
 from taylor_verify.exact.euler.rotations import BallCourse, Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
@@ -38,6 +38,7 @@ from taylor_verify.exact.rotation import (
     turn,
 )
 from taylor_verify.exact.solution import Time
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Vector, dot
 from taylor_verify.scenes.motion import Quaternion
 

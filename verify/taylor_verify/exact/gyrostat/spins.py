@@ -13,12 +13,13 @@ from typing import Final, NamedTuple
 from flint import arb, ctx, fmpq, fmpq_poly
 from mpmath import mp, mpf
 
-from taylor_verify.exact.balls import Undecidable, ball, balls, midpoint, sign
+from taylor_verify.exact.balls import Undecidable, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import Matrix, Vector
 
 _GUARD_BITS: Final = 40

@@ -15,7 +15,6 @@ from typing import NamedTuple, Self, final
 
 from flint import acb, arb
 
-from taylor_verify.exact.balls import ball
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     Polynomial,
@@ -23,6 +22,7 @@ from taylor_verify.exact.kirchhoff.quartic import (
     value,
 )
 from taylor_verify.exact.lattice import Lattice, lattice
+from taylor_verify.numbers.irrational import ball
 
 
 class Pole(NamedTuple):

@@ -10,12 +10,13 @@ from typing import Any, Final
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from taylor_verify.exact.balls import ball, midpoint
+from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene

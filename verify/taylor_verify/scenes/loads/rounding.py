@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import Rung, power_of_two
 from taylor_verify.scenes.loads.steps import NoStep, Step, needed
 
@@ -62,11 +63,11 @@ def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
     working = bits
     while working <= _MOST_BITS:
         with ctx.workprec(working):
-            ball = _ball(steps, place)
-            if ball.rel_accuracy_bits() >= bits:
-                mantissa, exponent = ball.mid().man_exp()
+            value = _ball(steps, place)
+            if value.rel_accuracy_bits() >= bits:
+                mantissa, exponent = value.mid().man_exp()
                 return int(mantissa) * power_of_two(int(exponent))
-            if ball.is_zero():
+            if value.is_zero():
                 return Fraction(0)
         working *= 2
     raise NoStep("constants that are told from zero and from jumps", "one that may be either")
@@ -75,10 +76,10 @@ def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
 def _ball(steps: Sequence[Step], place: int) -> arb:
     step = steps[place]
     if step.number is not None and step.operation == "number":
-        return arb(fmpq(step.number.numerator, step.number.denominator))
+        return ball(step.number)
     operands = [_ball(steps, operand) for operand in step.operands]
     if step.operation == "power" and step.number is not None:
-        exponent = arb(fmpq(step.number.numerator, step.number.denominator))
+        exponent = ball(step.number)
         operands = [operands[0] ** exponent]
         return operands[0]
     value: arb = _FUNCTIONS[step.operation](*operands)

@@ -18,11 +18,12 @@ from fractions import Fraction
 from flint import acb, arb
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.euler.moments.kummer import KummerTurn
 from taylor_verify.exact.euler.moments.regime import Line, LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.rotations import OneByOne, RotationBalls, Rows
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes import motion
 
 

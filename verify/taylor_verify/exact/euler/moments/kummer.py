@@ -21,9 +21,10 @@ from fractions import Fraction
 from flint import acb, arb
 
 from taylor_verify.exact import rotation
-from taylor_verify.exact.balls import ball, balls
+from taylor_verify.exact.balls import balls
 from taylor_verify.exact.euler.moments.regime import Line
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import ball
 
 
 class KummerTurn:

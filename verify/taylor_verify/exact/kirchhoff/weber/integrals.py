@@ -16,10 +16,11 @@ from itertools import pairwise
 
 from flint import acb, acb_mat, arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import Undecidable, ball
+from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.integral import Integrand, integral
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
 from taylor_verify.exact.kirchhoff.weber.surd import Surd
+from taylor_verify.numbers.irrational import ball
 
 # u1 is on the second stretch between neighbouring branch points, u2 on the fourth.
 OVALS = (1, 3)

@@ -21,12 +21,13 @@ from typing import Final, NamedTuple, final
 from flint import acb, acb_mat, arb, ctx
 from mpmath import mpf
 
-from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, ball, balls, midpoint, sign
+from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, balls, midpoint, sign
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
 from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
 from taylor_verify.exact.solution import Time, Unsettled
+from taylor_verify.numbers.irrational import ball
 
 _DOUBLINGS: Final = 8
 
