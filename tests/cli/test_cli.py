@@ -459,7 +459,7 @@ needs_processes = pytest.mark.skipif(
 @pytest.mark.slow
 @needs_processes
 def test_two_interrupts_at_any_time_leave_one_line(tmp_path: Path) -> None:
-    """Of 50 runs each is ended at another time, most while its workers start: there is no traceback."""
+    """No traceback ends any of 50 runs, stopped at different times, most while their workers start."""
     words = command("run", "euler/rest", "kirchhoff/rest", "--out", str(tmp_path / "out"))
     for k in range(50):
         with interruptible():

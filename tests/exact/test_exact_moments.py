@@ -91,7 +91,7 @@ def spin_of(scene: Scene) -> LoadedSpin:
 
 @pytest.mark.parametrize("name", REGIMES)
 def test_the_closed_form_is_the_taylor_motion(name: str) -> None:
-    """To forty digits, before the start and after it; what the scene tracks."""
+    """Both agree to forty digits, before the start and after it, in all that the scene tracks."""
     scene = load(f"euler/{name}")
     exact = solution(scene, "arb")
     assert exact.regime == REGIMES[name]
@@ -246,7 +246,7 @@ def balanced(inertia: Matrix, omega: Vector) -> Scene:
 
 
 def turned(scene: Scene) -> Scene:
-    """The same body and motion in axes that are not principal."""
+    """The scene in axes that are not principal: body and motion are the same."""
     assert isinstance(scene.body, RigidBody)
     assert isinstance(scene.initial, Spin)
     turn = rotation(1, 2, -1, 3)

@@ -135,7 +135,7 @@ def test_taylor_series_agree_at_the_borders(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["circle", "circle, wheels along axis 1", "separatrix", "cusp"])
 def test_an_endless_approach_is_followed(name: str) -> None:
-    """Where the orbit has all but come to its double point; and 1e5 units on no digit is lost."""
+    """No digit is lost where the orbit has all but come to its double point, and 1e5 units on."""
     agrees_with_series(MOTIONS[name], paced(MOTIONS[name], (Fraction(8), Fraction(-8))))
     far = enclosed(scene_of(MOTIONS[name])).motion([Fraction(10**5)], DIGITS)
     assert far.radius[0] <= mpf(10) ** -DIGITS

@@ -90,5 +90,5 @@ def test_the_shipped_scene_swings_once_in_the_period_that_is_printed() -> None:
     ],
 )
 def test_whatever_is_no_such_moment_has_no_closed_form(changed: dict[str, str]) -> None:
-    """One part in 10^9 out of the plane, or of another angle, is looked at."""
+    """A moment that leaves the plane by a part in 10^9, or reads another angle, is none."""
     assert pitch_of(orbiting(**changed)) is None

@@ -77,7 +77,7 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
 def test_what_was_made_before_an_interrupt_stays(
     report: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """One scene of each kind is finished, and only the other one is lacking afterwards."""
+    """A finished scene of each kind stays, and only the other one is lacking afterwards."""
     without_bulk(report)
 
     def interrupted(work: Any, asked: Sequence[Any], *, ended: Any, **_: Any) -> None:
