@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
@@ -121,10 +122,16 @@ def _picture(scene: str, what: str, axis: str, drawn: Sequence[Panel]) -> Pictur
     )
 
 
+def _short(names: Collection[str]) -> list[str]:
+    """Return names without what carries an engine, behind the comma, unless two would be one."""
+    shorter = [name.partition(",")[0] for name in names]
+    counts = Counter(shorter)
+    return [b if counts[b] == 1 else a for a, b in zip(names, shorter, strict=True)]
+
+
 def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
     styles = {line.name: line.look.line for panel in drawn for line in panel.lines}
-    # What carries an engine, behind the comma, is left out.
-    entries: list[Entry] = [(look, name.partition(",")[0]) for name, look in styles.items()]
+    entries: list[Entry] = [*zip(styles.values(), _short(styles), strict=True)]
     note = "Each engine by its best setting; dashed: a plain solver, in float64."
     figure, places = sheet(len(drawn), entries, note, _HEIGHT)
     spots = [point for panel in drawn for line in panel.lines for point in line.points]
