@@ -173,27 +173,6 @@ def test_a_full_disk_is_told_with_its_folder_and_leaves_nothing(tmp_path: Path) 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_picture_that_cannot_be_written_costs_no_judgement(
-    short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """The disk that is full at the end is one message, behind the answer; the exit status is 2."""
-
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device", "order.svg")
-
-    pytest.importorskip("matplotlib")
-    monkeypatch.chdir(tmp_path)
-    rows = "t,w1,w2,w3\n0,1,0.4,0.3\n1,1,0.4,0.3\n"
-    for h in ("0.1", "0.2"):
-        Path(f"run_h{h}.csv").write_text(f"# h = {h}\n{rows}")
-    monkeypatch.setattr("taylor_verify.plotting.picture.save_as", full)
-    call = ["check", "run_h0.1.csv", "run_h0.2.csv", "--scene", str(short), "--partial"]
-    assert main([*call, "--picture", "order.svg"]) == 2
-    out, error = capsys.readouterr()
-    assert "run_h0.2.csv" in out
-    assert "expected to write, got No space left on device @ order.svg (--picture)" in error
-
-
 def test_a_trade_off_that_cannot_be_written_is_shown(
     short: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:

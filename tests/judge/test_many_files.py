@@ -22,8 +22,6 @@ from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.judge.series.files import FilesJudgement
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
-from taylor_verify.plotting import order as order_picture
-from taylor_verify.plotting.picture import plotting
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.schema import schema
@@ -486,7 +484,6 @@ def test_a_ci_tells_the_files_apart(
         (["--steps", "0.1,x"], "expected a number such as 10, 1e9 or 1/3, got 'x' @ --steps"),
         (["--steps", "0.1,-1"], "expected a positive step, got '-1' @ --steps"),
         (["--steps", "0.1,0.1"], "expected steps no two of which are the same, got 0.1 again"),
-        (["--picture", "a.gif"], "expected a file that ends in .svg, .pdf, .png, got 'a.gif'"),
         (
             ["none.csv", "none.json"],
             "got no such file @ none.csv\nexpected a trajectory file, got no",
@@ -516,55 +513,10 @@ def test_a_file_given_twice_is_refused(
     assert "@ none.csv" in errors
 
 
-def test_steps_and_pictures_are_of_several_files(
-    scene: Path, files: list[str], capsys: Captured
-) -> None:
-    """Both are refused with one file, and a picture with files of unknown steps too."""
+def test_steps_are_of_several_files(scene: Path, files: list[str], capsys: Captured) -> None:
+    """Steps are refused with one file."""
     status, _, errors = called(capsys, files[0], "--scene", scene, "--steps", "0.1")
     assert (status, "expected several files with --steps" in errors) == (2, True)
-    status, _, errors = called(capsys, files[0], "--scene", scene, "--picture", "a.svg")
-    assert (status, "expected several files whose steps are known" in errors) == (2, True)
-
-
-# The picture.
-
-
-@pytest.mark.parametrize("ending", by_turns(["svg", "pdf", "png"]))
-def test_a_picture_is_written(
-    ending: str, scene: Path, files: list[str], tmp_path: Path, capsys: Captured
-) -> None:
-    """The picture is written in each format, beside the answer; no half-written file stays behind."""
-    file = tmp_path / "new" / f"order.{ending}"
-    status, _, errors = within(capsys, *files, "--scene", scene, "--picture", file)
-    assert (status, f"wrote {file}" in errors) == (0, True)
-    marks = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}
-    assert file.read_bytes().startswith(marks[ending])
-    assert [*file.parent.iterdir()] == [file]
-
-
-def test_the_picture_shows_every_error(judged: FilesJudgement) -> None:
-    """A line for each quantity through its errors, its floor, and the sentences as its alt text."""
-    picture = order_picture.picture("short on f64", judged.order)
-    assert all(order.sentence in picture.alt for order in judged.order)
-    with plotting():
-        figure = picture.figure()
-    lines = {line.get_gid(): line for axes in figure.axes for line in axes.lines}
-    for order in judged.order:
-        assert list(lines[order.quantity].get_ydata()) == [p.error for p in order.points]
-    floors = [line for axes in figure.axes for line in axes.lines if line.get_gid() == "floor"]
-    assert len(floors) == len(judged.order)
-
-
-def test_without_matplotlib_the_mend_is_said(
-    scene: Path, files: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """Before anything is judged."""
-    monkeypatch.setattr("taylor_verify.cli.inputs.find_spec", lambda name: None)
-    file = tmp_path / "order.svg"
-    status, out, errors = called(capsys, *files, "--scene", scene, "--picture", file)
-    assert (status, out) == (2, "")
-    assert "pip install 'taylor-verify[plots]'" in errors
-    assert not file.exists()
 
 
 def test_files_of_another_start_are_named(scene: Path, files: list[str], tmp_path: Path) -> None:

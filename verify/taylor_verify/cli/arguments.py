@@ -138,7 +138,6 @@ files+ FILE  a trajectory with a column t and any of: w1 w2 w3 (angular velocity
 --steps H,H,...  the steps of several files, in their order; default: what the files or their names say
   (run_h0.05.csv)
 --knob NAME  order several files by another number of their names: --knob rtol for run_rtol1e-6.csv
---picture FILE  draw the errors of several files against their steps (svg, pdf, png; needs matplotlib)
 {_CI}""",
     ),
     "certify": (
@@ -187,7 +186,7 @@ what FAMILY  a shipped family (`taylor-verify list`), a template (a scene file i
 {_TOLERANCE.strip()}
 --executor E [local]  local, or dask:ADDRESS of a dask scheduler; default: local
 --jobs N  the number of processes on this machine; default: one for each core
---out DIR  write the rows (Parquet), a summary, a picture and the worst cases to DIR
+--out DIR  write the rows (Parquet), a summary and the worst cases to DIR
 --resume  go on with an interrupted sweep in the folder of --out
 --worst N [10]  how many of the worst cases are written as scenes; default: 10
 """,
@@ -199,8 +198,8 @@ what FAMILY  a shipped family (`taylor-verify list`), a template (a scene file i
 scene {_SCENE}
 files* FILE  trajectory files, read as `check` reads them: their errors are drawn against time
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
---only NAME,...  draw only these: polhode, momentum, time, herpolhode, axis, spheres, path,
-  errors, load; a single picture is written to the file of --out itself
+--only NAME,...  draw only these: polhode, time, axis, spheres, path, errors, load;
+  a single picture is written to the file of --out itself
 --animate  draw one moving picture: a page that turns and needs no network (--out NAME.html)
 {_RUNG_OF_FILES}
 --columns* NAME=THEIRS,...  THEIRS is the file's column for NAME, as in `check`

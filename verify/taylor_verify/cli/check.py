@@ -5,22 +5,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any, Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table
-from taylor_verify.cli.folders import not_written, writable_file
-from taylor_verify.cli.inputs import (
-    known_rungs,
-    read_number,
-    read_scene,
-    read_tolerances,
-    require_matplotlib,
-)
+from taylor_verify.cli.inputs import known_rungs, read_number, read_scene, read_tolerances
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import (
     figure,
@@ -38,7 +30,6 @@ from taylor_verify.judge.series.files import (
     files_judgement,
     judge_each,
     repeated,
-    steps_of,
 )
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
@@ -72,7 +63,6 @@ def answer(options: argparse.Namespace) -> Answer:
         return answer_of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
-    picture = _picture(options, files, steps)
     asked = outputs(options)
     if len(files) == 1:
         one = _judged(options, scene, files[0])
@@ -82,14 +72,7 @@ def answer(options: argparse.Namespace) -> Answer:
     several = files_judgement(each, steps, options.knob or "")
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
-    answered = concluded(asked, several, status, several.document(), text)
-    try:
-        messages = [*answered.messages, *_drawn(several, picture)]
-    except OSError as error:
-        # The judgement of long files is shown in any case.
-        messages = [*answered.messages, not_written(error, "--picture")]
-        answered = answered._replace(status=WRONG_CALL)
-    return answered._replace(messages=messages)
+    return concluded(asked, several, status, several.document(), text)
 
 
 def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:
@@ -138,46 +121,6 @@ def _steps(options: argparse.Namespace) -> list[float] | None:
             raise WrongCall(f"expected a positive step, got {text!r} @ --steps")
     with wrong_calls(" (--steps)"):
         return checked_steps(steps, len(options.files))
-
-
-# The picture.
-
-
-def _picture(
-    options: argparse.Namespace,
-    files: Sequence[TrajectoryFile],
-    steps: Sequence[float] | None,
-) -> Path | None:
-    """Return the file of --picture, known to be possible before the work begins."""
-    from taylor_verify.plotting.picture import ENDINGS
-
-    if options.picture is None:
-        return None
-    path = writable_file(options.picture, "--picture")
-    if path.suffix.lower() not in ENDINGS:
-        expected = f"a file that ends in {', '.join(ENDINGS)}"
-        raise WrongCall(f"expected {expected}, got {options.picture!r} @ --picture")
-    if sum(step is not None for step in steps_of(files, steps, options.knob or "")) < 2:
-        raise WrongCall(
-            "expected several files whose steps are known (--steps 0.1,0.05,...), got fewer than two "
-            "@ --picture"
-        )
-    require_matplotlib("--picture")
-    return path
-
-
-def _drawn(judged: FilesJudgement, path: Path | None) -> list[str]:
-    """Draw the errors against the steps, and say where."""
-    if path is None:
-        return []
-    from taylor_verify.plotting import order
-    from taylor_verify.plotting.picture import save_as
-
-    if not any(order.has_points(one) for one in judged.order):
-        return [f"no picture: no error above zero at a known step @ {path}"]
-    verdict = judged.verdicts[0]
-    save_as(order.picture(f"{verdict.scene} on {verdict.rung}", judged.order), path)
-    return [f"wrote {path}"]
 
 
 # The text about a file.

@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from dataclasses import astuple
 from functools import partial
-from importlib.util import find_spec
-from pathlib import Path
 from time import monotonic
 from typing import Final
 
@@ -21,7 +19,6 @@ from taylor_verify.cli.inputs import known_rungs, parse_tolerance
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
-from taylor_verify.plotting.exceedance import STEM
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 from taylor_verify.words.account import cause_line
@@ -81,17 +78,7 @@ def answer(options: argparse.Namespace) -> Answer:
     messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
     if folder is not None:
         messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
-        messages += _lack_of_picture(folder)
     return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
-
-
-def _lack_of_picture(folder: Path) -> list[str]:
-    """Return the reason why a sweep's folder has no picture; nothing where it has one."""
-    if (folder / f"{STEM}.svg").exists():
-        return []
-    if find_spec("matplotlib") is None:
-        return ["no picture: it takes matplotlib (pip install 'taylor-verify[plots]')"]
-    return ["no picture: no judged error is a finite number above zero"]
 
 
 # The text.

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.draw import components, mesh, momentum_sphere, polhode, spheres
+from taylor_verify.draw import components, mesh, polhode, spheres
 from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.course import turns
@@ -132,8 +132,8 @@ def _face(face: Face) -> dict[str, Any]:
 
 
 def _inset(document: Document) -> dict[str, Any] | None:
-    """Return the curve in the body: the polhode, H of a body with wheels, or the linear impulse."""
-    for surface_of in (polhode.surface, momentum_sphere.surface, spheres.surface):
+    """Return the curve in the body: the polhode, or the direction of H or of the linear impulse."""
+    for surface_of in (polhode.surface, spheres.surface):
         with suppress(NotDrawn):
             return _on_surface(surface_of(document))
     return None

@@ -10,8 +10,6 @@ from taylor_verify.draw import (
     axis_path,
     centre_path,
     components,
-    herpolhode,
-    momentum_sphere,
     polhode,
     spheres,
 )
@@ -23,9 +21,7 @@ Document = Mapping[str, Any]
 # In the order in which they are written.
 KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
     "polhode": polhode.picture,
-    "momentum": momentum_sphere.picture,
     "time": components.picture,
-    "herpolhode": herpolhode.picture,
     "axis": axis_path.picture,
     "spheres": spheres.picture,
     "path": centre_path.picture,

@@ -1,4 +1,4 @@
-"""The directions of both impulses of a solid in a fluid, in the body, on the unit sphere."""
+"""The directions in the body of H of a rigid body, or of both impulses of a solid, on the unit sphere."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.draw.axis_path import momentum_of
 from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import Look
 from taylor_verify.draw.surface import Curve, Surface, figure
@@ -18,20 +19,20 @@ Document = Mapping[str, Any]
 
 _SECOND: Final[Look] = {"color": "#A83C00", "linewidth": 1.5, "dashes": (4, 1.4), "gid": "course"}
 _NAMES: Final = {"x": "linear_impulse", "y": "angular_impulse"}
-# An impulse below this part of its largest value has no direction.
+# A vector below this part of its largest value has no direction.
 _ZERO: Final = 1e-9
 
 
 def surface(document: Document) -> Surface:
-    """Return the directions of x and y, without an impulse that is zero at some time.
+    """Return the directions of H, or of x and y, without a vector that is zero at some time.
 
-    Raises NotDrawn for a rigid body, and for a body without impulses.
+    Raises NotDrawn for a rigid body under loads, and for a body without momentum.
     """
-    if document["body"] is not None:
-        raise NotDrawn(f"expected a solid in a fluid, got a rigid body @ {document['scene']}")
-    directions = _directions(document["course"])
+    if document["body"] is not None and not document["is_free"]:
+        raise NotDrawn(f"expected a body without loads, got a torque @ {document['scene']}")
+    directions = _directions(document)
     if not directions:
-        raise NotDrawn(f"expected impulses with a direction, got zero @ {document['scene']}")
+        raise NotDrawn(f"expected a momentum with a direction, got zero @ {document['scene']}")
     (letter, first), *others = directions.items()
     return Surface(
         times=np.array(document["course"]["t"]),
@@ -42,19 +43,26 @@ def surface(document: Document) -> Surface:
     )
 
 
-def _directions(course: Mapping[str, Any]) -> dict[str, Numbers]:
+def _directions(document: Document) -> dict[str, Numbers]:
     directions = {}
-    for letter, name in _NAMES.items():
-        rows = np.array(course[name])
+    # Where wheels cancel the momentum of the body, only the rounding of the digits is left.
+    wheels = float(np.linalg.norm(document["rotor"] or [0.0]))
+    for letter, rows in _vectors(document).items():
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
-        if sizes.min() > _ZERO * sizes.max():
+        if sizes.min() > _ZERO * max(sizes.max(), wheels):
             directions[letter] = rows / sizes
     return directions
+
+
+def _vectors(document: Document) -> dict[str, Numbers]:
+    if document["body"] is not None:
+        return {"H": momentum_of(document)[0]}
+    return {letter: np.array(document["course"][name]) for letter, name in _NAMES.items()}
 
 
 def picture(document: Document) -> Picture:
     """Return the sphere of one scene. Raises NotDrawn as `surface` does."""
     drawn = surface(document)
     letters = " and ".join([drawn.letter, *("y" for _ in drawn.curves)])
-    alt = f"Directions of the impulses {letters} of {document['scene']} in the body, on the unit sphere."
-    return captioned(document, "spheres", "Impulses on the sphere", alt, partial(figure, drawn))
+    alt = f"Directions of {letters} of {document['scene']} in the body, on the unit sphere."
+    return captioned(document, "spheres", "Momenta on the sphere", alt, partial(figure, drawn))

@@ -28,8 +28,7 @@ class Quantiles:
 class Spread:
     """The errors of one quantity over all bodies.
 
-    ``judged`` rows passed or failed their gate; only these are in the quantiles. ``above`` has pairs: a
-    size of error over attainable, and the share of the judged rows above it.
+    ``judged`` rows passed or failed their gate; only these are in the quantiles.
     """
 
     quantity: str
@@ -38,7 +37,6 @@ class Spread:
     unit: str
     ratio: Annotated[Quantiles | None, about("Of error over attainable.")]
     max: Annotated[Quantiles | None, about("Of the largest error, in unit.")]
-    above: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Files of a sweep: its summary as Markdown, CSV and JSON, a picture, and the worst cases as scenes."""
+"""Files of a sweep: its summary as Markdown, CSV and JSON, and the worst cases as scenes."""
 
 from __future__ import annotations
 
@@ -6,14 +6,11 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.batch.sweeps.questions import Questions
 from taylor_verify.batch.sweeps.summary import with_files
-from taylor_verify.plotting import exceedance
-from taylor_verify.plotting.picture import save
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.status import Status
@@ -24,14 +21,13 @@ from taylor_verify.words.page import traced
 from taylor_verify.words.sheet import sheet
 
 WORST: Final = "worst"
-PICTURES: Final = ("svg", "png")
 _NAMES: Final = tuple(each.name for each in fields(Quantiles))
 _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
 SUMMARY_NAMES: Final = (
-    *(f"{exceedance.STEM}.{kind}" for kind in ("md", "csv", "json", *PICTURES)),
+    *(f"summary.{kind}" for kind in ("md", "csv", "json")),
     WORST,
 )
-"""The names in a sweep's folder of the summary, its picture and the worst cases."""
+"""The names in a sweep's folder of the summary and the worst cases."""
 _REASON: Final = "# Why: "
 # What stands in a name of a scene and in no name of a file.
 _ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
@@ -50,7 +46,7 @@ def write_summary(
 ) -> tuple[SweepSummary, list[Path]]:
     """Write everything in one step; return the summary with the files of its worst cases, and all paths.
 
-    Without matplotlib there is no picture. Raises OSError.
+    Raises OSError.
     """
     files = {case.point: _file(rank, case) for rank, case in enumerate(summary.worst, 1)}
     summary = with_files(summary, files)
@@ -67,8 +63,7 @@ def write_summary(
     earlier = [
         file for file in (folder / WORST).glob("*.toml") if first_line(file).startswith(_REASON)
     ]
-    written = [*replace_files(folder, texts, stale=earlier), *_drawn(folder, summary)]
-    return summary, written
+    return summary, [*replace_files(folder, texts, stale=earlier)]
 
 
 def document(summary: SweepSummary) -> dict[str, Any]:
@@ -160,13 +155,3 @@ def _reason(summary: SweepSummary, case: WorstCase, questions: Questions) -> str
         f"# Error over attainable: {size}. "
         f"Scene {case.scene} of a sweep of {summary.total}{drawn}.\n"
     )
-
-
-def _drawn(folder: Path, summary: SweepSummary) -> list[Path]:
-    if find_spec("matplotlib") is None:
-        return []
-    try:
-        drawn = exceedance.picture(summary)
-    except ValueError:
-        return []
-    return save([drawn], folder, PICTURES)

@@ -7,7 +7,6 @@ the exact one. Libraries for this (t-digest, DDSketch) return numbers that did n
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator
 from itertools import accumulate
 from math import inf, isfinite
 from typing import Any, Final
@@ -21,8 +20,6 @@ Array = np.ndarray[Any, Any]
 # The bits of a double behind those of a bin: the sign, the exponent and ten bits of the fraction are left.
 _BELOW_A_BIN: Final = 42
 _SHARES: Final = (0.5, 0.9, 0.99, 0.999, 1.0)
-# Points of a curve, the tail as finely drawn as the rest.
-_CURVE: Final = 200
 
 
 class Sizes:
@@ -48,28 +45,10 @@ class Sizes:
         """Return the quantiles; None where nothing was counted. A size that is not finite is None."""
         if not self.count:
             return None
-        bins, totals = self._cumulated()
+        bins = sorted(self._counts)
+        totals = list(accumulate(self._counts[which] for which in bins))
         sizes = (self._largest[bins[_place(totals, share * self.count)]] for share in _SHARES)
         return Quantiles(*(size if isfinite(size) else None for size in sizes))
-
-    def above(self) -> tuple[tuple[float, float], ...]:
-        """Return sizes, each with the share of all that are larger; the largest has the share 0."""
-        return tuple(self._curve()) if self.count else ()
-
-    def _curve(self) -> Iterator[tuple[float, float]]:
-        bins, totals = self._cumulated()
-        # Equal steps of the share, and equal ratios of what is left.
-        shares = [k / _CURVE for k in range(_CURVE + 1)]
-        shares += [1 - 10 ** (-k / 10) for k in range(1, 91)]
-        places = sorted({_place(totals, share * self.count) for share in shares})
-        for place in places:
-            size = self._largest[bins[place]]
-            if isfinite(size) and size > 0:
-                yield size, 1 - totals[place] / self.count
-
-    def _cumulated(self) -> tuple[list[int], list[int]]:
-        bins = sorted(self._counts)
-        return bins, list(accumulate(self._counts[which] for which in bins))
 
 
 def _place(totals: list[int], wanted: float) -> int:

@@ -168,8 +168,7 @@ class _Quantity:
     def spread(self) -> Spread:
         counts = {status.value: self._counts[status.value] for status in Status}
         ratio, largest = self._ratio.quantiles(), self._max.quantiles()
-        judged, above = self._ratio.count, self._ratio.above()
-        return Spread(self._name, counts, judged, self._unit, ratio, largest, above)
+        return Spread(self._name, counts, self._ratio.count, self._unit, ratio, largest)
 
 
 def _rows(part: Any) -> Rows:

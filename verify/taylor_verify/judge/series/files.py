@@ -101,7 +101,7 @@ def files_judgement(
     ``steps`` are the steps of the files, if the caller knows them. Otherwise a step is read from the file,
     its name or the spacing of its rows; with a ``knob`` the number of that name is, in place of a step.
     """
-    known = steps_of([judgement.file for judgement in judged], steps, knob)
+    known = _steps_of([judgement.file for judgement in judged], steps, knob)
     samples = [
         Sample(judgement, step.value, is_step=knob in ("", *STEP_COLUMNS))
         for judgement, step in zip(judged, known, strict=True)
@@ -190,7 +190,7 @@ def checked_steps(steps: Iterable[Any], count: int) -> list[float]:
     return values
 
 
-def steps_of(
+def _steps_of(
     files: Sequence[TrajectoryFile], given: Sequence[float] | None = None, knob: str = ""
 ) -> tuple[FileStep | None, ...]:
     """Return the step of each file: as given, or from the file, its name or its rows; or another knob.
