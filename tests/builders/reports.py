@@ -111,7 +111,7 @@ def write_remade(place: Path, monkeypatch: pytest.MonkeyPatch, errors: Mapping[s
     def judged(jobs: list[Job], *_: Any) -> list[Any]:
         scenes = {job.name for job in jobs}
         rows = tuple(verdict for verdict in made if verdict.scene in scenes)
-        return [SimpleNamespace(verdicts=rows, record=None, costs={}, causes=(), notes=())]
+        return [SimpleNamespace(verdicts=rows, record=None, causes=(), notes=())]
 
     monkeypatch.setattr("taylor_verify.batch.judging.judge_all", judged)
 

@@ -171,9 +171,7 @@ def test_several_scenes_run_in_processes_and_come_in_the_order_asked(
     out, error = capsys.readouterr()
     rows = json.loads(out)["verdicts"]
     assert [row["scene"] for row in rows if row["quantity"] == "omega"] == scenes
-    *progress, costs = error.splitlines()
-    assert len(progress) == len(scenes)
-    assert "processor time" in costs
+    assert len(error.splitlines()) == len(scenes)
     numbers = [[row["max"] for row in rows if row["scene"] == scene] for scene in scenes]
     assert numbers[0] == numbers[2] != numbers[1]
 

@@ -10,7 +10,6 @@ from typing import Any
 
 from taylor_verify import types
 from taylor_verify.judge.causes.answers import with_causes
-from taylor_verify.judge.costs import SOLVING, Costs, total
 from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.files.stored import with_note_of_answer
 from taylor_verify.judge.judgement import Judgement, judgement, unjudged
@@ -51,9 +50,8 @@ def judge_scene(
         is_missing = outcome is Outcome.NO_PACKAGE
         cause = Cause.MISSING_PACKAGE if is_missing else Cause.NOT_POSED
         return unjudged(scene, solver, rung, status, detail, cause, outcome)
-    costs, began = Costs(), perf_counter()
-    with costs.of(SOLVING):
-        trajectory = _answer(solver, problem)
+    began = perf_counter()
+    trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
     if trajectory.file is not None:
         try:
@@ -63,8 +61,7 @@ def judge_scene(
     judged = judgement(problem, solver, trajectory, seconds, asked)
     if causes:
         judged = with_causes(judged, problem, trajectory)
-    judged = with_note_of_answer(judged, rung, trajectory)
-    return replace(judged, costs=total([costs.seconds, judged.costs]))
+    return with_note_of_answer(judged, rung, trajectory)
 
 
 def _judged_as_file(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Final, overload
 from taylor_verify.batch.comparison import Comparison
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
 from taylor_verify.batch.selection import Selection
-from taylor_verify.judge.costs import total
 from taylor_verify.judge.judgement import Judgement, NotPassed
 from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete
@@ -127,11 +126,6 @@ class Judgements(Sequence[Judgement]):
     def summary(self) -> dict[str, int]:
         """The number of verdicts of each status."""
         return summary(self.verdicts)
-
-    @property
-    def costs(self) -> dict[str, float]:
-        """Processor seconds of all runs together by stage, the largest first."""
-        return total(judgement.costs for judgement in self.judgements)
 
     def document(self) -> dict[str, Any]:
         """Return the document of `taylor-verify run --json`."""

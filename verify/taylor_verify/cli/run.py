@@ -28,7 +28,6 @@ from taylor_verify.cli.sentences import (
     status_text,
 )
 from taylor_verify.cli.streams import say
-from taylor_verify.judge.costs import sentence
 from taylor_verify.records.answers import Against
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import is_state
@@ -129,8 +128,6 @@ def _answer(
         document["against"] = complete(against)
         status = graver(status, comparison.exit_status)
     left = [f"not run: {o.scene} on {o.rung}: {o.why}" for o in results.left_out]
-    if len(results.selection.scenes) > 1 and results.costs:
-        left.append(sentence(results.costs))
     text = partial(_text, results, explained)
     answered = concluded(asked, results, status, document, text)
     return answered._replace(messages=[*messages, *answered.messages, *left])

@@ -17,7 +17,6 @@ from mpmath import mp
 
 from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.costs import CONDITION, CONSERVED, Costs
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.laws import Laws
 from taylor_verify.judge.errors.measured import Comparison, Measured
@@ -133,9 +132,7 @@ class Gate:
         )
 
 
-def gates_of(
-    run: Run, steps: Steps, costs: Costs, inputs: InputRounding | None = None
-) -> list[Gate]:
+def gates_of(run: Run, steps: Steps, inputs: InputRounding | None = None) -> list[Gate]:
     """Return the gates of all quantities that an answer determines.
 
     ``inputs`` are the effect of the input's rounding on an answer from elsewhere. Raises Unsettled if the
@@ -144,19 +141,15 @@ def gates_of(
     problem, solver, rung = run.problem, run.solver, run.problem.rung
     bits, digits = working_bits(rung.bits), truth_digits(rung.bits)
     roundoff, velocities = rung.unit_roundoff, solver.carries_velocities
-    with mp.workprec(bits), costs.of(CONDITION):
+    with mp.workprec(bits):
         base = floor(problem.given, problem.scene, roundoff, steps.counted, velocities)
     answer, exact = run.trajectory.quantities, truth(problem.given, digits)
     compared = Comparison(problem.given, exact, answer, digits, bits)
-    measured = compared.measured(base.nodes, costs)
+    measured = compared.measured(base.nodes)
     with mp.workprec(bits):
         gates = _Gates(run, base, steps, measured)
-        every = [*gates.states()]
-        with costs.of(CONSERVED):
-            every += gates.conserved()
-            every += gates.sound_attitude()
-        every += gates.velocities()
-        every += gates.laws(exact, digits, bits)
+        every = [*gates.states(), *gates.conserved(), *gates.sound_attitude()]
+        every += [*gates.velocities(), *gates.laws(exact, digits, bits)]
     return [gate.with_input(inputs, float(roundoff)) if inputs else gate for gate in every]
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.costs import Costs
 from taylor_verify.judge.floor.steps import count_steps
 from taylor_verify.judge.gated import gates_of
 from taylor_verify.judge.initial import initial_verdict
@@ -40,7 +39,6 @@ class NotPassed(AssertionError):
 class Judgement:
     """The verdicts of one run and the record of their numbers (None if there was nothing to compare).
 
-    ``costs`` are processor seconds by stage: solving, the exact motion, the orbit's condition, ...
     ``causes`` explain nearly all of the error of a failed quantity. ``notes`` are sentences on the answer
     itself, such as that its numbers are float32, and on what was not compared. The truth value of a
     judgement is ``passed``.
@@ -48,7 +46,6 @@ class Judgement:
 
     verdicts: tuple[Verdict, ...]
     record: Record | None
-    costs: Mapping[str, float] = field(default_factory=dict, kw_only=True)
     causes: tuple[LikelyCause, ...] = field(default=(), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
@@ -127,7 +124,7 @@ def judgement(
     may claim. ``tolerances`` replace the bounds. The first verdict is on the start, if a sample is there.
     An unfinished trajectory and a missing truth are verdicts; they raise nothing.
     """
-    run, costs = Run(problem, solver, trajectory, tolerances), Costs()
+    run = Run(problem, solver, trajectory, tolerances)
     main, outcome = MAIN[problem.scene.model], trajectory.outcome
     if outcome.is_unavailable:
         status, reason = Status.UNAVAILABLE, stated(Cause.UNFINISHED, str(trajectory.detail))
@@ -138,10 +135,10 @@ def judgement(
     else:
         try:
             steps = count_steps(problem, solver, trajectory.steps, seconds)
-            gates = gates_of(run, steps, costs)
+            gates = gates_of(run, steps)
             verdicts = (*initial_verdict(gates, Carried.START), *(gate.verdict for gate in gates))
             record = run_record(run, [gate.record for gate in gates])
-            return Judgement(verdicts, record, costs=costs.seconds)
+            return Judgement(verdicts, record)
         except Unsettled as doubt:
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, str(doubt))
     return Judgement((run.verdict(main, status, reason=reason),), None)

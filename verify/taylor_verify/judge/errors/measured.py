@@ -22,7 +22,6 @@ from mpmath import mp
 
 from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.solution import Solution
-from taylor_verify.judge.costs import CONSERVED, ERRORS, TRUTH, Costs
 from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.state import (
@@ -127,11 +126,10 @@ class Comparison:
     digits: int
     bits: int
 
-    def measured(self, nodes: Sequence[int], costs: Costs) -> Measured:
+    def measured(self, nodes: Sequence[int]) -> Measured:
         """Measure all quantities. Raises Unsettled if the exact motion cannot be computed."""
         states, excess, arc = States(), list[Floats](), Arc()
-        with costs.of(TRUTH):
-            start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
+        start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
         conserved = self._determined(start)
         worked = self._worked(conserved, start)
         arc_scene = self._arc_scene
@@ -139,31 +137,28 @@ class Comparison:
         drifts = Drifts(self.scene, start, self.digits, conserved, arc_scene, worked)
         velocities = [VelocityErrors(group) for group in self._velocities]
         wanted, at_nodes, last = set(nodes), list[Motion](), None
-        for block in self.blocks(costs):
+        for block in self.blocks():
             with mp.workprec(self.bits):
-                with costs.of(ERRORS):
-                    for distances in state_distances(block.scene, block.truth, block.answer, arc):
-                        states.add(distances)
-                    for one in velocities:
-                        one.add(block.scene.body, block.truth, block.velocities[one.group])
-                with costs.of(CONSERVED):
-                    if conserved:
-                        own = {name: block.own[name] for name in groups}
-                        drifts.add(block.scene.clock.elapsed, block.truth, block.answer, own)
-                    if "quaternion" in block.own:
-                        excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
-                    elif "attitude" in block.own:
-                        excess.append(_stretch(block.own["attitude"]))
+                for distances in state_distances(block.scene, block.truth, block.answer, arc):
+                    states.add(distances)
+                for one in velocities:
+                    one.add(block.scene.body, block.truth, block.velocities[one.group])
+                if conserved:
+                    own = {name: block.own[name] for name in groups}
+                    drifts.add(block.scene.clock.elapsed, block.truth, block.answer, own)
+                if "quaternion" in block.own:
+                    excess.append(in_doubles(norms(block.own["quaternion"]) - 1))
+                elif "attitude" in block.own:
+                    excess.append(_stretch(block.own["attitude"]))
             first = block.places[0]
             at_nodes.append(block.truth.at([k - first for k in block.places if k in wanted]))
             last = block
         assert last is not None
         errors = [each for each in states.errors() if self._has_quantity(each.quantity)]
-        with costs.of(ERRORS):
-            block = self._shifted(errors, last)
-            with mp.workprec(self.bits):
-                shifts = self._shifts(block, errors)
-                shifted = [self._shift_of(one, block) for one in velocities]
+        block = self._shifted(errors, last)
+        with mp.workprec(self.bits):
+            shifts = self._shifts(block, errors)
+            shifted = [self._shift_of(one, block) for one in velocities]
         return Measured(
             errors,
             drifts.errors(),
@@ -258,23 +253,22 @@ class Comparison:
 
     # The rows in blocks.
 
-    def blocks(self, costs: Costs) -> Iterator[Block]:
+    def blocks(self) -> Iterator[Block]:
         """Yield all rows in blocks of some thousands, and log the progress."""
         count = len(self.scene.clock.instants)
         size = BLOCK_OF_SERIES if self.exact.route == "taylor" else BLOCK
         for begin in range(0, count, size):
             end = min(begin + size, count)
-            yield self._block(range(begin, end), costs)
+            yield self._block(range(begin, end))
             if count > BLOCK:
                 words = f"{100 * end // count} % of {count} rows"
                 _PROGRESS.info(words, extra={"share": end / count})
 
-    def _block(self, places: Sequence[int], costs: Costs) -> Block:
+    def _block(self, places: Sequence[int]) -> Block:
         clock = self.scene.clock
         instants = tuple(clock.instants[k] for k in places)
         scene = replace(self.scene, clock=Clock(clock.start, instants))
-        with costs.of(TRUTH):
-            truth = self.exact.motion(scene.clock.elapsed, self.digits)
+        truth = self.exact.motion(scene.clock.elapsed, self.digits)
         own = rows_at(self.quantities, places)
         velocities = {name: own.pop(name) for name in self._velocities}
         own |= {name: rows for name, rows in truth.quantities.items() if name not in self._has}
@@ -286,4 +280,4 @@ class Comparison:
             return last
         count = len(self.scene.clock.instants)
         worst = {index_of_largest(error.values) for error in errors}
-        return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))), Costs())
+        return self._block(sorted(worst.union(evenly(count, MOST_SHIFTED))))

@@ -22,7 +22,6 @@ from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
-from taylor_verify.judge.costs import Costs
 from taylor_verify.judge.files.coverage import (
     Extent,
     comparable,
@@ -213,7 +212,7 @@ def _judged(answer: FileRows, tolerances: Tolerances) -> Judgement:
             side.places,
             float(side.rung.unit_roundoff),
         )
-        of_side = gates_of(run, Steps(0), Costs(), inputs)
+        of_side = gates_of(run, Steps(0), inputs)
         records.append(run_record(run, [gate.record for gate in of_side]))
         for gate in of_side:
             gates.setdefault(gate.errors.quantity, []).append(gate)
