@@ -7,13 +7,11 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from builders.free_spins import near_separatrix, rotation, spinning
-from builders.free_spins import turned as turned_spin
+from builders.free_spins import rotation
 from builders.gyrostats import (
     MOTIONS,
     OMEGA,
     ROTOR,
-    TILTED,
     TRIAXIAL,
     paced,
     scene_of,
@@ -28,10 +26,6 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.euler import jacobi as top
-from taylor_verify.exact.euler import theta
-from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.gyrostat import sigma
 from taylor_verify.exact.gyrostat.closed import enclosed
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
@@ -145,39 +139,6 @@ def test_an_endless_approach_is_followed(name: str) -> None:
 def test_taylor_series_agree(name: str) -> None:
     """Enclosed Taylor series, which know no elliptic function, find the same motion."""
     agrees_with_series(MOTIONS[name], INSTANTS[:3])
-
-
-@st.composite
-def tops(draw: st.DrawFn) -> FreeSpin:
-    """Free bodies without wheels: any, steady or nearly so, on the separatrix or beside it."""
-    tiny = Fraction(draw(st.integers(0, 1)), 10 ** draw(st.integers(1, 60)))
-    if draw(st.booleans()):
-        spin = near_separatrix(tiny)
-    else:
-        moments = [Fraction(draw(st.integers(1, 20))) for _ in range(3)]
-        omega = [Fraction(draw(SMALL)) for _ in range(3)]
-        axis = draw(st.sampled_from([None, 0, 1, 2]))
-        omega = [w if axis in (None, i) else tiny * w for i, w in enumerate(omega)]
-        spin = spinning(tuple(moments), tuple(omega))
-    turn = rotation(*draw(st.tuples(SMALL, SMALL, SMALL, SMALL).filter(any)))
-    return turned_spin(turn, spin) if draw(st.booleans()) else spin
-
-
-def is_eulers_top(spin: FreeSpin) -> None:
-    """Weierstrass's formula finds the motion of both routes of a rigid body."""
-    none = FreeGyrostat(spin.inertia, vector(0, 0, 0), spin.omega)
-    instants = paced(none, (Fraction(3, 2), Fraction(-40)))
-    motion = sigma.free_rotation(none, TILTED).motion(instants, 20)
-    routes = (route.free_rotation(spin, TILTED) for route in (theta, top))
-    with mp.workdps(40):
-        assert all(apart(motion, r.motion(instants, 20)) <= 3 * mpf(10) ** -20 for r in routes)
-
-
-@given(tops())
-@settings(max_examples=5)
-def test_without_wheels_it_is_eulers_top(spin: FreeSpin) -> None:
-    """Weierstrass's formula, without regimes, is a third route of Euler's top."""
-    is_eulers_top(spin)
 
 
 @given(gyrostats)

@@ -12,10 +12,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.exact.lattice import Periods, lattice
 from taylor_verify.exact.real_roots import real_roots
-from taylor_verify.exact.spectrum import Cubic
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball
-from taylor_verify.numbers.tensors import Matrix
 
 BITS = 200
 # Some twenty operations, each of half a last place, on numbers that lose two bits at most.
@@ -76,16 +73,6 @@ def test_any_rational_roots_are_enclosed(roots: set[Fraction]) -> None:
         assert all(holds(*both) for both in zip(enclosed, sorted(roots), strict=True))
 
 
-def turned(values: Sequence[Fraction]) -> Matrix:
-    """A full symmetric matrix with these eigenvalues: Q diag Q^T with a rational rotation Q."""
-    rows = (-5, 10, 10), (14, 5, 2), (-2, 10, -11)
-    Q: Matrix = tuple(tuple(Fraction(entry, 15) for entry in row) for row in rows)
-    assert tensors.product(Q, tensors.transpose(Q)) == tensors.diagonal((Fraction(1),) * 3)
-    return tensors.product(
-        tensors.product(Q, tensors.diagonal(tuple(values))), tensors.transpose(Q)
-    )
-
-
 SPECTRA = [
     (3, 2, 1),
     (1, Fraction(1, 2), 0),
@@ -99,19 +86,6 @@ SPECTRA = [
     (1, TINY, -1 + TINY),
     (HUGE, 1, TINY),
 ]
-
-
-@pytest.mark.parametrize("values", SPECTRA)
-def test_eigenvalues_and_their_gaps_are_narrow(values: tuple[Fraction, ...]) -> None:
-    """Needles, nearly equal ones and zeros lose no digits."""
-    high, middle, low = map(Fraction, values)
-    mean = (high + middle + low) / 3
-    with ctx.workprec(BITS):
-        spectrum = Cubic.of(turned((high, middle, low))).spectrum()
-        exact = [high, middle, low, *(z - mean for z in (high, middle, low))]
-        exact += [high - middle, middle - low, high - low]
-        enclosed = [*spectrum.values, *spectrum.deviations, *spectrum.gaps]
-        assert all(holds(*both) for both in zip(enclosed, exact, strict=True))
 
 
 @pytest.mark.parametrize("values", SPECTRA)

@@ -21,9 +21,8 @@ from taylor_verify.exact import rotation
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.euler import fixed_axis, jacobi
 from taylor_verify.exact.euler import orbit as euler_orbit
-from taylor_verify.exact.euler.moduli import Moduli
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.euler.theta import _Precession
+from taylor_verify.exact.gyrostat import sigma
 from taylor_verify.exact.kirchhoff import wave
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
@@ -130,21 +129,11 @@ def _backward_kirchhoff(patch: Patch) -> None:
 
 
 def _backward_balls(patch: Patch) -> None:
-    """-u_0 for u_0 where the motion is elliptic or on the separatrix, and turns in the other sense."""
-    moduli, precession, turn = Moduli.__init__, _Precession.__init__, rotation.turn
-
-    def orbit(self: Moduli, spin: FreeSpin) -> None:
-        moduli(self, spin)
-        dn, sn, cn = self.functions
-        self.functions = dn, -sn, cn
-
-    def precessing(self: _Precession, *arguments: Any) -> None:
-        precession(self, *arguments)
-        self._rate = -self._rate
-
-    patch.setattr(Moduli, "__init__", orbit)
-    patch.setattr(_Precession, "__init__", precessing)
-    patch.setattr(rotation, "turn", lambda axis, half: turn(axis, -half))
+    """-t for t where the body tumbles, and a turn in the other sense."""
+    times, turn = sigma.balls_of, rotation.turn
+    patch.setattr(sigma, "balls_of", lambda elapsed: [-t for t in times(elapsed)])
+    for module in (rotation, sigma):
+        patch.setattr(module, "turn", lambda axis, half: turn(axis, -half))
 
 
 def _backward_floats(patch: Patch) -> None:

@@ -23,14 +23,14 @@ def top(scene: Scene) -> tuple[RigidBody, Spin]:
 
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm where anything tracked has none."""
-    from taylor_verify.exact.euler import theta
     from taylor_verify.exact.euler.fixed_axis import in_balls
     from taylor_verify.exact.euler.moments.erf import loaded_rotation
+    from taylor_verify.exact.gyrostat.sigma import top_rotation
 
     body, start = top(scene)
     spin, attitude = FreeSpin(body.inertia, start.omega), _tracked(scene, start)
     if body.is_free:
-        return theta.free_rotation(spin, attitude)
+        return top_rotation(spin, attitude)
     steady_axis = axis_under(spin, body.moment)
     if steady_axis is not None:
         return in_balls(*steady_axis, attitude)

@@ -42,12 +42,12 @@ class Frame(NamedTuple):
     c: Vector
 
 
-def _frames() -> Iterator[Frame]:
-    """Rational frames: the momentum may pass the axes of one, and not those of all."""
+def _frames() -> Iterator[tuple[Frame, Frame, Frame]]:
+    """Three rational frames of each attitude: the momentum may pass the axes of one, and not all."""
     for quaternion in ((1, 0, 0, 0), (3, 1, 1, 1), (4, 3, -2, 1)):
         scalar, *vector = map(Fraction, quaternion)
         x, y, z = rotation_matrix((scalar, vector[0], vector[1], vector[2]))
-        yield from (Frame(x, y, z), Frame(y, z, x), Frame(z, x, y))
+        yield Frame(x, y, z), Frame(y, z, x), Frame(z, x, y)
 
 
 FRAMES: Final = tuple(_frames())

@@ -15,6 +15,7 @@ from taylor_verify.exact.gyrostat.closed import free_gyrostat
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.sigma import best_azimuth
 from taylor_verify.exact.gyrostat.spins import steady_spins
+from taylor_verify.exact.lattice import lattice
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
 from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes.scene import Scene
@@ -94,7 +95,8 @@ def _recurring(free: FreeGyrostat) -> list[mpf]:
     bits = mp.prec + _GUARD_BITS
     for _ in range(_ATTEMPTS):
         with ctx.workprec(bits), suppress(Undecidable):
-            curve, azimuth = best_azimuth(free)
+            curve = lattice(*free.invariants)
+            azimuth = best_azimuth(free, curve)
             sizes = [curve.period, *(curve.parameters or ())]
             turned = azimuth.per_period
             is_sharp = all(number.rel_accuracy_bits() >= mp.prec for number in sizes)

@@ -10,14 +10,15 @@ four factors of modulus one, of which no branch has to be chosen.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from functools import cache, cached_property, partial
+from functools import cached_property
 from typing import NamedTuple, final
 
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Undecidable, balls, balls_of
+from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.euler.rotations import BallCourse, Moving, OneByOne, RotationBalls, Rows
 from taylor_verify.exact.gyrostat.azimuth import (
     FRAMES,
@@ -39,19 +40,28 @@ from taylor_verify.exact.rotation import (
 )
 from taylor_verify.exact.solution import Time
 from taylor_verify.numbers.irrational import ball
-from taylor_verify.numbers.tensors import Vector, dot
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, dot
 from taylor_verify.scenes.motion import Quaternion
 
 
-def free_rotation(free: FreeGyrostat, attitude: Quaternion | None) -> RotationBalls:
-    """The free motion of a rigid body with wheels, and R where an attitude is given."""
-    # Chosen once, at the first precision that tells.
-    frame = cache(partial(_best_frame, free))
+def top_rotation(spin: FreeSpin, attitude: Quaternion | None) -> RotationBalls:
+    """The free motion of a rigid body without wheels, and R where an attitude is given."""
+    free = FreeGyrostat(spin.inertia, ZERO_VECTOR, spin.omega)
+    return free_rotation(free, attitude, spin.regime.value)
+
+
+def free_rotation(
+    free: FreeGyrostat, attitude: Quaternion | None, regime: str | None = None
+) -> RotationBalls:
+    """The free motion of a rigid body with wheels, and R where an attitude is given.
+
+    Its regime is that of a gyrostat, unless another word is given.
+    """
 
     def course() -> BallCourse:
-        return Tumbling(free, frame) if free.outer is None else Turning(free, free.outer)
+        return Tumbling(free) if free.outer is None else Turning(free, free.outer)
 
-    return RotationBalls(free.regime.value, course, attitude)
+    return RotationBalls(regime or free.regime.value, course, attitude)
 
 
 @final
@@ -79,10 +89,10 @@ def _turn(rate: Vector, t: arb) -> list[arb]:
 
 @final
 class Tumbling:
-    """A motion that is not a uniform turning; ``frame`` is that of its azimuth."""
+    """A motion that is not a uniform turning."""
 
-    def __init__(self, free: FreeGyrostat, frame: Callable[[], Frame]) -> None:
-        self._free, self._frame = free, frame
+    def __init__(self, free: FreeGyrostat) -> None:
+        self._free = free
         self._form = momentum_form(free).converted(ball)
         self._K, self._g = [balls(row) for row in free.K], balls(free.g)
         self._lattice = lattice(*free.invariants)
@@ -90,7 +100,7 @@ class Tumbling:
 
     @cached_property
     def _azimuth(self) -> Azimuth:
-        return Azimuth(self._free, point_map(self._free), self._frame(), self._lattice)
+        return best_azimuth(self._free, self._lattice)
 
     @cached_property
     def _tilted_back(self) -> arb_mat:
@@ -188,20 +198,21 @@ class _Factor(NamedTuple):
     sigma: int
 
 
-def best_azimuth(free: FreeGyrostat) -> tuple[Lattice, Azimuth]:
-    """Return the lattice of a motion and its azimuth in the best frame, at the ambient precision."""
-    curve = lattice(*free.invariants)
-    return curve, Azimuth(free, point_map(free), _best_frame(free), curve)
+def best_azimuth(free: FreeGyrostat, curve: Lattice) -> Azimuth:
+    """Return the azimuth of a motion in a frame whose poles are far from the real line.
+
+    Any frame that has its poles would be right.
+    """
+    place = point_map(free)
+    for frames in FRAMES:
+        made = [_azimuth(free, place, frame, curve) for frame in frames]
+        if azimuths := [azimuth for azimuth in made if azimuth and azimuth.distance]:
+            return max(azimuths, key=lambda azimuth: azimuth.distance)
+    raise Undecidable
 
 
-def _best_frame(free: FreeGyrostat) -> Frame:
-    """Return the frame whose poles are farthest from the real line; any that has them would be right."""
-    distances, place, curve = {}, point_map(free), lattice(*free.invariants)
-    for number, frame in enumerate(FRAMES):
-        with suppress(Undecidable, ZeroDivisionError):
-            distance = Azimuth(free, place, frame, curve).distance
-            if distance > 0:
-                distances[number] = distance
-    if not distances:
-        raise Undecidable
-    return FRAMES[max(distances, key=distances.__getitem__)]
+def _azimuth(free: FreeGyrostat, place: PointMap, frame: Frame, curve: Lattice) -> Azimuth | None:
+    """Return the azimuth in a frame; None in one that has too few poles."""
+    with suppress(Undecidable, ZeroDivisionError):
+        return Azimuth(free, place, frame, curve)
+    return None
