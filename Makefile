@@ -66,7 +66,7 @@ dist: $(INSTALLED)  ## Build wheel and sdist into dist, and check what is in the
 reports: $(INSTALLED)  ## Rewrite what is published: reports/data, what is made from it, reports/reference and reports/claims.md
 	@$(BIN)/taylor-verify publish controls hard > /dev/null
 	@$(BIN)/taylor-verify run --out reports
-	@$(BIN)/taylor-verify publish reference portraits enclosure gallery claims > /dev/null
+	@$(BIN)/taylor-verify publish reference portraits enclosure claims > /dev/null
 
 causes: $(INSTALLED)  ## Measure how often likely causes are right (COUNT=20 of each kind) to reports/local/causes.md
 	@$(BIN)/taylor-verify publish causes --count $(or $(COUNT),20)

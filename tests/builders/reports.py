@@ -38,7 +38,6 @@ from taylor_verify_reports.studies.controls import study as controls
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
 from taylor_verify_reports.studies.engines.entry import entry_list
 from taylor_verify_reports.studies.engines.stored import write as write_board
-from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth.page import GROWTH
 from taylor_verify_reports.studies.growth.published import followed
 from taylor_verify_reports.studies.growth.question import Question
@@ -168,16 +167,6 @@ def every_reference() -> Path:
     """Return a report with the exact trajectory of every scene of the standard set."""
     place = folder()
     reference_files.write(place, [reference(load(scene)) for scene in names()])
-    return place
-
-
-@cache
-def for_gallery() -> Path:
-    """Return a report with everything that the gallery draws; only one scene has been run on every rung."""
-    place = folder()
-    every = [("euler/generic", rung) for rung in RUNGS]
-    write_runs(place, [*every, *((s, "f64") for s in gallery.scenes() if s != "euler/generic")])
-    PORTRAITS.write(place, map(portrait_without_run, gallery.scenes()))
     return place
 
 

@@ -1,19 +1,25 @@
 """Pictures: every solver is told from the others, nothing false is joined, every line has a name."""
 
+import re
 from base64 import b64decode
 from collections.abc import Iterator, Mapping
 from itertools import combinations, pairwise
-from math import log10
+from math import floor, inf, log10
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from taylor_verify.draw import file_errors
+from taylor_verify.plotting import log_axes
 from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture, plotting, save
 from taylor_verify.plotting.style import (
@@ -28,6 +34,8 @@ from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.work_precision import front_of, panels_of, series_of
 
 RUNGS = ("f32", "f64", "f80", "f128", "mp237")
+RAISED = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
+LOWERED = str.maketrans(RAISED, "-0123456789")
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -238,6 +246,40 @@ def test_floors_are_drawn_where_their_rung_is(crowded: dict) -> None:
     ]
     assert [1e-34, 1e-15] in floors
     assert floors.count([1e-15]) == len(panels_of(series_of(many(), "seconds"))) - 1
+
+
+def test_errors_of_rungs_are_in_their_own_roundoffs() -> None:
+    """The start, an error of zero and what is no number have no place; the others are in units of u."""
+    gate = {
+        "quantity": "omega",
+        "errors": [0.0, 2e-7, 0.0, None, inf, 4e-7],
+        "attainable": [1e-7] * 6,
+    }
+    times = [10.0, 9.0, 8.0, 7.0, 6.0, 5.0]
+    record = {"rung": "f32", "times": times, "unit_roundoff": 1e-7, "gates": [gate]}
+    ((line,),) = file_errors.panels_of({"f32": record}, 10.0, in_roundoffs=True).values()
+    is_drawn = np.isfinite(line.errors)
+    assert line.times[is_drawn].tolist() == [9.0, 5.0]
+    assert line.errors[is_drawn] == pytest.approx([2, 4])
+    assert line.floor[is_drawn] == pytest.approx([1, 1])
+
+
+# Up to 10^308, the last power of ten that is a double.
+@given(st.floats(-300, 296), st.floats(0.3, 12), st.booleans())
+def test_a_number_at_an_axis_reads_as_it_stands(low: float, decades: float, is_long: bool) -> None:
+    """The text of 1, 2 or 5 of any decade is that number, and axes have as many powers as decades."""
+    power = floor(low)
+    for digit in (1,) if is_long else (1, 2, 5):
+        text = log_axes.number(digit * 10.0**power, is_long)
+        raised = re.fullmatch(rf"(?:(\d)·)?10([{RAISED}]+)", text)
+        value = (
+            int(raised[1] or 1) * 10.0 ** int(raised[2].translate(LOWERED))
+            if raised
+            else float(text)
+        )
+        assert value == pytest.approx(digit * 10.0**power, rel=1e-12)
+    count = log_axes.powers_within(10.0**low, 10.0 ** (low + decades))
+    assert abs(count - decades) <= 1
 
 
 # Names

@@ -28,7 +28,6 @@ KINDS = (
     "reports/scenes.html",
     "reports/scenes/euler-with-attitude.html",
     "reports/scenes/kirchhoff-whole-motion.html",
-    "reports/figures/README.html",
     "reports/reference/README.html",
     "reports/tables/README.html",
     "reports/tables/controls.html",

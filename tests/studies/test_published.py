@@ -28,7 +28,6 @@ from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
-from taylor_verify.records.replacement import first_line
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
@@ -45,13 +44,11 @@ from taylor_verify_reports.studies.enclosure.measure import SCENES, widths
 from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
 from taylor_verify_reports.studies.engines import stored as board
 from taylor_verify_reports.studies.engines.entry import BOARDS
-from taylor_verify_reports.studies.gallery import page as gallery
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.paper.pack import pack
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
-from taylor_verify_reports.studies.source import Report
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.tradeoff import stored as trades
 from taylor_verify_reports.typesetting.paper import images
@@ -272,35 +269,10 @@ def test_exact_trajectories_are_those_of_the_code() -> None:
     assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
 
 
-class Motions(Report):
-    """The report as the gallery reads it, with what is not published made without a run.
-
-    Motions are exact and come out as they were drawn. Records have one error at each sample.
-    """
-
-    def portrait(self, scene: str) -> Any:
-        return reports.portrait_without_run(scene)
-
-    def records(self, scene: str) -> Any:
-        times = self.portrait(scene)["course"]["t"]
-        errors = [1e-16] * len(times)
-        gates = [{"quantity": "omega", "errors": errors, "attainable": errors}]
-        return {"f64": {"rung": "f64", "times": times, "unit_roundoff": 2.0**-53, "gates": gates}}
-
-
-@cache
-def gallery_shown() -> tuple[gallery.Shown, ...]:
-    return tuple(gallery.shown(Motions(REPORTS)))
-
-
 @cache
 def drawable() -> tuple[Picture, ...]:
-    """Return each picture drawn from published data: of measurements, and of exact motions."""
-    measured = [
-        p for study in registry.STUDIES if study.name != "gallery" for p in study.pictures(REPORTS)
-    ]
-    motions = [one.picture for one in gallery_shown() if not one.picture.stem.endswith("-errors")]
-    return (*measured, *motions)
+    """Return each picture drawn from published data."""
+    return tuple(registry.pictures(REPORTS))
 
 
 def published_as(picture: Picture) -> Path:
@@ -312,7 +284,7 @@ def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
     kinds: dict[Any, list[Picture]] = {}
     for picture in drawable():
         kinds.setdefault(picture.figure.func, []).append(picture)
-    assert len(kinds) >= 8
+    assert len(kinds) >= 6
     for same in kinds.values():
         picture = min(same, key=lambda one: published_as(one).stat().st_size)
         assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
@@ -320,29 +292,16 @@ def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
 
 @pytest.mark.slow
 def test_pictures_are_drawn_of_the_published_data() -> None:
-    """Each picture of a measurement, and each of an exact motion, is the published file."""
-    assert len(drawable()) > 15
+    """Each picture of a measurement is the published file."""
+    assert len(drawable()) > 8
     for picture in drawable():
         assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
 
 
 def test_every_published_picture_can_be_drawn_again() -> None:
     """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
-    shown = {one.picture.stem for one in gallery_shown()}
-    drawn = shown | {picture.stem for picture in drawable()}
+    drawn = {picture.stem for picture in drawable()}
     assert {file.stem for file in (REPORTS / "figures").glob("*.svg")} <= drawn
-
-
-def test_the_gallery_shows_every_picture() -> None:
-    """The page has the pictures of the gallery, in their order, and names its maker."""
-    page = REPORTS / "figures/README.md"
-    stems = [one.picture.stem for one in gallery_shown()]
-    assert first_line(page) == first_line_of(gallery.page([]))
-    assert re.findall(r"\]\(([\w-]+)\.svg\)", page.read_text(encoding="utf-8")) == stems
-
-
-def first_line_of(text: str) -> str:
-    return text.partition("\n")[0]
 
 
 # What other pages quote.

@@ -15,7 +15,6 @@ from taylor_verify_reports.studies.controls.study import STUDY as CONTROLS
 from taylor_verify_reports.studies.enclosure.study import STUDY as ENCLOSURE
 from taylor_verify_reports.studies.engines.study import SATELLITE, UNDERWATER
 from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
-from taylor_verify_reports.studies.gallery.study import STUDY as GALLERY
 from taylor_verify_reports.studies.growth.study import STUDY as GROWTH
 from taylor_verify_reports.studies.hard.study import STUDY as HARD
 from taylor_verify_reports.studies.portraits.study import STUDY as PORTRAITS
@@ -39,7 +38,6 @@ STUDIES: Final[list[Study[Any]]] = [
     REFERENCE,
     CAUSES,
     VECTORS,
-    GALLERY,
 ]
 
 

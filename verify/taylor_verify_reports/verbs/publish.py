@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of, wrong_calls
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of
 from taylor_verify.cli.folders import alone_in, writable
 from taylor_verify.cli.progress import advancing, working
 from taylor_verify.cli.streams import say
@@ -108,7 +108,7 @@ def run(options: argparse.Namespace) -> Answer:
     given = {study.name: _options_of(study, options, studies) for study in STUDIES}
     if other == "list":
         return _listed(STUDIES)
-    folder = Path(reports_folder(options.folder, any(study.name != "gallery" for study in studies)))
+    folder = Path(reports_folder(options.folder, bool(studies)))
     _check_sum(folder, options)
     if other == "site":
         return _site(folder, writable(options.site, "--site"))
@@ -272,9 +272,7 @@ def _rendered(folder: Path) -> Answer:
 
 
 def _site(folder: Path, target: Path) -> Answer:
-    from taylor_verify.batch.lock import Occupied
-
-    with wrong_calls(" (--site)", Occupied), _wrong_calls(folder, " @ --site"):
+    with alone_in(target, "--site"), _wrong_calls(folder, " @ --site"):
         from taylor_verify_reports.studies.site.builder import build
 
         made = _files_written(build(folder, target))

@@ -18,7 +18,6 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page import packages
-from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.reference.page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
 from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade
@@ -91,11 +90,6 @@ def scene_page(
     return "\n\n".join(blocks) + "\n"
 
 
-def drawing_of(picture: Picture) -> str:
-    """Return the path of a published picture in the report."""
-    return f"{figures.FOLDER}/{picture.stem}.svg"
-
-
 def motion_place(scene: str) -> str:
     """Return the path of the page on which a scene moves, from the folder of the report."""
     return f"motions/{of_scene(scene)}.html"
@@ -114,9 +108,7 @@ def _turning(scene: str) -> str:
 
 def shown(report: Report, picture: Picture, top: str) -> str:
     """Return Markdown that shows a picture; ``top`` is the path from the page to the report's folder."""
-    drawing = drawing_of(picture)
-    place = drawing if report.has(drawing) else f"scenes/{picture.stem}.svg"
-    return f"![{prose(picture.alt)}]({top}/{place})"
+    return f"![{prose(picture.alt)}]({top}/scenes/{picture.stem}.svg)"
 
 
 def made_with(report: Report) -> str:

@@ -1,1 +1,0 @@
-"""Pictures of some motions, and of their errors."""
