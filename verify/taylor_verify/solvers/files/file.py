@@ -25,6 +25,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
 from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.scalar import Start
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.formats.reading import parted, read_table
@@ -151,9 +152,10 @@ def from_columns(
         raise Refused(faults.lines)
     files, agreed, known = [], list[str](), {**COLUMNS, **own}
     for part in parts.of_rows(times, place, faults):
-        groups, form, settled = one_attitude(part.groups, selection, place, faults)
-        agreed += settled
         instants = tuple(times[k] for k in part.places)
+        start = Start.of(scene, instants, part.groups) if selection.is_doubtful else None
+        groups, form, settled = one_attitude(part.groups, selection, start, place, faults)
+        agreed += settled
         files.append(TrajectoryFile(place, instants, groups, part.digits, columns=known, form=form))
     if faults.lines:
         raise Refused(faults.lines)
