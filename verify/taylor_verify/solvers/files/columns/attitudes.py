@@ -82,7 +82,7 @@ def one_attitude(
             left[group] = MadeRows([left[group], first.rows], make, 3)
         elif group in groups:
             ours = " ".join(COLUMNS[group])
-            notes.append(f"{ours} are left in space axes: the file has no attitude")
+            notes.append(f"{ours} are compared along space axes: the file has no attitude")
     form = first.choice.group if first and first.choice.group in FORMS else ""
     return left, form, notes
 
