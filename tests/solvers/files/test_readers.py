@@ -236,7 +236,7 @@ def test_the_twist_of_an_odometry_is_of_the_body(tmp_path: Path) -> None:
         writer.finish()
     table = read_table(tmp_path / "run.mcap")
     numbers = {column.name: str(column.values[0]) for column in table.columns}
-    assert numbers["t"] == "3.000000007"
+    assert numbers["stamp"] == "3.000000007"
     assert [numbers[f"q{i}"] for i in range(4)] == ["4", "1", "2", "3"]
     assert [numbers[f"{c}{i}"] for c in "cuw" for i in (1, 2, 3)] == [*"123", *"123", *"567"]
     assert "frame base_link to odom" in table.notes[0]

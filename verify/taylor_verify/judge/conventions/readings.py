@@ -85,7 +85,9 @@ def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[R
         for in_space in (False,) if is_placed else (False, True):
             words = [*in_unit, *[f"{together} are in space axes"] * in_space]
             axes = frames.space if in_space or is_placed else frames.body
-            yield Reading(tuple(words), partial(_read_vectors, axes, pis, in_space), bool(unit))
+            yield Reading(
+                tuple(words), partial(_read_vectors, axes, pis, in_space=in_space), bool(unit)
+            )
         if group == "omega" and not frames.cost:
             rates = f"{together} are rates of Euler angles, roll' pitch' yaw', and no body rates"
             yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis), bool(unit))
@@ -98,7 +100,14 @@ def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[R
             yield Reading((words_of_factor,), read, is_factor=True)
 
 
-def _read_vectors(axes: Axes, pis: Fraction | None, in_space: bool, rows: Array, R: Array) -> Array:
+def space_axes() -> Reading:
+    """Return the reading of vectors that are known to be along space axes, which is no departure."""
+    return Reading((), partial(_read_vectors, Frames().space, None, in_space=True))
+
+
+def _read_vectors(
+    axes: Axes, pis: Fraction | None, rows: Array, R: Array, *, in_space: bool
+) -> Array:
     vectors = axes.vectors(rows)
     if pis is not None:
         is_exact = rows.dtype == object

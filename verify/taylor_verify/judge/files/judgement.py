@@ -20,6 +20,7 @@ from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, causes
 from taylor_verify.judge.causes.material import are_known
 from taylor_verify.judge.conventions.angles import with_angles
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
+from taylor_verify.judge.conventions.readings import space_axes
 from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.files.coverage import (
@@ -136,7 +137,8 @@ def judge_file(
     compared = replace(file, groups={name: file.groups[name] for name in groups})
     tracked = with_needs({scene.known_groups[name].quantity for name in groups})
     scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
-    known, explained = Conventions((), World(scene), {}), Explained()
+    along_space = {name: space_axes() for name in file.in_space if name in groups}
+    known, explained = Conventions((), World(scene), along_space), Explained()
     answer = FileRows.of(compared, rung, known)
     try:
         judged = None if _is_far(answer) else _judged(answer, tolerances)
@@ -145,6 +147,7 @@ def judge_file(
             explained = causes_of_file(compared, rung, known, judged)
             if scene.body.loads is None and (accept_conventions or not explained.is_motion):
                 known = conventions(compared, scene, rung)
+                known = replace(known, readings={**along_space, **known.readings})
             if angles:
                 known = replace(known, findings=(angles, *known.findings))
             if accept_conventions:

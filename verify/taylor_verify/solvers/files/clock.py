@@ -6,6 +6,7 @@ of a calendar, and seconds since 1970, count from the first row, which is then a
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from fractions import Fraction
@@ -39,6 +40,10 @@ _CLOCK: Final = (10**9, 10**10)
 _PARTS: Final[Mapping[str, int]] = {"ms": 10**3, "us": 10**6, "ns": 10**9}
 # A file whose first row is this near to the start, in spans of the scene, begins there.
 _NEAR: Final = Fraction(1, 10**6)
+# Words of clocks that have another zero than a simulation.
+_OF_A_CLOCK: Final = re.compile("stamp|gps|tow|unix|epoch|utc|boot|weekseconds|timeofweek")
+# What begins so few rows after the start is late, by a fault that is to be seen, and no other clock.
+_ROWS_OF_A_LAG: Final = 10
 
 
 class Times(NamedTuple):
@@ -59,7 +64,7 @@ def with_times(
     names = Candidates([Name(column) for column in read], {}, {})
     read = [c for c in read if not any(c is each.fractions for each in sums)]
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
-    clocks = _clocks(read, asked, scene, names)
+    clocks = _clocks(read, asked, scene, names, [each.column for each in sums])
     chosen = _fitting(clocks)
     if chosen is None:
         return Times(read, wanted, tuple(notes))
@@ -75,7 +80,11 @@ def with_times(
 
 
 def _clocks(
-    columns: Sequence[Column], asked: Sequence[str], scene: Scene | None, names: Candidates
+    columns: Sequence[Column],
+    asked: Sequence[str],
+    scene: Scene | None,
+    names: Candidates,
+    sums: Sequence[Column],
 ) -> list[_Clock]:
     """Return the columns that are asked for, or called a time, or else those with times of a calendar."""
     if asked:
@@ -83,7 +92,10 @@ def _clocks(
     else:
         times = [column for column in columns if _is_called_a_time(Name(column))]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
-    return [_Clock(column, scene, _of_program(column, names)) for column in times]
+    return [
+        _Clock(column, scene, _of_program(column, names), any(column is each for each in sums))
+        for column in times
+    ]
 
 
 def _of_program(column: Column, names: Candidates) -> Spelling | None:
@@ -157,8 +169,11 @@ def _sums(
 class _Clock:
     """A column that may have the times."""
 
-    def __init__(self, column: Column, scene: Scene | None, spelling: Spelling | None) -> None:
+    def __init__(
+        self, column: Column, scene: Scene | None, spelling: Spelling | None, is_sum: bool = False
+    ) -> None:
         self.column, self._scene, self._spelling = column, scene, spelling
+        self._is_sum = is_sum
 
     @cached_property
     def _habit(self) -> Spelling | None:
@@ -214,14 +229,28 @@ class _Clock:
 
     @cached_property
     def is_of_the_day(self) -> bool:
-        """True for times of a calendar, of a program's clock, and since 1970, that are not the scene's."""
+        """True for times of a calendar, since 1970, and of a clock with another zero than the scene's."""
         first = self._first * self._unit.factor
         is_since_1970 = _CLOCK[0] <= first < _CLOCK[1] and first > self._last
-        is_elapsed = self._habit is None or self._habit.unit == "s"
-        if self._is_calendar or is_since_1970 or is_elapsed or self._scene is None:
-            return self._is_calendar or is_since_1970
-        last, span = self._numbers[-1] * self._unit.factor, abs(self._scene.clock.elapsed[-1])
-        return first != self._scene.clock.start and last > self._last + _NEAR * span
+        return self._is_calendar or is_since_1970 or self._is_of_another_zero
+
+    @property
+    def _is_of_another_zero(self) -> bool:
+        """True for a clock by its name or its program, which has no row in the scene, or no lag in it.
+
+        A clock that nothing but its name says is the scene's where it has any row in the scene.
+        """
+        if self._scene is None or not self.runs:
+            return False
+        clock, factor = self._scene.clock, self._unit.factor
+        first, last = (number * factor for number in (self._numbers[0], self._numbers[-1]))
+        if self._habit is not None and self._habit.unit != "s":
+            lag = _ROWS_OF_A_LAG * (last - first) / (len(self._numbers) - 1)
+            beyond = last > self._last + _NEAR * abs(clock.elapsed[-1])
+            return beyond and abs(first - clock.start) > lag
+        ends = sorted((clock.start, clock.instants[-1]))
+        is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
+        return is_clock and (min(first, last) >= ends[1] or max(first, last) <= ends[0])
 
     @cached_property
     def _last(self) -> Fraction:

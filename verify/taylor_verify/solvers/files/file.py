@@ -25,6 +25,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
 from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.scalar import Start
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.formats.reading import parted, read_table
@@ -69,7 +70,8 @@ class TrajectoryFile:
     which, and which were ignored. ``step`` is the integrator's step, where the file states it. ``columns``
     are the names of the columns of each group, states of the scene's own among them. ``apart`` are the
     groups that have other rows than these: each with all of its own rows. ``form`` is that of an attitude
-    which was no quaternion nor a matrix.
+    which was no quaternion nor a matrix; ``in_space`` are the groups along space axes that no attitude of
+    the file turned.
     """
 
     name: str
@@ -81,6 +83,7 @@ class TrajectoryFile:
     columns: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: COLUMNS)
     apart: tuple[TrajectoryFile, ...] = ()
     form: str = ""
+    in_space: tuple[str, ...] = ()
 
     @cached_property
     def is_single_precision(self) -> bool:
@@ -151,10 +154,14 @@ def from_columns(
         raise Refused(faults.lines)
     files, agreed, known = [], list[str](), {**COLUMNS, **own}
     for part in parts.of_rows(times, place, faults):
-        groups, form, settled = one_attitude(part.groups, selection, place, faults)
-        agreed += settled
         instants = tuple(times[k] for k in part.places)
-        files.append(TrajectoryFile(place, instants, groups, part.digits, columns=known, form=form))
+        start = Start.of(scene, instants, part.groups) if selection.is_doubtful else None
+        groups, form, settled = one_attitude(part.groups, selection, start, place, faults)
+        agreed += settled
+        turned = groups.keys() & {"quaternion", "attitude"}
+        in_space = () if turned else tuple(g for g in selection.in_space if g in groups)
+        about = {"columns": known, "form": form, "in_space": in_space}
+        files.append(TrajectoryFile(place, instants, groups, part.digits, **about))
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files

@@ -1,7 +1,7 @@
 """The one attitude of a file, of all its descriptions: a quaternion, a matrix, angles or a vector.
 
 Several descriptions have to agree. Four numbers that do not say where their scalar is are settled by
-another description. What a program's manual says of its names is applied.
+another description, or by the scene's start. What a program's manual says of its names is applied.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.solvers.files.columns.choice import Choice
 from taylor_verify.solvers.files.columns.forms import FORMS
+from taylor_verify.solvers.files.columns.scalar import Start
 from taylor_verify.solvers.files.columns.selection import ATTITUDES, Selection
 from taylor_verify.solvers.files.columns.spelling import Turn
 from taylor_verify.solvers.files.made import MadeRows
@@ -56,9 +57,12 @@ class _Description(NamedTuple):
 
 
 def one_attitude(
-    groups: Groups, selection: Selection, place: str, faults: Faults
+    groups: Groups, selection: Selection, start: Start | None, place: str, faults: Faults
 ) -> tuple[Groups, str, list[str]]:
-    """Return the groups with one description of the attitude, its form, and how it was settled."""
+    """Return the groups with one description of the attitude, its form, and how it was settled.
+
+    ``start`` is where these rows are at the scene's start.
+    """
     choices = [choice for choice in selection.attitudes if choice.group in groups]
     every = [
         description
@@ -66,7 +70,10 @@ def one_attitude(
         for description in _descriptions(choice, groups[choice.group])
     ]
     left = {name: rows for name, rows in groups.items() if name not in ATTITUDES}
-    first, notes = _settled(every, choices, place, faults)
+    if selection.is_doubtful and every:
+        first, notes = _settled_by_start(every, start, place, faults)
+    else:
+        first, notes = _settled(every, choices, place, faults)
     if first:
         left[first.group] = first.rows
     for group in selection.in_space:
@@ -75,7 +82,7 @@ def one_attitude(
             left[group] = MadeRows([left[group], first.rows], make, 3)
         elif group in groups:
             ours = " ".join(COLUMNS[group])
-            notes.append(f"{ours} are left in space axes: the file has no attitude")
+            notes.append(f"{ours} are compared along space axes: the file has no attitude")
     form = first.choice.group if first and first.choice.group in FORMS else ""
     return left, form, notes
 
@@ -94,11 +101,27 @@ def _descriptions(choice: Choice, rows: Rows) -> Iterator[_Description]:
         yield _Description(choice, rows)
 
 
+def _settled_by_start(
+    every: Sequence[_Description], start: Start | None, place: str, faults: Faults
+) -> tuple[_Description | None, list[str]]:
+    """Return the only one of the two readings that begins and moves as the scene does, or a fault."""
+    choice = every[0].choice
+    fit = start.fitting([each.rows for each in every], _AGREE) if start else []
+    if len(fit) != 1:
+        got, ours = f"{choice.shown}: {choice.doubt}", " ".join(COLUMNS["quaternion"])
+        faults.add(ours, got, place, f"say which: --columns {choice.scalar_requests}")
+        return None, []
+    first = every[fit[0]]
+    ours = " ".join(COLUMNS["quaternion"])
+    why = "only so has the row at the scene's start the scene's attitude"
+    return first, [f"{choice.shown} taken as {ours}: the scalar is {first.order}, {why}"]
+
+
 def _settled(
     every: Sequence[_Description], choices: Sequence[Choice], place: str, faults: Faults
 ) -> tuple[_Description | None, list[str]]:
     """Return the first of the descriptions, which all agree; it is a fault where two do not."""
-    if len(choices) < 2 and not (choices and choices[0].doubt):
+    if len(choices) < 2:
         return (every[0] if every else None), []
     sure = [each for each in every if not each.choice.doubt]
     apart = [_apart(each.matrices, sure[0].matrices) if sure else inf for each in every]

@@ -51,6 +51,18 @@ class Choice:
         return shown_names(self.names)
 
     @property
+    def scalar_requests(self) -> str:
+        """The requests for a scalar that is the first of four columns, and for one that is the last."""
+        if self.group != "quaternion":
+            return ""
+        names = [cut(name.text) for name in self.names]
+        first, last = (
+            ",".join(f"{own}={name}" for own, name in zip(GROUPS[self.group], order, strict=True))
+            for order in (names, [names[-1], *names[:-1]])
+        )
+        return f"{first} for the first, {last} for the last"
+
+    @property
     def note(self) -> str:
         """The sentence about what was taken; empty for our own names in the scene's units."""
         if self.doubt:

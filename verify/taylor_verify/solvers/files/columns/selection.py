@@ -58,6 +58,11 @@ class Selection(NamedTuple):
     attitudes: tuple[Choice, ...] = ()
     in_space: tuple[str, ...] = ()
 
+    @property
+    def is_doubtful(self) -> bool:
+        """True if the only attitude is a quaternion whose scalar is the first or the last number."""
+        return len(self.attitudes) == 1 and bool(self.attitudes[0].doubt)
+
 
 def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
     """Return the columns that are ours, and record what is wrong with them as faults."""
@@ -146,7 +151,7 @@ class _Chooser:
 
     def _doubt_one(self, choice: Choice) -> None:
         got = f"{choice.shown}: {choice.doubt}"
-        self._doubt(choice.group, " ".join(GROUPS[choice.group]), got, _scalar_requests(choice))
+        self._doubt(choice.group, " ".join(GROUPS[choice.group]), got, choice.scalar_requests)
 
     def _doubt(self, group: str, expected: str, got: str, request: str = "") -> None:
         self.doubted.add(group)
@@ -166,7 +171,7 @@ class _Chooser:
         beside = range(Rank.BEHIND_A_WORD) if is_usual else ()
         strongest = self._of_best_frame([c for c in sure if c.rank == best or c.rank in beside])
         for choice in every:
-            if choice.doubt and not sure:
+            if choice.doubt and not sure and not choice.spelling.doubt:
                 del self.chosen[choice.group]
                 self._doubt_one(choice)
             elif choice not in strongest and not (choice.doubt and is_usual):
@@ -254,18 +259,6 @@ def _distinct(choices: Sequence[Choice]) -> list[Choice]:
 def _equal(choice: Choice, other: Choice) -> bool:
     pairs = zip(choice.names, other.names, strict=True)
     return all(np.array_equal(a.column.values, b.column.values) for a, b in pairs)
-
-
-def _scalar_requests(choice: Choice) -> str:
-    """Return the requests for a scalar that is the first of four columns, and for one that is the last."""
-    if choice.group != "quaternion":
-        return ""
-    names = [cut(name.text) for name in choice.names]
-    first, last = (
-        ",".join(f"{own}={name}" for own, name in zip(GROUPS["quaternion"], order, strict=True))
-        for order in (names, [names[-1], *names[:-1]])
-    )
-    return f"{first} for the first, {last} for the last"
 
 
 def _meant(missing: Sequence[str], free: Sequence[Name]) -> str:

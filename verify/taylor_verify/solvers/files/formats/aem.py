@@ -1,121 +1,129 @@
-"""The attitude in a CCSDS AEM (504.0-B), as text (KVN) or XML, every number exactly as written.
+"""The attitude in a CCSDS AEM (504.0-B), every number exactly as written.
 
 The quaternion of a message is e sin(phi/2), cos(phi/2), of the rotation by which the axes of REF_FRAME_A
 become those of REF_FRAME_B: it takes components in B to components in A. One of the frames has to be that
 of the body, SC_BODY. Where it is B, the quaternion is ours, body to space; where it is A, its conjugate
 is. ATTITUDE_DIR = B2A, of version 1 alone, means the inverse. ANGVEL is the angular velocity of B with
-respect to A in degrees a second, resolved in ANGVEL_FRAME. Times count from START_TIME.
+respect to A in degrees a second, resolved in ANGVEL_FRAME. The axis of a spin is the third one of the body.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import Decimal, InvalidOperation, localcontext
 from fractions import Fraction
 from math import nan
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import Any, Final
 
-from taylor_verify.models.algebra import dot
-from taylor_verify.models.frame import attitude_rate
+from taylor_verify.models.algebra import apply, dot, transpose
+from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.formats.aem_segment import (
-    ANGLES,
-    ANGULAR_VELOCITY,
-    DERIVATIVE,
-    QUATERNION,
-    Segment,
-    in_text,
-    in_xml,
-)
-from taylor_verify.solvers.files.formats.column import Column, Table, alike, shown
+from taylor_verify.solvers.files.columns.units import DEGREE
+from taylor_verify.solvers.files.formats.ccsds import Segment, is_turning, segment
+from taylor_verify.solvers.files.formats.column import Column, Table, alike
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.epochs import seconds
 from taylor_verify.solvers.values import Value, exact
 
+_QUATERNION: Final = ("Q1", "Q2", "Q3", "QC")
+_ANGLES: Final = ("ANGLE_1", "ANGLE_2", "ANGLE_3")
+_SPIN: Final = ("SPIN_ALPHA", "SPIN_DELTA", "SPIN_ANGLE", "SPIN_ANGLE_VEL")
+_ANGULAR_VELOCITY: Final = ("ANGVEL_X", "ANGVEL_Y", "ANGVEL_Z")
+# Of version 1: it does not say if they are an angular velocity, or rates of angles.
+_RATE: Final = ("X_RATE", "Y_RATE", "Z_RATE")
+# What a state holds, in the order of QUATERNION_TYPE = LAST.
+_STATES: Final[Mapping[str, tuple[str, ...]]] = {
+    "QUATERNION": _QUATERNION,
+    "QUATERNION/DERIVATIVE": (*_QUATERNION, *(f"{name}_DOT" for name in _QUATERNION)),
+    "QUATERNION/RATE": _QUATERNION + _RATE,
+    "QUATERNION/ANGVEL": _QUATERNION + _ANGULAR_VELOCITY,
+    "EULER_ANGLE": _ANGLES,
+    "EULER_ANGLE/DERIVATIVE": (*_ANGLES, *(f"{name}_DOT" for name in _ANGLES)),
+    "EULER_ANGLE/RATE": _ANGLES + _RATE,
+    "EULER_ANGLE/ANGVEL": _ANGLES + _ANGULAR_VELOCITY,
+    "SPIN": _SPIN,
+    "SPIN/NUTATION": (*_SPIN, "NUTATION", "NUTATION_PER", "NUTATION_PHASE"),
+    "SPIN/NUTATION_MOM": (*_SPIN, "MOMENTUM_ALPHA", "MOMENTUM_DELTA", "NUTATION_VEL"),
+}
+_REQUIRED: Final = ("REF_FRAME_A", "REF_FRAME_B", "TIME_SYSTEM", "START_TIME", "ATTITUDE_TYPE")
 _BODY: Final = "SC_BODY"
-# Frames that turn with the earth or with an orbit: equations of motion have other terms in them.
-_TURNING: Final = (
-    *(
-        "ITRF",
-        "DTRF",
-        "EFG",
-        "WGS",
-        "GTOD",
-        "TDR",
-        "GRC",
-        "LVLH",
-        "VVLH",
-        "RTN",
-        "RSW",
-        "RIC",
-        "QSW",
-    ),
-    *("TNW", "NTW", "VNC", "SEZ", "NSW"),
-)
 _AXES: Final = str.maketrans("123", "xyz")
-_NOT_UNIFORM: Final = ("UT1", "GMST", "SCLK", "MET", "MRT")
-_BLANK: Final = b"\xef\xbb\xbf \t\r\n"
 # The scalar of ours comes first, that of a message last.
 _SCALAR_FIRST: Final = (3, 0, 1, 2)
 _UNIT_VECTORS: Final = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+# Digits of a sum of two decimals; an angle has no more.
+_DIGITS: Final = 5000
 
-Row = Sequence[Value]
-Kind = TypeVar("Kind")
-
-
-def is_one(file: Content) -> bool:
-    """Return True for a file that begins like a CCSDS message in text, whatever its name."""
-    return _beginning(file).startswith(b"CCSDS_")
-
-
-def is_turning(frame: str) -> bool:
-    """Return True for a frame that turns with the earth or with an orbit."""
-    return frame.upper().startswith(_TURNING) and not frame.upper().endswith("_INERTIAL")
-
-
-def _beginning(file: Content) -> bytes:
-    return file.beginning(64).lstrip(_BLANK)
+Row = Sequence[Any]
 
 
 def read(file: Content, path: Path, part: str) -> Table:
-    """Return t, q0 ... q3 and, where the message has it, w1 w2 w3; ``part`` is the number of a segment."""
-    is_xml = _beginning(file).startswith(b"<")
-    segment = chosen(in_xml(file, path) if is_xml else in_text(file, path), part, path)
-    reverse = _check_frames(segment, path)
-    faults = Faults()
-    columns = [Column("t", _times(segment, path, faults))]
-    if segment.is_of_angles:
-        columns += _angle_columns(segment, reverse, path)
+    """Return t, the attitude and, where the message has it, w1 w2 w3; ``part`` numbers a segment."""
+    read, faults = segment(file, path, part, "aem", _names), Faults()
+    reverse = _check_frames(read, path)
+    columns = [Column("t", read.times(path, faults))]
+    if _is_of(read, "SPIN"):
+        columns += _spin_columns(read, reverse, path)
+    elif _is_of(read, "EULER_ANGLE"):
+        columns += _angle_columns(read, reverse, path)
     else:
-        columns += _quaternion_columns(segment, reverse)
-    rates, note = _angular_velocities(segment, reverse, path, faults)
-    columns += rates
+        columns += _quaternion_columns(read, reverse)
+    rates, note = _angular_velocities(read, reverse, path, faults)
     if faults.lines:
         raise Refused(faults.lines)
-    space = next(f for f in (segment.frame("A"), segment.frame("B")) if not f.startswith(_BODY))
-    notes = (
-        f"t counts from START_TIME = {cut(segment.metadata['START_TIME'])}",
-        f"{cut(space)} is taken for the space axes of the scene",
-    )
-    return Table(columns, (*notes, note) if note else notes)
+    space = next(f for f in (_frame(read, "A"), _frame(read, "B")) if not f.startswith(_BODY))
+    return Table([*columns, *rates], (*read.notes(space), *filter(None, [note])))
 
 
-def chosen(segments: Sequence[Kind], part: str, path: Path) -> Kind:
-    """Return the segment of this number, or the only one."""
-    last = len(segments)
-    if not segments:
-        raise refusal("a segment with states", "none", path)
-    if not part and last > 1:
-        raise refusal("one segment", last, path, f"name one: FILE#1 ... FILE#{last}")
-    if part and part not in map(str, range(1, last + 1)):
-        raise refusal(f"a segment from 1 to {last}", f"`#{cut(part)}`", path)
-    return segments[int(part or 1) - 1]
+def _kind(read: Segment) -> str:
+    return read.metadata["ATTITUDE_TYPE"].upper()
 
 
-def _check_frames(segment: Segment, path: Path) -> bool:
+def _is_of(read: Segment, kind: str) -> bool:
+    return _kind(read).partition("/")[0] == kind
+
+
+def _frame(read: Segment, letter: str) -> str:
+    return read.metadata[f"REF_FRAME_{letter}"].upper()
+
+
+def _names(read: Segment, width: int, place: str) -> Sequence[str]:
+    """Return what a state holds, in the order of a line; the scalar is last unless version 1 says first."""
+    read.require(_REQUIRED, place)
+    if _kind(read) not in _STATES:
+        expected = f"an ATTITUDE_TYPE of {', '.join(_STATES)}"
+        raise refusal(expected, cut(_kind(read)), place, "write QUATERNION or QUATERNION/ANGVEL")
+    names = ("EPOCH", *_STATES[_kind(read)])
+    is_of_1 = read.version.startswith("1")
+    if _is_of(read, "EULER_ANGLE") and is_of_1 and read.metadata.get("EULER_ROT_SEQ") != "123":
+        # It names the angles by their axes, and programs write them in turn.
+        expected = "Euler angles of version 2, or EULER_ROT_SEQ = 123"
+        raise refusal(expected, f"version {cut(read.version)}", place, "write quaternions")
+    if width and _is_of(read, "QUATERNION"):
+        names = _in_order(
+            names, read.metadata.get("QUATERNION_TYPE", "" if is_of_1 else "LAST"), place
+        )
+    if width not in (0, len(names)):
+        raise refusal(" ".join(names), f"{width} values", place)
+    return [name for name in names if width or name not in _RATE]
+
+
+def _in_order(names: Sequence[str], stated: str, place: str) -> Sequence[str]:
+    """Return names of numbers with the scalars where QUATERNION_TYPE says."""
+    if stated.upper() not in ("FIRST", "LAST"):
+        raise refusal("QUATERNION_TYPE = FIRST or LAST", cut(stated or "none"), place)
+    if stated.upper() == "LAST":
+        return names
+    ordered = list(names)
+    for k in (1, 5) if "QC_DOT" in names else (1,):
+        ordered.insert(k, ordered.pop(k + 3))
+    return ordered
+
+
+def _check_frames(read: Segment, path: Path) -> bool:
     """Return True if the quaternion takes components in space to components in the body."""
-    a, b = segment.frame("A"), segment.frame("B")
+    a, b = _frame(read, "A"), _frame(read, "B")
     if a.startswith(_BODY) is b.startswith(_BODY):
         expected = f"{_BODY} as one of REF_FRAME_A and REF_FRAME_B"
         raise refusal(
@@ -124,94 +132,152 @@ def _check_frames(segment: Segment, path: Path) -> bool:
     space = b if a.startswith(_BODY) else a
     if is_turning(space):
         raise refusal(f"an inertial frame beside {_BODY}", cut(space), path)
-    direction = segment.metadata.get("ATTITUDE_DIR", "A2B").upper()
+    direction = read.metadata.get("ATTITUDE_DIR", "A2B").upper()
     if direction not in ("A2B", "B2A"):
         raise refusal("ATTITUDE_DIR = A2B or B2A", cut(direction), path)
     return a.startswith(_BODY) is not (direction == "B2A")
 
 
-# The numbers of a segment, exactly; what is none is a fault, and a NaN in its place.
+# The attitude, as text, so that the number of printed digits is known.
 
 
-def _times(segment: Segment, path: Path, faults: Faults) -> list[Fraction]:
-    """Return the seconds since START_TIME."""
-    is_utc = check_clock(segment.metadata["TIME_SYSTEM"], path)
-    start = segment.metadata["START_TIME"]
-    try:
-        zero = seconds(start, is_utc)
-    except ValueError as error:
-        zero = Fraction(0)
-        faults.add(str(error), cut(start), f"{path}, START_TIME")
-    epochs = _numbers(segment, "EPOCH", path, faults, lambda text: seconds(text, is_utc))
-    return [Fraction(epoch) - zero for epoch in epochs if isinstance(epoch, Fraction)]
-
-
-def check_clock(system: str, path: Path) -> bool:
-    """Return True for UTC, which has leap seconds; refuse a TIME_SYSTEM that is not uniform."""
-    if system.upper() in _NOT_UNIFORM:
-        raise refusal("a TIME_SYSTEM like UTC, TAI or TT", cut(system), path)
-    return system.upper() == "UTC"
-
-
-def _numbers(
-    segment: Segment,
-    name: str,
-    path: Path,
-    faults: Faults,
-    value: Callable[[str], Value] = exact,
-) -> Iterator[Value]:
-    with alike(faults, f"{path}, {name}") as wrong:
-        for row, text in enumerate(segment.columns.get(name, ()), start=1):
-            try:
-                yield value(text)
-            except ValueError as error:
-                wrong(str(error), shown(text), f"{path}, state {row}, {name}")
-                yield nan
-
-
-# What the numbers mean.
-
-
-def _quaternion_columns(segment: Segment, reverse: bool) -> Iterator[Column]:
-    """Yield q0 ... q3 as text, so that the number of printed digits is known."""
+def _quaternion_columns(read: Segment, reverse: bool) -> Iterator[Column]:
     for i, place in enumerate(_SCALAR_FIRST):
-        texts = segment.columns[QUATERNION[place]]
+        texts = read.columns[_QUATERNION[place]]
         yield Column(f"q{i}", [_negative(t) for t in texts] if reverse and i else texts)
 
 
+def _sequence(read: Segment, reverse: bool, path: Path) -> str:
+    """Return the axes of the turns from the space axes to those of the body, as `zyx`."""
+    stated = read.metadata.get("EULER_ROT_SEQ", "none")
+    axes = stated.lower().translate(_AXES)
+    if axes not in FORMS or len(axes) != len(_ANGLES):
+        raise refusal("EULER_ROT_SEQ like ZYX", cut(stated), path)
+    return axes[::-1] if reverse else axes
+
+
+def _in_turn(read: Segment, names: Sequence[str], reverse: bool) -> list[list[str]]:
+    """Return angles, or their rates, in the order of the turns from space to body."""
+    texts = [read.columns[name] for name in names]
+    if not reverse:
+        return texts
+    return [[_negative(text) for text in each] for each in reversed(texts)]
+
+
+def _angle_columns(read: Segment, reverse: bool, path: Path) -> list[Column]:
+    return _euler_columns(_sequence(read, reverse, path), _in_turn(read, _ANGLES, reverse))
+
+
+def _euler_columns(axes: str, texts: Sequence[Sequence[str]]) -> list[Column]:
+    return [Column(f"euler_{axes}_{k} [deg]", each) for k, each in enumerate(texts, start=1)]
+
+
+def _spin_columns(read: Segment, reverse: bool, path: Path) -> list[Column]:
+    """Return turns about z, x, z; the third axis has right ascension SPIN_ALPHA, declination SPIN_DELTA."""
+    if reverse:
+        got = f"{_BODY} as REF_FRAME_A, or ATTITUDE_DIR = B2A"
+        raise refusal(f"{_BODY} as REF_FRAME_B of {_kind(read)}", got, path)
+    alpha, delta, angle, _ = (read.columns[name] for name in _SPIN)
+    first = [_plus_quarter(text) for text in alpha]
+    second = [_plus_quarter(_negative(text)) for text in delta]
+    return _euler_columns("zxz", [first, second, angle])
+
+
+def _plus_quarter(text: str) -> str:
+    """Return an angle and a quarter turn, in degrees; what is no decimal stays as it is."""
+    try:
+        with localcontext(prec=_DIGITS):
+            return f"{Decimal(text) + 90:f}"
+    except InvalidOperation:
+        return text
+
+
+def _negative(text: str) -> str:
+    return text.removeprefix("-") if text.startswith("-") else f"-{text.removeprefix('+')}"
+
+
+# The angular velocity.
+
+
 def _angular_velocities(
-    segment: Segment, reverse: bool, path: Path, faults: Faults
+    read: Segment, reverse: bool, path: Path, faults: Faults
 ) -> tuple[list[Column], str]:
     """Return the angular velocity, where the message has one, and a note."""
-    if segment.kind == "QUATERNION/DERIVATIVE":
-        states, rates = (
-            [*zip(*(list(_numbers(segment, n, path, faults)) for n in names), strict=True)]
-            for names in (QUATERNION, DERIVATIVE)
+    kind = _kind(read)
+    if kind.endswith("/ANGVEL"):
+        return _stated(read, path)
+    if kind == "QUATERNION/DERIVATIVE":
+        states, dots = (
+            _rows([read.columns[name + end] for name in _QUATERNION], path, faults)
+            for end in ("", "_DOT")
         )
-        rows = [_of_derivative(q, dot, reverse) for q, dot in zip(states, rates, strict=True)]
-        columns = [Column(f"w{i}", [row[i - 1] for row in rows]) for i in (1, 2, 3)]
-        return columns, "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
-    if segment.kind.endswith(("/RATE", "/DERIVATIVE")):
-        return [], "rates of Euler angles are not read"
-    if not segment.kind.endswith("/ANGVEL"):
+        rows = [_of_quaternion(*row, reverse) for row in zip(states, dots, strict=False)]
+        return _columns(rows), "w1 w2 w3 are twice conj(q) dq/dt, of Q1_DOT ... QC_DOT"
+    if kind == "EULER_ANGLE/DERIVATIVE":
+        axes = _sequence(read, reverse, path)
+        angles, rates = (
+            _rows(_in_turn(read, [name + end for name in _ANGLES], reverse), path, faults)
+            for end in ("", "_DOT")
+        )
+        rows = [_of_angles(axes, *row) for row in zip(angles, rates, strict=False)]
+        return _columns(rows), "w1 w2 w3 are those of the angles and of ANGLE_1_DOT ..."
+    if _is_of(read, "SPIN"):
+        return _of_spin(read)
+    if not kind.endswith("/RATE"):
         return [], ""
-    stated = segment.metadata.get("ANGVEL_FRAME", "").upper()
-    frames = {"REF_FRAME_A": segment.frame("A"), "REF_FRAME_B": segment.frame("B")}
+    why = "version 1 does not say if they are an angular velocity or rates of angles"
+    return [], f"{' '.join(_RATE)} of {kind} are not read: {why}"
+
+
+def _stated(read: Segment, path: Path) -> tuple[list[Column], str]:
+    stated = read.metadata.get("ANGVEL_FRAME", "").upper()
+    frames = {"REF_FRAME_A": _frame(read, "A"), "REF_FRAME_B": _frame(read, "B")}
     frame = frames.get(stated, stated)
     if frame not in frames.values():
         raise refusal(f"ANGVEL_FRAME = {' or '.join(frames.values())}", cut(frame) or "none", path)
     stem = "w" if frame.startswith(_BODY) else "omega_space_"
     # ANGVEL is that of B relative to A.
-    is_reversed = segment.frame("A").startswith(_BODY)
+    is_reversed = _frame(read, "A").startswith(_BODY)
     columns = []
-    for k, key in enumerate(ANGULAR_VELOCITY, start=1):
-        texts = segment.columns[key]
+    for k, key in enumerate(_ANGULAR_VELOCITY, start=1):
+        texts = read.columns[key]
         values = [_negative(text) for text in texts] if is_reversed else texts
         columns.append(Column(f"{stem}{k} [deg/s]", values))
     return columns, f"the angular velocity is ANGVEL in {stated}, degrees a second"
 
 
-def _of_derivative(q: Row, derivative: Row, reverse: bool) -> Row:
+def _of_spin(read: Segment) -> tuple[list[Column], str]:
+    """Return the rate about an axis that stays where it is; about one that moves there are other rates."""
+    *axis, _, rate = (read.columns[name] for name in _SPIN)
+    left = ", ".join(("SPIN_ANGLE_VEL", *_STATES[_kind(read)][len(_SPIN) :]))
+    if any(len(set(texts)) > 1 for texts in axis):
+        return [], f"{left} are not read: the axis of the spin moves, and w1 w2 are not in the file"
+    zeros = ["0"] * len(rate)
+    columns = [
+        Column(f"w{k} [deg/s]", each) for k, each in enumerate((zeros, zeros, rate), start=1)
+    ]
+    return columns, "w3 is SPIN_ANGLE_VEL, and w1 w2 are 0: the axis of the spin stands still"
+
+
+def _rows(texts: Sequence[Sequence[str]], path: Path, faults: Faults) -> list[Row]:
+    """Return the numbers by rows; what is none is a fault."""
+    rows: list[Row] = []
+    with alike(faults, str(path)) as wrong:
+        for row in zip(*texts, strict=True):
+            try:
+                rows.append([exact(text) for text in row])
+            except ValueError as error:
+                got, place = cut(" ".join(row)), f"{path}, state {len(rows) + 1}"
+                wrong(str(error), got, place)
+                break
+    return rows
+
+
+def _columns(rows: Sequence[Row]) -> list[Column]:
+    return [Column(f"w{k}", [row[k - 1] for row in rows]) for k in (1, 2, 3)]
+
+
+def _of_quaternion(q: Row, derivative: Row, reverse: bool) -> Row:
     """Return w of q' = q (0, w) / 2, body to space: q' is linear in w, with columns |q|/2 long."""
     signs = (1, *[-1 if reverse else 1] * 3)
     ours, dots = (
@@ -223,26 +289,16 @@ def _of_derivative(q: Row, derivative: Row, reverse: bool) -> Row:
     return [4 * dot(column, dots) / square if square else nan for column in columns]
 
 
-# Euler angles: EULER_ROT_SEQ turns the axes of REF_FRAME_A into those of REF_FRAME_B.
-
-
-def _sequence(segment: Segment, path: Path) -> str:
-    """Return the sequence of axes, as `zyx`."""
-    stated = segment.metadata.get("EULER_ROT_SEQ", "none")
-    axes = stated.lower().translate(_AXES)
-    if axes not in FORMS or len(axes) != len(ANGLES):
-        raise refusal("EULER_ROT_SEQ like ZYX", cut(stated), path)
-    return axes
-
-
-def _angle_columns(segment: Segment, reverse: bool, path: Path) -> Iterator[Column]:
-    """Yield the angles that turn the space axes into those of the body, in degrees, as text."""
-    axes, texts = _sequence(segment, path), [segment.columns[name] for name in ANGLES]
-    if reverse:
-        axes, texts = axes[::-1], [[_negative(text) for text in each] for each in reversed(texts)]
-    for k, each in enumerate(texts, start=1):
-        yield Column(f"euler_{axes}_{k} [deg]", each)
-
-
-def _negative(text: str) -> str:
-    return text.removeprefix("-") if text.startswith("-") else f"-{text.removeprefix('+')}"
+def _of_angles(axes: str, angles: Row, rates: Row) -> Row:
+    """Return the sum of the rates about their axes, each seen from behind the turns that follow it."""
+    numbers = [*angles, *rates]
+    if not all(isinstance(number, Fraction) for number in numbers):
+        return [nan] * 3
+    omega: list[Value] = [Fraction(0)] * 3
+    for k, (axis, rate) in enumerate(zip(axes, rates, strict=True)):
+        later = [Fraction(0)] * (k + 1) + [angle * DEGREE for angle in angles[k + 1 :]]
+        q = FORMS[axes].quaternion(later)
+        square = sum(part * part for part in q)
+        seen = apply(transpose(rotation(q)), _UNIT_VECTORS["xyz".index(axis)])
+        omega = [w + rate * DEGREE * s / square for w, s in zip(omega, seen, strict=True)]
+    return omega

@@ -117,7 +117,7 @@ def table(topic: Topic, messages: Iterable[Any], path: Path) -> Table:
         columns = {name: values for name, values in columns.items() if name[0] != "q"}
         notes.append("orientation is not read: its covariance says, by -1, that there is none")
     times = [Decimal(stamp).scaleb(-9) for stamp in stamps]
-    read = [Column("t", times), *(Column(name, values) for name, values in columns.items())]
+    read = [Column("stamp", times), *(Column(name, values) for name, values in columns.items())]
     return Table(read, tuple(notes))
 
 

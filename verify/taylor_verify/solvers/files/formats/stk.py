@@ -14,7 +14,7 @@ from typing import Final
 
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.formats.aem import is_turning
+from taylor_verify.solvers.files.formats.ccsds import is_turning
 from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, alike, refuse_part
 from taylor_verify.solvers.files.formats.content import Content
 
