@@ -33,8 +33,8 @@ def answers() -> tuple[Answer, ...]:
 
 
 @cache
-def board() -> tuple[Board, bytes]:
-    """The board of the small list, and the file of its trajectories."""
+def board() -> Board:
+    """The board of the small list."""
     return board_of(answers(), 1)
 
 

@@ -1,4 +1,4 @@
-"""The measurement: nothing is run twice, nothing stops it, and what it stores is judged again."""
+"""The measurement: nothing is run twice, and nothing stops it."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.studies.engines import ENTRIES, SPINNER, answers, board
+from builders.studies.engines import ENTRIES, SPINNER, answers
 
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify_reports.studies.engines import measure as measuring
-from taylor_verify_reports.studies.engines import stored, trajectories
 from taylor_verify_reports.studies.engines.answer import Answer, answered
 from taylor_verify_reports.studies.engines.document import Standing
 from taylor_verify_reports.studies.engines.entry import Asked, EntryList
-from taylor_verify_reports.studies.engines.measure import answers_of, measure
+from taylor_verify_reports.studies.engines.measure import measure
+from taylor_verify_reports.studies.engines.replay import judged
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 
@@ -132,36 +133,8 @@ def test_an_answer_reads_back_to_the_last_bit() -> None:
             assert np.array_equal(read.states, states)
 
 
-def test_stored_trajectories_are_judged_to_the_same_errors(tmp_path: Path) -> None:
-    """The errors, floors and causes are those of the measurement, although no engine runs."""
-    document, file = board()
-    stored.write(tmp_path, document, file)
-    read = stored.find(tmp_path)
-    assert read == document
-    for answer in answers_of(read, tmp_path)[:2]:
-        assert measuring._judged_again(answer).row == answer.row
-
-
-def test_the_file_of_trajectories_is_the_same_every_time() -> None:
-    """Its bytes depend on the numbers alone, and float32 takes half of the place."""
-    rows, file = trajectories.packed(answers())
-    assert trajectories.packed(answers())[1] == file
-    assert [row.place for row in rows] == list(range(len(rows)))
-    small = [
-        replace(a, row=replace(a.row, bits=32), states=a.states.astype(np.float32))
-        for a in answers()
-        if a.states is not None
-    ]
-    assert len(trajectories.packed(small)[1]) < 0.6 * len(file)
-
-
-def test_a_lost_trajectory_is_named(tmp_path: Path) -> None:
-    """The error names a row without a trajectory in the file, and a file of another kind."""
-    document, file = board()
-    stored.write(tmp_path, document, file)
-    row = replace(document.study.rows[0], place=99)
-    with pytest.raises(ValueError, match=r"expected a trajectory oblique-f64\[99\], got none"):
-        trajectories.states_of(trajectories.load(tmp_path), row)
-    (tmp_path / stored.TRAJECTORIES).write_bytes(b"none")
-    with pytest.raises(ValueError, match="expected an NPZ of trajectories, got another file @ "):
-        trajectories.load(tmp_path)
+def test_a_cause_is_looked_for_at_the_coarsest_value() -> None:
+    """A fault of the equations is named at the first value of a setting, and not searched for at others."""
+    (coarse, *fine) = [run for run in ENTRIES.runs() if run.entry is SPINNER]
+    still = np.tile([0.3, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0], (len(load(coarse.scene).clock.elapsed), 1))
+    assert [judged(run, still, 1).causes == () for run in (coarse, fine[0])] == [False, True]

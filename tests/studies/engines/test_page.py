@@ -157,8 +157,8 @@ def test_an_engine_that_loses_a_loaded_motion_is_named() -> None:
 
 def test_the_page_has_what_was_measured(tmp_path: Path) -> None:
     """The page has every engine with its best step, orders and errors, and the sheet has all rows."""
-    document, file = board()
-    stored.write(tmp_path, document, file)
+    document = board()
+    stored.write(tmp_path, document)
     made = {path.name for path in STUDY.publish(tmp_path).written}
     assert {"engines.md", "engines.csv", "engines-time.svg", "engines-step.svg"} <= made
     assert "engines-energy.svg" in made
@@ -207,10 +207,10 @@ def test_what_has_no_number_is_told_with_its_reason(tmp_path: Path) -> None:
 
 def test_the_page_of_an_engine_has_its_commands() -> None:
     """The page has a command for each setting, with all its steps and scenes."""
-    own = pages(board()[0], ENTRIES)["tables/engines-spinner.md"]
+    own = pages(board(), ENTRIES)["tables/engines-spinner.md"]
     assert "# step 0.1 0.05 0.025; engines/oblique\n" in own
     assert f'taylor-verify run {SCENE} --solver "geometric:lie-rk4?step=0.1"\n' in own
-    other = pages(board()[0], ENTRIES)["tables/engines-wobbler.md"]
+    other = pages(board(), ENTRIES)["tables/engines-wobbler.md"]
     assert re.search(r"splitting\. omega: order (1\.9|2\.0)", other)
 
 
@@ -219,7 +219,7 @@ def test_the_page_of_an_engine_has_its_commands() -> None:
 
 def test_a_picture_has_a_line_for_each_engine() -> None:
     """The points of a line are the rows of the best setting; plain solvers have no step."""
-    document = board()[0]
+    document = board()
     (panel,) = work.panels(document, ENTRIES, SCENE, document.pace, 1e6)
     assert [line.name for line in panel.lines] == ["Spinner", "Wobbler", "SciPy"]
     assert [y for _, y in panel.lines[0].points] == [

@@ -76,7 +76,7 @@ def add(verb: argparse.ArgumentParser) -> None:
         "--row",
         metavar="N",
         help="write the trajectory of row N of --board (the numbers of its page and of `board --json`), "
-        "for `check`; what is not stored is made by its engine",
+        "for `check`; its engine makes it again",
     )
     verb.add_argument("--out", metavar="FILE", help="the file of --row; default: standard output")
     verb.add_argument(
@@ -114,17 +114,14 @@ def _shown(folder: Path, boards: Sequence[str]) -> Answer:
 
 
 def _document(folder: Path, name: str) -> dict[str, Any]:
-    from taylor_verify_reports.studies.engines import own, stored
+    from taylor_verify_reports.studies.engines import own
     from taylor_verify_reports.studies.engines.advice import advice
 
     with wrong_calls():
         board, entries, mine = own.read(folder, name)
     published = 0 if board is None else len(board.study.rows)
     ours = own.with_own(board, mine, name)
-    place = stored.places(name).trajectories
-    there = place if (folder / place).is_file() else ""
-    files = [there if row.is_stored else "" for row in ours.study.rows]
-    files[published:] = [os.path.relpath(own.file_of(folder, name, a), folder) for a in mine]
+    files = [""] * published + [os.path.relpath(own.file_of(folder, name, a), folder) for a in mine]
     rows = [
         _row(number, row, file)
         for number, (row, file) in enumerate(zip(ours.study.rows, files, strict=True))
@@ -141,18 +138,13 @@ def _document(folder: Path, name: str) -> dict[str, Any]:
 
 
 def _row(number: int, row: EngineRow, file: str) -> dict[str, Any]:
-    """Return a row with its number, its trajectory's file, array and place there, and its command."""
+    """Return a row with its number, the file of its trajectory if it is one's own, and its command."""
     from taylor_verify.records.json_text import complete
 
-    fields = complete(row)
-    place = fields.pop("place")
-    array = row.array if row.is_stored else None
     return {
         "row": number,
-        **fields,
+        **complete(row),
         "file": file or None,
-        "array": array,
-        "place": place if row.is_stored else None,
         "command": f'taylor-verify run {row.scene} --solver "{row.solver}" --rung {row.rung}',
     }
 
@@ -199,7 +191,7 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
 
 
 def _made_again(answer: Run, board: str) -> Run:
-    """Return the answer of a row whose trajectory is not stored: its engine runs once more."""
+    """Return the answer of a published row: its engine runs once more."""
     from taylor_verify_reports.studies.engines.answer import answered
     from taylor_verify_reports.studies.engines.entry import entry_list
 

@@ -81,7 +81,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, row
 
-    return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+    return stepped(body, settings.step, start, remark(body, compiled_inertia(model), ""))
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ def solve(body: FreeBody, settings: Settings) -> Solved:
 
         return advance, lambda: body.row(state.qvel[3:6].tolist(), state.qpos[3:7].tolist())
 
-    return stepped(body, settings.step, start, remark(body, compiled_inertia(model)))
+    return stepped(body, settings.step, start, remark(body, compiled_inertia(model), ""))
 
 
 if __name__ == "__main__":

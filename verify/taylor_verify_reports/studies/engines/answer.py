@@ -119,9 +119,8 @@ def _judged(asked: Asked, trajectory: Trajectory) -> Answer:
     if standing is not Standing.JUDGED:
         return Answer(row_of(asked, standing, detail=_reason(trajectory)))
     states, steps = states_of(load(asked.scene), trajectory), trajectory.steps
-    errors = errors_of(judged(asked.scene, asked.rung, asked.solver, states, steps), asked.scene)
-    bits = 8 * states.dtype.itemsize
-    row = row_of(asked, standing, steps=steps, bits=bits, detail=trajectory.detail, **vars(errors))
+    errors = errors_of(judged(asked, states, steps), asked.scene)
+    row = row_of(asked, standing, steps=steps, detail=trajectory.detail, **vars(errors))
     return Answer(row, trajectory.seconds, states)
 
 

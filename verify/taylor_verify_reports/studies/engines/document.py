@@ -11,8 +11,6 @@ from taylor_verify.records.provenance import Machine
 
 # State quantities that an engine answers, if the scene tracks them.
 STATES: Final = ("omega", "impulse", "attitude", "centre")
-# The place of a trajectory that is not in the file: it is made anew by the measurement.
-NOT_STORED: Final = -1
 
 
 class Standing(StrEnum):
@@ -32,9 +30,9 @@ class EngineRow:
     method and the other options. ``errors`` are the largest errors of all samples by quantity, relative or
     in radians, to four digits; errors that are no finite number are left out. ``floors`` are the errors of
     the states that perfect rounding would leave. ``start`` is the error of the first row. ``cause`` is the
-    fault of the dynamics that, as the judge supposes, explains nearly all of the error. ``bits`` is the
-    size of the floats that store the trajectory, ``place`` its index in the array of its scene. ``made_of``
-    is the digest of the scene and the adapter. ``load`` says how the loads of a scene reach the engine.
+    fault of the dynamics that, as the judge supposes, explains nearly all of the error; it is looked for at
+    the coarsest value alone. ``made_of`` is the digest of the scene and the adapter. ``load`` says how the
+    loads of a scene reach the engine.
     """
 
     engine: str
@@ -54,8 +52,6 @@ class EngineRow:
     errors: dict[str, float] = field(default_factory=dict)
     floors: dict[str, float] = field(default_factory=dict)
     cause: str = ""
-    bits: int = 64
-    place: int = NOT_STORED
     load: str = ""
 
     @property
@@ -64,19 +60,9 @@ class EngineRow:
         return f"{self.solver} {self.rung} {self.scene}"
 
     @property
-    def array(self) -> str:
-        """The name of the array that holds the trajectory in the file of all trajectories."""
-        return f"{self.scene.rpartition('/')[2]}-f{self.bits}"
-
-    @property
     def is_judged(self) -> bool:
         """True if the run ended with a trajectory that was compared."""
         return self.standing is Standing.JUDGED
-
-    @property
-    def is_stored(self) -> bool:
-        """True if the trajectory is in the file of all trajectories."""
-        return self.is_judged and self.place != NOT_STORED
 
     @property
     def worst(self) -> float:

@@ -158,6 +158,14 @@ class Asked:
         return ", ".join(filter(None, [method, *words]))
 
     @property
+    def seeks_cause(self) -> bool:
+        """True at the coarsest value, where a fault of the equations shows as at every other.
+
+        The search takes longer than everything else that is done for a row.
+        """
+        return self.shipped or self.value in ("", *self.entry.values[:1])
+
+    @property
     def key(self) -> str:
         """The text that identifies the run."""
         return f"{self.solver} {self.rung} {self.scene}"

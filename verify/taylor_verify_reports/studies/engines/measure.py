@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import resource
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.pool import available_cores
@@ -21,7 +19,6 @@ from taylor_verify.scenes.reading.reader import load as load_scene
 from taylor_verify.solvers.engines.engine import PREFIX, Outside, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify_reports.studies.engines import trajectories
 from taylor_verify_reports.studies.engines.answer import Answer, answered, made_of, row_of
 from taylor_verify_reports.studies.engines.document import (
     Board,
@@ -30,7 +27,6 @@ from taylor_verify_reports.studies.engines.document import (
     Standing,
 )
 from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList
-from taylor_verify_reports.studies.engines.replay import errors_of, judged
 from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 # A part of the report folder that is neither published nor committed.
@@ -146,50 +142,21 @@ def _unavailable(run: Asked, reason: str) -> Answer:
     return Answer(row_of(run, Standing.UNAVAILABLE, detail=reason))
 
 
-def judged_again(answers: Iterable[Answer], say: Say, workers: int | None = None) -> list[Answer]:
-    """Return the answers after their stored trajectories were judged again."""
-    asked, done = [*answers], 0
-
-    def ended(answer: Answer, _: Answer) -> None:
-        nonlocal done
-        done += 1
-        say(f"{done}/{len(asked)} {answer.row.key}")
-
-    return run_all(_judged_again, asked, workers=workers or available_cores(), ended=ended)
-
-
-def _judged_again(answer: Answer) -> Answer:
-    """Return one answer judged again; an answer without a trajectory stays as it is."""
-    row, states = answer.row, answer.states
-    if states is None:
-        return answer
-    errors = errors_of(judged(row.scene, row.rung, row.solver, states, row.steps), row.scene)
-    return replace(answer, row=replace(row, **vars(errors)))
-
-
-def board_of(
-    answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]
-) -> tuple[Board, bytes]:
-    """Return the document of the board made from answers, and the file of their trajectories."""
-    rows, file = trajectories.packed(answers)
+def board_of(answers: Sequence[Answer], workers: int | None, name: str = BOARDS[0]) -> Board:
+    """Return the document of the board made from answers."""
+    rows = tuple(answer.row for answer in answers)
     seconds = {
         answer.row.key: float(f"{answer.seconds:.3g}") for answer in answers if answer.row.is_judged
     }
     spans = {scene: _span(scene) for scene in dict.fromkeys(row.scene for row in rows)}
     timings = EnginesTimings(workers or available_cores(), machine(), seconds)
-    return Board(EnginesStudy(packages(), spans, tuple(rows)), timings, name), file
+    return Board(EnginesStudy(packages(), spans, rows), timings, name)
 
 
-def answers_of(board: Board, folder: Path) -> list[Answer]:
-    """Return the answers of a board that is stored in ``folder``.
-
-    Raises OSError for trajectories that cannot be read, and ValueError for a file that lacks some of them.
-    """
-    arrays, seconds = trajectories.load(folder, board.name), board.timings.seconds
-    return [
-        Answer(row, seconds.get(row.key, 0.0), trajectories.states_of(arrays, row))
-        for row in board.study.rows
-    ]
+def answers_of(board: Board) -> list[Answer]:
+    """Return the answers of a board, without their trajectories: those are made again by the engines."""
+    seconds = board.timings.seconds
+    return [Answer(row, seconds.get(row.key, 0.0)) for row in board.study.rows]
 
 
 def _span(scene: str) -> float:

@@ -194,12 +194,12 @@ def read(folder: Path, name: str) -> tuple[Board | None, EntryList, list[Answer]
 def every_answer(folder: Path, name: str) -> list[Answer]:
     """Return the answers of a board, those of one's own engines behind. Raises as ``read`` does."""
     board, _, answers = read(folder, name)
-    return [*(answers_of(board, folder) if board else ()), *answers]
+    return [*(answers_of(board) if board else ()), *answers]
 
 
 def with_own(board: Board | None, answers: Sequence[Answer], name: str) -> Board:
     """Return a board with rows of one's own behind its own rows."""
-    ours, _ = board_of(answers, None, name)
+    ours = board_of(answers, None, name)
     if board is None:
         return ours
     study, times = board.study, board.timings

@@ -177,10 +177,10 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
     for scene in dict.fromkeys(row.scene for row in board.study.rows):
         rows = []
         for engine, group in groupby(newest(every), key=lambda setting: setting.engine):
-            best_rows = [row for setting in group if (row := setting.best(scene)) is not None]
-            best = min(best_rows, key=lambda row: row.worst, default=None)
+            best_rows = [(row, s.cause(scene)) for s in group if (row := s.best(scene)) is not None]
+            best, cause = min(best_rows, key=lambda pair: pair[0].worst, default=(None, ""))
             if best is not None:
-                rows.append(_scene_row(best, titles.get(engine, engine)))
+                rows.append(_scene_row(best, titles.get(engine, engine), cause))
         if rows:
             states = (
                 ("omega", "attitude") if "omega" in _states(board, scene) else ("impulse", "centre")
@@ -191,7 +191,7 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
             yield table(["engine", "setting", "best step:", *numbers, "cause"], rows)
 
 
-def _scene_row(row: EngineRow, title: str) -> list[str]:
+def _scene_row(row: EngineRow, title: str, cause: str) -> list[str]:
     is_rotation = "omega" in row.floors
     names = (
         ("omega", "attitude", "T", "H_space")
@@ -205,7 +205,7 @@ def _scene_row(row: EngineRow, title: str) -> list[str]:
         _knob(row),
         *(figure(row.errors.get(name)) for name in names),
         f"{digits(row.worst):.1f}",
-        prose(row.cause) or NOTHING,
+        prose(cause) or NOTHING,
     ]
 
 
@@ -272,12 +272,9 @@ def remake(board: Board) -> list[str]:
     return [
         f"`make {name}` runs what is not stored yet, and `make {name} ENGINE=mujoco` one engine again; "
         f"with `taylor-verify publish {name} --anew` everything is run. It may be killed, and goes on.",
-        f"`taylor-verify publish {name} --rejudge` runs nothing: it judges the trajectories in "
-        f"`reports/{place.trajectories}` again, and writes [{name}.json](../{place.rows.name}) and this "
-        "page. Errors are the same on every machine. That file is made by a measurement: a clone does not "
-        "have it.",
+        f"Errors are the same on every machine; they are in [{name}.json](../{place.rows.name}).",
         f"`taylor-verify board --board {name} --row N --out row.json` writes the trajectory of row N, "
-        "which `check` judges alone; what is not stored is made by its engine, in seconds. "
+        "made by its engine in seconds, which `check` judges alone. "
         f"`board --json` and the sheet, `{name}.csv`, have every row with its number.",
         f"Times are in [{name}-timings.json](../{place.timings.name}), {board.timings.workers} runs at a "
         f"time on {prose(machine.processor)}; no number but a time depends on the machine.",
@@ -304,9 +301,6 @@ def sheet(board: Board) -> str:
         *quantities,
         "microseconds",
         "cause",
-        "array",
-        "place",
-        "file",
         "solver",
     ]
     return csv_sheet(names, (_sheet_row(board, row) for row in board.study.rows))
@@ -318,9 +312,6 @@ def _sheet_row(board: Board, row: EngineRow) -> dict[str, Any]:
         **vars(row),
         **row.errors,
         "row": board.numbers[row.key],
-        "array": row.array if row.is_stored else "",
-        "place": row.place if row.is_stored else "",
-        "file": places(board.name).trajectories if row.is_stored else "",
         "microseconds": None if pace is None else f"{1e6 * pace:.3g}",
         "standing": row.standing.value,
         "shipped": "yes" if row.shipped else "no",

@@ -49,6 +49,10 @@ class EngineSetting:
         """Return the coarsest row with the smallest error on a scene; None without judged rows."""
         return min(self.on(scene), key=lambda row: row.worst, default=None)
 
+    def cause(self, scene: str) -> str:
+        """Return the likely cause of the errors on a scene, which is looked for at one value alone."""
+        return next((row.cause for row in self.on(scene) if row.cause), "")
+
     def order(self, scene: str, quantity: str) -> Convergence | None:
         """Return the observed order of a quantity over the steps; None for a setting without steps."""
         rows = [row for row in self.on(scene) if row.value and row.knob == "step"]

@@ -22,6 +22,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.solver import Solver, columns
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify_reports.studies.engines.entry import Asked
 
 States = np.ndarray[Any, Any]
 
@@ -74,19 +75,21 @@ def states_of(scene: Scene, trajectory: Trajectory) -> States:
     return singles if np.array_equal(singles.astype(float), doubles) else doubles
 
 
-def judged(scene: str, rung: str, solver: str, states: States, steps: int) -> Judgement:
-    """Return the judgement of stored states, with the likely causes of what failed.
+def judged(run: Asked, states: States, steps: int) -> Judgement:
+    """Return the judgement of stored states, with the likely causes of what failed if the run seeks them.
 
     The problem has the data as the solver rounds them. The count of steps has no time limit, so that the
     judgement is the same on every machine.
     """
-    asked = load(scene)
-    problem = solver_named(solver).problem(asked, rung_named(rung))
-    stored = Stored(solver, states, steps)
+    asked = load(run.scene)
+    problem = solver_named(run.solver).problem(asked, rung_named(run.rung))
+    stored = Stored(run.solver, states, steps)
     trajectory = stored.solve(problem)
     result = judgement(problem, stored, trajectory)
     # Under loads the candidates are many, and the row says how the loads were given.
-    return result if asked.body.loads else with_causes(result, problem, trajectory)
+    if asked.body.loads or not run.seeks_cause:
+        return result
+    return with_causes(result, problem, trajectory)
 
 
 def errors_of(result: Judgement, scene: str) -> Errors:

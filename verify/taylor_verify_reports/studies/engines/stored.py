@@ -1,4 +1,4 @@
-"""The files of the board in a report folder: rows, times with their machine, and trajectories."""
+"""The files of a board in a report folder: its rows, and times with their machine."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from taylor_verify.records.json_text import complete, plain
-from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.engines.document import Board, EnginesStudy, EnginesTimings
 from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.stored import Stored
@@ -20,11 +19,10 @@ def _fields(study: EnginesStudy) -> Mapping[str, Any]:
 
 
 class Places(NamedTuple):
-    """The files of a board: rows, times, and the path of its trajectories below the report folder."""
+    """The files of a board: rows and times."""
 
     rows: Stored[EnginesStudy]
     timings: Stored[EnginesTimings]
-    trajectories: str
 
 
 def places(board: str) -> Places:
@@ -32,19 +30,17 @@ def places(board: str) -> Places:
     return Places(
         Stored(EnginesStudy, board, _fields),
         Stored(EnginesTimings, board, complete, stem=f"{board}-timings"),
-        f"data/{board}/trajectories.npz",
     )
 
 
-ENGINES, TIMINGS, TRAJECTORIES = places(BOARDS[0])
+ENGINES, TIMINGS = places(BOARDS[0])
 
 
-def write(folder: Path, board: Board, file: bytes) -> list[Path]:
-    """Store a board and ``file``, the bytes of its trajectories, below a report folder. Raises OSError."""
+def write(folder: Path, board: Board) -> list[Path]:
+    """Store a board below a report folder. Raises OSError."""
     place = places(board.name)
-    # The rows come last, because they refer to the other files.
+    # The rows come last, because they refer to the times.
     return [
-        *replace_files(folder, {place.trajectories: file}),
         *place.timings.write(folder, board.timings),
         *place.rows.write(folder, board.study),
     ]

@@ -19,18 +19,13 @@ def _measure(
     progress: Progress,
     only: tuple[str, ...] = (),
     anew: bool = False,
-    rejudge: bool = False,
     workers: int | None = None,
 ) -> Measured:
-    """Run the engines whose runs are not stored, or judge the stored trajectories again.
-
-    A measurement that was stopped is continued.
-    """
+    """Run the engines whose runs are not stored; a measurement that was stopped is continued."""
     from taylor_verify_reports.studies.engines.measure import (
         UNFINISHED,
         answers_of,
         board_of,
-        judged_again,
         measure,
     )
     from taylor_verify_reports.studies.engines.unfinished import Unfinished
@@ -38,7 +33,7 @@ def _measure(
     try:
         entries = entry_list(name)
         board = stored.find(folder, name)
-        known = [] if board is None else answers_of(board, folder)
+        known = [] if board is None else answers_of(board)
     except ValueError as error:
         raise NotMeasured(str(error)) from error
     if unknown := [name for name in only if name not in entries.engines]:
@@ -46,20 +41,13 @@ def _measure(
             f"expected engines among {', '.join(entries.engines)}, got {', '.join(unknown)}"
         )
     store = Unfinished(folder / UNFINISHED / name)
-    if rejudge and known and all(answer.states is None for answer in known):
-        raise NotMeasured(
-            f"expected {stored.places(name).trajectories} below {folder}, got none: measure the board first"
-        )
-    if rejudge:
-        answers = judged_again(known, progress.say, workers)
-    else:
-        reused = {
-            answer.row.key: answer
-            for answer in known
-            if not (anew and (not only or answer.row.engine in only))
-        }
-        answers = measure(entries, reused, store, progress.say, only, workers)
-    written = stored.write(folder, *board_of(answers, workers, name))
+    reused = {
+        answer.row.key: answer
+        for answer in known
+        if not (anew and (not only or answer.row.engine in only))
+    }
+    answers = measure(entries, reused, store, progress.say, only, workers)
+    written = stored.write(folder, board_of(answers, workers, name))
     # Until the results are stored, the measurement can be continued.
     store.forget()
     return Measured(written)
@@ -78,7 +66,6 @@ def _count(text: str) -> int:
 OPTIONS: Final = (
     Option("only", "run only these engines, separated by commas", _names, "NAMES"),
     Option("anew", "also run again the engines that are stored"),
-    Option("rejudge", "judge the stored trajectories again, and run nothing"),
     Option("workers", "run N engines at a time; default: one for each core", _count),
 )
 
