@@ -55,7 +55,8 @@ def replay(
     """Return v after the spans, each in so many steps."""
     h = spans / steps
     evaluations = _EVALUATIONS if method.is_implicit else method.order
-    answer.budget.spend(steps * evaluations * v.shape[1] * (7 + 0.011 * v.size / v.shape[1]))
+    price = equations.price(v.shape[1], v.size // v.shape[1])
+    answer.budget.spend(steps * evaluations * price)
     for k in range(steps):
         v = method.step(equations, since + k * h, v, h)
         if v.shape[1] > answer.n:
@@ -83,12 +84,13 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
                 name=f"{words}, h = {h:.6g}",
                 kind="method",
                 defects=left,
-                prove=partial(_proof, answer, method, steps),
+                motion=partial(_motion, method, steps),
+                near=_LEAVES,
                 method=(method, steps),
             )
 
 
-def _proof(answer: Answer, method: Method, steps: int) -> Motion | None:
+def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
     return whole(answer, answer.right, stepper(answer, method, steps))
 
 
