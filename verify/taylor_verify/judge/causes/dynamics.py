@@ -14,7 +14,6 @@ import numpy as np
 from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Evidence, telling_arcs
-from taylor_verify.judge.causes.beside_steps import stepped, steps_beside
 from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
@@ -26,7 +25,7 @@ from taylor_verify.judge.causes.fit import DIFFERENCE, Family, across, gauss_new
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, whole
-from taylor_verify.judge.causes.replays import replays
+from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
