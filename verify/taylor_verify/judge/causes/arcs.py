@@ -12,7 +12,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Places
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import Floats, Rates, flow
+from taylor_verify.judge.causes.flow import STAGES, Floats, Rates, flow
 from taylor_verify.scenes.instants import evenly
 
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
@@ -24,10 +24,9 @@ _STEPS: Final = 32
 _COARSE: Final = 1e-6
 _FINEST: Final = 2e-14
 _ORDER: Final = 2.0**8
-# Texts take so many times as long as the equations alone.
-_TEXTS: Final = 4.0
-# Sets of parameters in one flow: more do not fit the caches.
+# Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
+_STATES: Final = 2400
 
 
 def moved(
@@ -38,17 +37,27 @@ def moved(
     begin = np.broadcast_to(begin, (sets, *begin.shape[1:]))
     if answer.stepping is not None:
         return answer.stepping(equations, begin, since, spans)
-    arcs = begin.shape[2]
-    parts = [(since, spans)]
     switches = equations.switches
-    if len(switches):
-        parts = _parted(since, spans, switches)
+    parts = _parted(since, spans, switches) if len(switches) else [(since, spans)]
     for at, span in parts:
-        price = 1.0 if equations.acting is None else _TEXTS
-        answer.budget.spend(price * steps * begin.shape[1] * (70 + 0.11 * sets * arcs))
-        rates = _within(equations, at, span) if len(switches) else equations.rates
-        begin = flow(rates, begin, at, span, steps)
+        begin = _in_blocks(answer, equations, begin, at, span, steps)
     return begin
+
+
+def _in_blocks(
+    answer: Answer, equations: Equations, begin: Floats, since: Floats, spans: Floats, steps: int
+) -> Floats:
+    """Return the states after spans without a switch, of some of the arcs at once."""
+    sets, components, arcs = begin.shape
+    every = -(-arcs // max(1, sets * arcs // _STATES))
+    ends = []
+    for k in range(0, arcs, every):
+        some = np.s_[k : k + every]
+        at, span = since[some], spans[some]
+        answer.budget.spend(STAGES * steps * equations.price(components, sets * len(at)))
+        rates = _within(equations, at, span) if len(equations.switches) else equations.rates
+        ends.append(flow(rates, begin[:, :, some], at, span, steps))
+    return ends[0] if len(ends) == 1 else np.concatenate(ends, axis=2)
 
 
 def _parted(since: Floats, spans: Floats, switches: Floats) -> list[tuple[Floats, Floats]]:
@@ -94,13 +103,54 @@ def parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
 
 
 @dataclass(frozen=True)
-class Arcs:
+class Evidence:
+    """What changed scenes leave of an answer, by which candidates are compared."""
+
+    answer: Answer
+
+    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+        """Return what each set of changed parameters leaves, (sets, n, rows), relative to the motion."""
+        raise NotImplementedError
+
+    @property
+    def steps(self) -> int:
+        """The steps from row to row."""
+        raise NotImplementedError
+
+    @property
+    def few_steps(self) -> int:
+        """The steps from row to row for derivatives."""
+        return self.steps
+
+    @cached_property
+    def rounding(self) -> Floats:
+        """The rounding of the file in each component that is compared."""
+        return self.answer.rounding
+
+    @cached_property
+    def of_right(self) -> Floats:
+        """The defects of the right equations, (n, rows)."""
+        defects: Floats = self.defects([{}])[0]
+        return defects
+
+    @cached_property
+    def size(self) -> float:
+        return float(np.linalg.norm(self.of_right))
+
+    @cached_property
+    def floor(self) -> float:
+        """The rounding of the file as a part of the defects."""
+        noise = np.linalg.norm(np.broadcast_to(self.rounding[:, None], self.of_right.shape))
+        return float(noise) / self.size if self.size > 0 else np.inf
+
+
+@dataclass(frozen=True)
+class Arcs(Evidence):
     """Arcs of an answer from the rows ``first`` to the rows ``last``.
 
     With ``steps_given`` each arc has so many steps, for whatever it is computed.
     """
 
-    answer: Answer
     first: Places
     last: Places
     steps_given: int = 0
@@ -178,22 +228,6 @@ class Arcs:
         """The rounding of the file in each component that is compared."""
         of_q = np.full(self.compared - self.answer.n, max(self.answer.noise[1], 2.0**-50))
         return np.concatenate([self.answer.rounding, of_q])
-
-    @cached_property
-    def of_right(self) -> Floats:
-        """The defects of the right equations, (n, arcs)."""
-        defects: Floats = self.defects([{}])[0]
-        return defects
-
-    @cached_property
-    def size(self) -> float:
-        return float(np.linalg.norm(self.of_right))
-
-    @cached_property
-    def floor(self) -> float:
-        """The rounding of the file as a part of the defects."""
-        noise = np.linalg.norm(np.broadcast_to(self.rounding[:, None], self.of_right.shape))
-        return float(noise) / self.size if self.size > 0 else np.inf
 
 
 def row_to_row(answer: Answer) -> Arcs:

@@ -4,30 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
-from taylor_verify.judge.causes.answer import Motion
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.words.causes import with_numbers
 
+# A change below this part of its natural size is none.
+_SAME: Final = 1e-10
+
+
+def without_numbers(numbers: Floats) -> Candidate:
+    """Raise ValueError: a fault without numbers has no other ones."""
+    raise ValueError(numbers)
+
 
 @dataclass(frozen=True)
 class Candidate:
-    """A fault with the part of the ``defects`` that it leaves, and its motion on the whole answer.
+    """A fault with the part of the ``defects`` that it leaves, and its motion at the rows of an answer.
 
-    ``changes`` are those of the equations; a ``method`` with a number of steps takes their place.
+    It may be proven if it leaves no more than ``near``. ``changes`` are those of the equations; a
+    ``method`` with a number of steps takes their place. ``of`` returns it with other numbers.
     """
 
     name: str
     kind: str
     defects: float
-    prove: Callable[[], Motion | None]
+    motion: Callable[[Answer], Motion | None]
+    near: float
     numbers: Floats | None = None
     changes: Changes = field(default_factory=dict)
     family: Family | None = None
     method: Any = None
+    of: Callable[[Floats], Candidate] = without_numbers
 
     @property
     def count(self) -> int:
@@ -43,9 +56,11 @@ class Candidate:
 
     @property
     def is_nothing(self) -> bool:
-        """True for a factor that prints as 1, and for a step back in time: no causes."""
-        if self.numbers is None:
+        """True for the scene's own numbers, a factor that prints as 1, and a step back in time."""
+        if self.numbers is None or self.family is None:
             return False
+        if np.all(np.abs(self.numbers - self.family.right) <= _SAME * self.family.scale):
+            return True
         if self.kind == "damping step":
             return not self.numbers[0] > 0
         is_factor = self.kind == "clock" or self.name.startswith("factor")

@@ -3,18 +3,74 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion, steady_signs
-from taylor_verify.judge.causes.arcs import moved, parts_of
+from taylor_verify.judge.causes.arcs import Evidence, moved, parts_of
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.models import own
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
+
+# The first row with an error of so many roundings, and some that follow it; or rows spread over all.
+_CLEAR: Final = 300.0
+_ROWS: Final = 6
+_SPREAD: Final = 8
+_MOST_STEPS: Final = 8
+_ACCURATE: Final = 1e-5
+
+
+@dataclass(frozen=True)
+class Courses(Evidence):
+    """The first wrong rows of an answer, or some of all, beside those of changed scenes from the start.
+
+    No file has all states of the scene's own, so that no arc can begin at a row.
+    """
+
+    @classmethod
+    def of(cls, answer: Answer) -> Courses:
+        # Each instant costs as much as a row.
+        is_held = answer.right.loads is not None and answer.right.loads.held_states
+        return cls(
+            answer.at(np.s_[: _first_wrong(answer) + _ROWS]) if is_held else answer.thinned(_SPREAD)
+        )
+
+    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+        answer = self.answer
+        motions = courses(answer, sets, steps or self.steps)
+        return np.array([((answer.file.v - each.v) / answer.sizes).T for each in motions])
+
+    @cached_property
+    def steps(self) -> int:
+        """The steps from row to row that are accurate enough for the error."""
+        steps, answer = 1, self.answer
+        goal = max(_ACCURATE * answer.off, float(np.min(answer.rounding)))
+        while steps < _MOST_STEPS:
+            (motion,) = courses(answer, [{}], steps)
+            if np.max(np.abs(motion.v - answer.truth.v) / answer.sizes) < goal:
+                break
+            steps *= 2
+        return steps
+
+    def motion(self, answer: Answer, changes: Changes) -> Motion | None:
+        """Return the motion of a changed scene at the rows of an answer; None if it runs away."""
+        (motion,) = courses(answer, [changes], self.steps)
+        return motion if np.all(np.isfinite(motion.v)) else None
+
+
+def _first_wrong(answer: Answer) -> int:
+    """Return the first row whose error is clear, or the last one."""
+    clear = [
+        np.flatnonzero(answer.error[name] > _CLEAR * answer.roundings[name])
+        for name in answer.moving
+    ]
+    return min((int(rows[0]) for rows in clear if len(rows)), default=answer.count - 1)
 
 
 def courses(answer: Answer, sets: Sequence[Changes], steps: int) -> Iterator[Motion]:

@@ -1,10 +1,11 @@
-"""Causes in the equations of motion: evidence from arcs, fewest numbers first, and the proof."""
+"""Causes in the equations of motion: evidence from arcs, or from courses where no row begins an arc."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from typing import Final
 
@@ -12,49 +13,32 @@ import numpy as np
 
 from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import telling_arcs
-from taylor_verify.judge.causes.beside_steps import stepped, steps_beside
-from taylor_verify.judge.causes.bodies import (
-    entries,
-    families_of_bodies,
-    faults_of_bodies,
-    nearest_factor,
-    structure,
-)
-from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.arcs import Evidence, telling_arcs
+from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
+from taylor_verify.judge.causes.budget import Budget, Spent
+from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
 from taylor_verify.judge.causes.clock_factor import by_factor
+from taylor_verify.judge.causes.course import Courses
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, both
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, across, gauss_newton, orthonormal
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS, whole
-from taylor_verify.judge.causes.replays import replays
-from taylor_verify.judge.causes.short_numbers import shortened
+from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
+from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, whole
+from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
+from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
-from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
-from taylor_verify.words.causes import with_numbers
 
-# Error of float64 over a whole answer.
-_FLOAT64: Final = 5e-13
-# Defects of so many roundings of the file may be left.
-_DEFECT_ROUNDINGS: Final = 30.0
-# Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
-_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
-_STRICTEST: Final = 1e-4
-# Two families at once leave at most this, and defects of so many roundings are needed to look for them.
-_PAIR: Final = 1e-4
+# Defects of so many roundings are needed to look for two families at once, with so many numbers.
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
-# Beside the steps of a method a family has so many numbers.
-_FEW: Final = 3
+# Beside the steps of a method the search has this work of its own.
 _BESIDE: Final = 300_000.0
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
-_NOTHING: Final = 1e-9
 # What the steps of a fair simulator leave; a near family leaves a hundred times as much.
 _FAIR: Final = 1e-6
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
@@ -65,9 +49,6 @@ _LINEAR: Final = 0.6
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
-_FIT_ROWS: Final = 160
-_POLISHED: Final = 4
-_PROVEN: Final = 6
 
 
 @dataclass(frozen=True)
@@ -79,55 +60,109 @@ class _Linear:
     left: float
 
 
-@dataclass(frozen=True)
-class _Proven:
-    candidate: Candidate
-    leaves: dict[str, float]
-    worst: float
-
-
 def dynamics(answer: Answer) -> Cause | None:
     """Return the proven cause of the errors of the moving part, with all others that explain as well."""
-    return _Dynamics(answer).cause()
+    few, right, sizes = answer.thinned(FIT_ROWS), answer.right, Sizes.of(answer)
+    arcs, stride = telling_arcs(few)
+    search = _Search(answer, arcs, lambda answer, other: whole(answer, right.changed(other)))
+    faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
+    families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
+    if right.loads is not None:
+        faults += faults_of_angles(right)
+        families += [number.family(right) for number in numbers(right.loads)]
+    return search.by_arcs(faults, families, stride)
 
 
-class _Dynamics:
-    def __init__(self, answer: Answer) -> None:
-        self.answer = answer
-        self.few = answer.thinned(_FIT_ROWS)
-        self.arcs, self.stride = telling_arcs(self.few)
-        self.floor = self.arcs.floor
-        self.polished = 0
+def in_states(answer: Answer) -> Cause | None:
+    """Return the change of states, of held loads or of the body whose scene moves as the answer does."""
+    right = answer.right
+    if right.loads is None or not answer.moving:
+        return None
+    search = _search_from_start(answer)
+    faults = [*faults_of_states(answer)]
+    if not answer.has_states:
+        return search.cause([*search.without_numbers(faults)])
+    faults += [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_angles(right)]
+    cause = search.cause([*search.without_numbers(faults)])
+    with suppress(Spent):
+        cause = cause or search.cause([*search.fitted(_written(answer))])
+        sizes = Sizes.of(answer)
+        families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
+        one = [each for each in families if each.count == 1 and each.kind != "clock"]
+        cause = cause or search.cause([*search.fitted(one)])
+    return cause
 
-    def cause(self) -> Cause | None:
-        if not self.arcs.size > 0 or not self.floor * 2 < 1:
+
+def in_numbers(answer: Answer) -> Cause | None:
+    """Return the one number of the loads' texts with which the scene moves as the answer does.
+
+    At most half of the work that may be done is done for it.
+    """
+    part = replace(answer, budget=Budget(answer.budget.left / 2))
+    with suppress(Spent):
+        search = _search_from_start(part)
+        return search.cause([*search.fitted(_written(part))])
+    return None
+
+
+def _search_from_start(answer: Answer) -> _Search:
+    courses = Courses.of(answer)
+    return _Search(answer, courses, courses.motion)
+
+
+def _written(answer: Answer) -> list[Family]:
+    """Return the families of the numbers of the texts and of sampling."""
+    right, loads = answer.right, answer.right.loads
+    assert loads is not None
+    return [each.family(right) for each in (*numbers_of_sampling(loads), *numbers(loads))]
+
+
+class _Search:
+    """Candidates by some ``evidence``; ``motion`` is that of changes at the rows of an answer."""
+
+    def __init__(
+        self,
+        answer: Answer,
+        evidence: Evidence,
+        motion: Callable[[Answer, Changes], Motion | None],
+    ) -> None:
+        self.answer, self.evidence, self.motion = answer, evidence, motion
+        self.floor = evidence.floor
+        self.choice = Choice(answer, answer.moving, self.floor)
+        self.cause = self.choice.cause
+
+    def by_arcs(
+        self, faults: Sequence[Fault], families: Sequence[Family], stride: int
+    ) -> Cause | None:
+        """Return the cause by faults, methods and families, or two families, or a fault beside steps."""
+        if not self.evidence.size > 0 or not self.floor * 2 < 1:
             return None
-        candidates = [*self._faults()]
+        candidates = [*self.without_numbers(faults)]
         is_stepped = self.answer.stepping is not None
         if not is_stepped and not any(map(self._is_exact, candidates)):
-            stride = min(self.stride, 8) if self.few is self.answer else 1
+            stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
             candidates += replays(self.answer, stride)
         linear: list[_Linear] = []
-        for group in self._groups(candidates):
+        for group in self._groups(families, candidates):
             of_group = self._linear(group)
             linear += of_group
             candidates += self._families(of_group, candidates)
-        cause = self._settled(candidates, _PAIR if is_stepped else LEAVES)
+        cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
-            cause = self._settled([*self._pairs(linear)], _PAIR)
-        return cause or self._beside_steps(linear)
+            cause = self.cause(self._pairs(linear), PAIR)
+        return cause or self._beside_steps(linear, stride)
 
-    def _beside_steps(self, linear: list[_Linear]) -> Cause | None:
+    def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""
-        few = [each.slopes for each in linear if each.family.count <= _FEW]
+        few = [each.slopes for each in linear if each.family.count <= FEW]
         faults = [fault.changes for fault in faults_of_terms(self.answer.right)]
         budget = self.answer.budget
         with budget.of_its_own(_BESIDE), suppress(Spent):
-            for steps in steps_beside(self.arcs, self.stride, few, faults):
-                cause = _Dynamics(stepped(self.answer, steps)).cause()
+            for steps in steps_beside(self.evidence, stride, few, faults):
+                cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
                     method = (steps.method, steps.count)
                     text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
@@ -136,58 +171,55 @@ class _Dynamics:
 
     def _is_exact(self, candidate: Candidate) -> bool:
         """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator."""
-        return candidate.defects < max(3 * self.floor + _NOTHING, _FAIR)
-
-    @property
-    def _floor(self) -> float:
-        """The roundings of the file and of the search, as a part of the error."""
-        answer = self.answer
-        least = min(answer.worst[name] for name in answer.moving)
-        return max(ROUNDINGS * answer.floor(answer.moving), _FLOAT64 / least)
+        return candidate.defects < max(3 * self.floor + NOTHING, _FAIR)
 
     # Evidence.
 
     def _candidate(
-        self,
-        of: Fault | Family,
-        left: float,
-        changes: Changes,
-        numbers: Floats | None = None,
+        self, of: Fault | Family, left: float, changes: Changes, numbers: Floats | None = None
     ) -> Candidate:
-        answer = self.answer
+        answer, right = self.answer, self.answer.right
+        is_loose = answer.file.q is None and right.changed(changes).coupled > right.coupled
+        family = of if isinstance(of, Family) else None
         return Candidate(
             of.name,
             of.kind,
-            left / self.arcs.size,
-            lambda: whole(answer, answer.right.changed(changes)),
+            left / self.evidence.size,
+            lambda answer: self.motion(answer, changes),
+            near=_LOOSE if is_loose else LEAVES,
             changes=changes,
             numbers=numbers,
-            family=of if isinstance(of, Family) else None,
+            family=family,
+            of=partial(self._fitted, family, left) if family else without_numbers,
         )
 
-    def _faults(self) -> Iterator[Candidate]:
-        right = self.answer.right
-        faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
-        faults += faults_of_angles(right)
-        every = self.arcs.defects([fault.changes for fault in faults])
+    def _fitted(self, family: Family, size: float, numbers: Floats) -> Candidate:
+        return self._candidate(family, size, family.changes(numbers), numbers)
+
+    def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
+        """Yield the faults that leave little of the defects."""
+        every = self.evidence.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))
-            if left < _FAULT * self.arcs.size:
+            if left < _FAULT * self.evidence.size:
                 yield self._candidate(fault, left, fault.changes)
 
-    def _groups(self, candidates: list[Candidate]) -> Iterator[list[Family]]:
+    def fitted(self, families: Sequence[Family]) -> Iterator[Candidate]:
+        """Yield families with the numbers that fit best."""
+        return self._families(self._linear(families), ())
+
+    def _groups(
+        self, families: Sequence[Family], candidates: list[Candidate]
+    ) -> Iterator[list[Family]]:
         """Yield the families of one number, of few and of many, while no candidate is exact."""
-        sizes, right = Sizes.of(self.answer), self.few.right
-        families = [*families_of_terms(self.few, sizes), *families_of_bodies(right, sizes)]
-        families += [] if right.loads is None else [n.family(right) for n in numbers(right.loads)]
-        for least, most in ((1, 1), (2, 3), (4, len(right.mass) ** 2)):
+        for least, most in ((1, 1), (2, 3), (4, self.answer.n**2)):
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
 
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         sets = [changes for family in families for changes in family.ahead]
-        defects, first = self.arcs.defects([{}, *sets], self.arcs.few_steps), 1
+        defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
         linear = list[_Linear]()
         for family in families:
             change = defects[first : first + family.count] - defects[0]
@@ -195,8 +227,9 @@ class _Dynamics:
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
             if np.all(np.isfinite(slopes)) and np.any(slopes):
                 basis = orthonormal(slopes * family.scale, 1e-6)
-                rest = across(basis, self.arcs.of_right.ravel())
-                linear.append(_Linear(family, slopes, float(np.linalg.norm(rest)) / self.arcs.size))
+                rest = across(basis, self.evidence.of_right.ravel())
+                left = float(np.linalg.norm(rest)) / self.evidence.size
+                linear.append(_Linear(family, slopes, left))
         return sorted(linear, key=lambda each: (each.family.count, each.left))
 
     def _families(
@@ -211,23 +244,22 @@ class _Dynamics:
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue
-            fit = gauss_newton(self.arcs, family)
-            if family.kind == "clock" and not fit.size < CAPS[1] * self.arcs.size:
-                fit = by_factor(self.arcs, family, fit)
-            if np.isfinite(fit.size):
-                candidate = self._fitted(family, fit.numbers, fit.size)
-                if self._is_exact(candidate):
-                    counts.append(family.count)
-                    limit = min(limit, max(BETTER * each.left, _NEARLY))
-                yield candidate
-
-    def _fitted(self, family: Family, numbers: Floats, size: float) -> Candidate:
-        return self._candidate(family, size, family.changes(numbers), numbers)
+            # A step may lead to a number that no scene has.
+            with suppress(ValueError):
+                fit = gauss_newton(self.evidence, family)
+                if family.kind == "clock" and not fit.size < CAPS[1] * self.evidence.size:
+                    fit = by_factor(self.evidence, family, fit)
+                if np.isfinite(fit.size):
+                    candidate = self._fitted(family, fit.size, fit.numbers)
+                    if self._is_exact(candidate):
+                        counts.append(family.count)
+                        limit = min(limit, max(BETTER * each.left, _NEARLY))
+                    yield candidate
 
     def _pairs(self, linear: Sequence[_Linear]) -> Iterator[Candidate]:
         """Yield the best pairs of families with at most six numbers together."""
-        few = [each for each in linear if each.family.count <= 3]
-        defects, size = self.arcs.of_right.ravel(), self.arcs.size
+        few = [each for each in linear if each.family.count <= FEW]
+        defects, size = self.evidence.of_right.ravel(), self.evidence.size
         bases = [orthonormal(each.slopes * each.family.scale, 1e-6) for each in few]
         classes = [_OF_INERTIA.get(each.family.kind, each.family.kind) for each in few]
         tried = []
@@ -246,153 +278,6 @@ class _Dynamics:
                 tried.append((left * 3.0**count, i, k))
         for _, i, k in sorted(tried)[:8]:
             family = both(self.answer.right, few[i].family, few[k].family)
-            fit = gauss_newton(self.arcs, family)
-            if fit.size / size < max(_PAIR, 3 * self.floor):
-                yield self._fitted(family, fit.numbers, fit.size)
-
-    # Proof.
-
-    def _settled(self, candidates: list[Candidate], leaves: float) -> Cause | None:
-        proven: list[_Proven] = []
-        for candidate in sorted(filter(self._is_near, candidates), key=_simplest):
-            if proven and candidate.count > proven[0].candidate.count:
-                decided = self._is_decided(proven[0].candidate, candidate, proven)
-                if decided and candidate.count > 1:
-                    break
-                if decided:
-                    continue
-            proof = self._proof(candidate, leaves)
-            if proof is None:
-                continue
-            if proven and candidate.count > max(1, proven[0].candidate.count):
-                before = proven[0].worst
-                if not before > max(BETTER * proof.worst, self._floor):
-                    continue
-                proven = []
-            proven.append(proof)
-            if len(proven) > _PROVEN:
-                break
-        return self._cause(proven)
-
-    def _is_near(self, candidate: Candidate) -> bool:
-        """Return True if the defects that are left allow a proof."""
-        right = self.answer.right
-        is_loose = (
-            self.answer.file.q is None and right.changed(candidate.changes).coupled > right.coupled
-        )
-        most = _LOOSE if is_loose else max(LEAVES, _DEFECT_ROUNDINGS * self.floor)
-        if candidate.kind == "method":
-            most = 0.02
-        return bool(candidate.defects < most)
-
-    def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
-        """Return True if a proven candidate with fewer numbers makes another one needless."""
-        if simple.defects > max(BETTER * other.defects, 5 * self.floor, _NOTHING):
-            return False
-        kinds = {each.candidate.kind for each in proven}
-        is_worse = other.defects > BETTER * max(simple.defects, self.floor)
-        return other.count > 1 or other.kind in kinds or is_worse
-
-    def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
-        answer, moving = self.answer, self.answer.moving
-        motion = candidate.prove()
-        if motion is None:
-            return None
-        leaves = answer.leaves(motion)
-        worst = max(leaves[name] for name in moving)
-        if candidate.family is not None and worst > _PAIR and self.polished < _POLISHED:
-            self.polished += 1
-            better = self._refitted(candidate)
-            if better is not None and max(better.leaves[name] for name in moving) < worst:
-                candidate, leaves, worst = better.candidate, better.leaves, better.worst
-        part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
-        allowed = max(most * part, self._floor)
-        if worst > min(allowed, CAPS[min(candidate.count, 1)]) or candidate.is_nothing:
-            return None
-        return _Proven(candidate, leaves, worst)
-
-    def _refitted(self, candidate: Candidate) -> _Proven | None:
-        """Return a candidate whose numbers are fitted once more, on the whole answer."""
-        family, numbers, few = candidate.family, candidate.numbers, self.few
-        assert family is not None
-        assert numbers is not None
-        last = np.inf
-        for _ in range(5):
-            base = whole(few, few.right.changed(family.changes(numbers)), has_frame=False)
-            if base is None:
-                return None
-            rest = ((few.file.v - base.v) / few.sizes).ravel()
-            largest = float(np.max(np.abs(rest)))
-            if largest > 0.5 * last or largest < 1e-11:
-                break
-            last, slopes = largest, []
-            for i, step in enumerate(1e-5 * family.scale):
-                shifted = numbers + step * np.eye(family.count)[i]
-                other = whole(few, few.right.changed(family.changes(shifted)), has_frame=False)
-                if other is None:
-                    return None
-                slopes.append(((other.v - base.v) / few.sizes).ravel() / step)
-            matrix = np.transpose(slopes) * family.scale
-            numbers = numbers + family.scale * np.linalg.lstsq(matrix, rest, rcond=1e-9)[0]
-        refitted = self._fitted(family, numbers, candidate.defects * self.arcs.size)
-        motion: Motion | None = refitted.prove()
-        if motion is None:
-            return None
-        leaves = self.answer.leaves(motion)
-        return _Proven(refitted, leaves, max(leaves[name] for name in self.answer.moving))
-
-    def _cause(self, proven: list[_Proven]) -> Cause | None:
-        if not proven:
-            return None
-        if "attitude" in self.answer.failed:
-            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= CAPS[0]]
-            proven = with_attitude or proven
-        proven.sort(key=lambda each: _simplest(each.candidate))
-        best = proven[0].candidate
-        as_well = max(BETTER * best.defects, 5 * self.floor, _NOTHING)
-        alike = [p for p in proven if p.candidate.defects <= as_well]
-        # What the scene writes is nearer to its user than a term of the equations.
-        alike.sort(key=lambda each: self._nearness(each.candidate))
-        first, best = alike[0], self._shortened(alike[0])
-        text, changes = self._described(best)
-        others = tuple(self._described(each.candidate)[0] for each in alike[1:])
-        return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
-
-    def _shortened(self, proven: _Proven) -> Candidate:
-        """Return a candidate whose numbers print with few digits, if these explain as much."""
-        candidate = proven.candidate
-        family, numbers = candidate.family, candidate.numbers
-        if family is None or numbers is None or family.count > _FEW:
-            return candidate
-        size, moving = candidate.defects * self.arcs.size, self.answer.moving
-
-        def leaves(short: Floats) -> float:
-            with suppress(Spent, ValueError):
-                motion = self._fitted(family, short, size).prove()
-                if motion is not None:
-                    left = self.answer.leaves(motion)
-                    return max(left[name] for name in moving)
-            return float("inf")
-
-        worst = max(proven.worst, self._floor / ROUNDINGS)
-        return self._fitted(family, shortened(numbers, family.scale, worst, leaves), size)
-
-    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool]:
-        """Return how far a candidate is from the text of the scene: one without a number is nearer."""
-        has_number = " = " in self._described(candidate)[0]
-        return candidate.count, candidate.kind != WRITTEN, has_number
-
-    def _described(self, candidate: Candidate) -> tuple[str, Changes]:
-        """Return a candidate in words, with its changes; a body has the factor that changes the least."""
-        right, changes = self.answer.right, candidate.changes
-        if candidate.kind == "body" and candidate.count > 1:
-            mass = nearest_factor(right, changes["mass"])
-            words = with_numbers(candidate.name, *entries(right.mass, mass))
-            return words, {"mass": mass}
-        family, numbers = candidate.family, candidate.numbers
-        words = "" if family is None or numbers is None else structure(family, numbers)
-        return ": ".join(filter(None, (words, candidate.text))), changes
-
-
-def _simplest(candidate: Candidate) -> tuple[int, float]:
-    return candidate.count, candidate.defects
+            fit = gauss_newton(self.evidence, family)
+            if fit.size / size < max(PAIR, 3 * self.floor):
+                yield self._fitted(family, fit.size, fit.numbers)

@@ -9,7 +9,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -19,7 +19,7 @@ import numpy as np
 from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
+from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.loads.loads import Loads
 
 Changes = Mapping[str, Any]
@@ -28,6 +28,9 @@ Changes = Mapping[str, Any]
 _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
 _AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
 AXES: Final = _AXES | _AXES_OF_NUMBERS
+# The work of texts, once and for each state.
+_TEXTS: Final = 120.0
+_TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 
 
@@ -181,14 +184,19 @@ class Equations:
 
     def rates(self, time: Floats, z: Floats) -> Floats:
         """Return the rates of states with or without a quaternion, a centre, and the scene's own states."""
-        n, nu = self.size, self.velocities(time, z)
-        moving = self._slopes @ self._expressions(time, z, nu)
+        n, nu, R = self.size, self.velocities(time, z), None
+        has_centre = z.shape[1] > n + 4 + self.own
+        if has_centre or self._reads_frame:
+            R = rotations(z[:, n : n + 4])
+        moving = self._slopes @ self._expressions(time, z, nu, R)
         if self.loads is not None and self.loads.rotor:
             moving = moving + np.cross(self.wheels(time, z), nu, axis=1)
         out = np.empty((max(len(moving), len(z)), *z.shape[1:]))
         out[:, :n] = moving
         if z.shape[1] > n:
-            self._put_frame_rates(out, z, nu, moving)
+            out[:, n : n + 4] = self._turned(z[:, n : n + 4], nu[:, -3:], moving)
+        if has_centre:
+            out[:, n + 4 : n + 7] = to_space(R, nu[:, :3]) + self.current[:, None]
         if self.own and z.shape[1] > n + 4:
             out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)
@@ -213,48 +221,49 @@ class Equations:
         when = np.broadcast_to(self.start + time, (len(z), len(time)))
         return self.acting.rotor(when, z.transpose(0, 2, 1)).transpose(0, 2, 1)
 
-    def _put_frame_rates(self, out: Floats, z: Floats, nu: Floats, moving: Floats) -> None:
-        n, W = self.size, nu[:, -3:]
-        if np.any(self.ahead):
-            acceleration = self.inverse @ moving if self.has_momenta else moving
-            W = W + _number(self.ahead) * acceleration[:, -3:]
-        q = parts(z[:, n : n + 4])
-        for i, component in enumerate(self._turned(q, parts(W))):
-            out[:, n + i] = component
-        if z.shape[1] > n + 4 + self.own:
-            for i, component in enumerate(centre_rate(q, parts(nu[:, :3]))):
-                out[:, n + 4 + i] = component + self.current[i]
+    def price(self, components: int, states: int) -> float:
+        """Return the work of the rates of so many states: about one for each microsecond."""
+        once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
+        each = 0.012 * components
+        if self.acting is not None:
+            once, each = once + _TEXTS, each + _TEXTS_OF_ONE
+        return once + each * states
 
-    def _expressions(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+    def _expressions(self, time: Floats, z: Floats, nu: Floats, R: Any) -> Floats:
         """Return the values of the expressions that have an effect, (parameters, columns, arcs)."""
-        R = loads = None
-        if self._reads_frame:
-            R = _rotations(z[:, self.size : self.size + 4])
+        loads = None
         if not {"loads", "turned loads"}.isdisjoint(self._columns):
             loads = self._loads(time, z, nu)
-        values = [self._values(name, nu, R, loads, at) for name, at in self._columns.items()]
-        if len(values) == 1:
-            return values[0]
-        sets, arcs = max(map(len, values), default=1), z.shape[2]
-        if not values:
-            return np.zeros((1, 0, arcs))
-        return np.concatenate(
-            [np.broadcast_to(each, (sets, each.shape[1], arcs)) for each in values], axis=1
-        )
+        sets, begin = max(len(each) for each in (nu, R, loads) if each is not None), 0
+        values = np.empty((sets, self._slopes.shape[-1], z.shape[2]))
+        for name, columns in self._columns.items():
+            end = begin + len(columns)
+            values[:, begin:end] = self._values(name, columns, nu, R, loads)
+            begin = end
+        return values
 
-    def _values(self, name: str, nu: Floats, R: Any, loads: Any, columns: Any) -> Floats:
-        if name == "products":
-            j, k = np.transpose(self.basis.pairs)[:, columns]
-            return np.asarray(nu[:, j] * nu[:, k])
-        own: dict[str, Callable[[], Floats]] = {
-            "constants": lambda: np.ones((1, 1, 1)),
-            "velocities": lambda: nu,
-            "squares": lambda: np.abs(nu) * nu,
-            "frame": lambda: R,
-            "loads": lambda: _to_space(R, loads) if self.in_world else loads,
-            "turned loads": lambda: _to_body(R, loads),
-        }
-        return np.asarray(own[name]()[:, columns])
+    def _values(self, name: str, columns: Any, nu: Floats, R: Any, loads: Any) -> Any:
+        """Return some expressions of a group; R and the loads are known where the group needs them."""
+        match name:
+            case "constants":
+                return 1.0
+            case "velocities":
+                return nu[:, columns]
+            case "products":
+                j, k = self._factors_of_products
+                return nu[:, j] * nu[:, k]
+            case "squares":
+                return np.abs(nu[:, columns]) * nu[:, columns]
+            case "frame":
+                return R.reshape(len(R), 9, -1)[:, columns]
+            case "loads":
+                return (to_space(R, loads) if self.in_world else loads)[:, columns]
+        return _to_body(R, loads)[:, columns]
+
+    @cached_property
+    def _factors_of_products(self) -> Floats:
+        """The places of both factors of each product that has an effect."""
+        return np.transpose(self.basis.pairs)[:, self._columns["products"]]
 
     def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads of the scene, (parameters, components, arcs)."""
@@ -284,21 +293,42 @@ class Equations:
         both = (np.broadcast_to(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
         return np.concatenate([*both], axis=1).transpose(0, 2, 1)
 
-    def _turned(self, q: list[Floats], W: list[Floats]) -> list[Any]:
-        right = attitude_rate(q, W)
-        if self.turns is None:
-            return right
-        weights = np.asarray(self.turns, dtype=float)
-        # W q is the conjugate of q* W*, and W* = -W.
-        r0, *r = attitude_rate([q[0], -q[1], -q[2], -q[3]], [-w for w in W])
-        left = [r0, *(-component for component in r)]
-        before, after = _number(weights[..., 0])[..., 0], _number(weights[..., 1])[..., 0]
-        return [before * a + after * b for a, b in zip(left, right, strict=True)]
+    def _turned(self, q: Floats, W: Floats, moving: Floats) -> Floats:
+        """Return the rates of the quaternion."""
+        if np.any(self.ahead):
+            acceleration = self.inverse @ moving if self.has_momenta else moving
+            W = W + _number(self.ahead) * acceleration[:, -3:]
+        return self._turning @ outer(q, W)
+
+    @cached_property
+    def _turning(self) -> Floats:
+        """The factors of q_i W_j in the rates of q, (..., 4, 12)."""
+        before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
+        return before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
 
 
-def parts(rows: Floats) -> list[Floats]:
-    """Return the components, each (parameters, arcs)."""
-    return [rows[:, i] for i in range(rows.shape[1])]
+def outer(p: Floats, q: Floats) -> Floats:
+    """Return the products p_i q_j of the components, (parameters, products, arcs)."""
+    return np.repeat(p, q.shape[1], axis=1) * np.tile(q, (1, p.shape[1], 1))
+
+
+def _turning_factors(unit: Floats, axes: Floats) -> Floats:
+    """Return the factors of q_i W_j in q' = q W / 2, for these unit vectors."""
+    return np.array([attitude_rate(list(q), list(W)) for q in unit for W in axes], dtype=float).T
+
+
+def _entries(q: Floats) -> Floats:
+    return np.ravel(rotation(list(q)))
+
+
+AFTER: Final = _turning_factors(np.eye(4), np.eye(3))
+# W q is the conjugate of q* W*, and W* = -W.
+_CONJUGATE: Final = np.diag([1.0, -1, -1, -1])
+_BEFORE: Final = _CONJUGATE @ _turning_factors(_CONJUGATE, -np.eye(3))
+# The factors of q_i q_k in the entries of R(q), which are quadratic forms.
+_ROTATION: Final = np.transpose(
+    [(_entries(e + d) - _entries(e - d)) / 4 for e in np.eye(4) for d in np.eye(4)]
+)
 
 
 def _number(value: Any) -> Floats:
@@ -306,23 +336,19 @@ def _number(value: Any) -> Floats:
     return np.asarray(value, dtype=float).reshape(-1, 1, 1)
 
 
-def _rotations(q: Floats) -> Floats:
-    """Return the entries of R(q) of quaternions of any length, (parameters, 9, arcs)."""
-    unit = q / np.sqrt(np.sum(q * q, axis=1, keepdims=True))
-    return np.stack([entry for row in rotation(parts(unit)) for entry in row], axis=1)
+def rotations(q: Floats) -> Floats:
+    """Return R(q) of quaternions of any length, (parameters, 3, 3, arcs)."""
+    R = _ROTATION @ outer(q, q) / np.sum(q * q, axis=1, keepdims=True)
+    return np.asarray(R.reshape(len(q), 3, 3, -1))
 
 
-def _to_space(R: Floats, vectors: Floats) -> Floats:
+def to_space(R: Floats, vectors: Floats) -> Floats:
     """Return R v for vectors of three components."""
-    turned = [sum(R[:, 3 * i + k] * vectors[:, k] for k in range(3)) for i in range(3)]
-    return np.stack([np.asarray(component) for component in turned], axis=1)
+    return np.asarray(np.einsum("pika,pka->pia", R, vectors))
 
 
 def _to_body(R: Floats, vectors: Floats) -> Floats:
     """Return R^T v for every vector of three components."""
-    turned = [
-        sum(R[:, 3 * k + i] * vectors[:, first + k] for k in range(3))
-        for first in range(0, vectors.shape[1], 3)
-        for i in range(3)
-    ]
-    return np.stack([np.asarray(component) for component in turned], axis=1)
+    threes = vectors.reshape(len(vectors), -1, 3, vectors.shape[2])
+    turned = np.einsum("pkia,pnka->pnia", R, threes)
+    return np.asarray(turned.reshape(len(turned), vectors.shape[1], -1))

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import Evidence
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.flow import Floats
 
@@ -71,20 +71,22 @@ class Fitted:
     size: float
 
 
-def gauss_newton(arcs: Arcs, family: Family, begin: Floats | None = None) -> Fitted:
+def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
     """Return the best numbers of a family; of infinite size where they cannot be computed."""
     numbers = family.right if begin is None else begin
     first = size = np.inf
     for count in range(_ROUNDS):
-        steps = arcs.few_steps if size > _COARSE * np.sqrt(arcs.of_right.size) else arcs.steps
-        defects = arcs.defects([family.changes(numbers)], steps)[0].ravel()
+        is_rough = size > _COARSE * np.sqrt(evidence.of_right.size)
+        steps = evidence.few_steps if is_rough else evidence.steps
+        sets = [family.changes(numbers), *family.around(numbers)]
+        defects, *around = evidence.defects(sets, steps)
         size = float(np.linalg.norm(defects))
         first = first if count else size
-        slopes = family.slopes(arcs.defects(family.around(numbers), arcs.few_steps))
+        slopes = family.slopes(np.array(around))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
-        trials = _trial_steps(slopes, defects, family.scale)
-        sizes = _sizes(arcs.defects([family.changes(numbers + step) for step in trials], steps))
+        trials = _trial_steps(slopes, defects.ravel(), family.scale)
+        sizes = _sizes(evidence.defects([family.changes(numbers + step) for step in trials], steps))
         best = int(np.argmin(sizes))
         if not sizes[best] < size:
             break
@@ -93,8 +95,9 @@ def gauss_newton(arcs: Arcs, family: Family, begin: Floats | None = None) -> Fit
         is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
         if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
-    exact = arcs.defects([family.changes(numbers)])[0]
-    return Fitted(numbers, float(_sizes(exact[None])[0]))
+    if steps != evidence.steps:
+        size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
+    return Fitted(numbers, size)
 
 
 def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> list[Floats]:

@@ -67,14 +67,15 @@ def _row(entries: dict[int, float], count: int) -> Floats:
 
 
 _TABLE: Final = tuple(_row(entries, stage) for stage, entries in enumerate(_STAGES))
-_SUM: Final = _row(_WEIGHTS, len(_STAGES))
+STAGES: Final = len(_STAGES)
+_SUM: Final = _row(_WEIGHTS, STAGES)
 
 
 def flow(rates: Rates, begin: Floats, since: Floats, spans: Floats, steps: int) -> Floats:
     """Return the states after the ``spans`` of the arcs that begin at the times ``since``."""
     states, h = begin, spans / steps
-    slopes = np.empty((len(_STAGES), *begin.shape))
-    flat = slopes.reshape(len(_STAGES), -1)
+    slopes = np.empty((STAGES, *begin.shape))
+    flat = slopes.reshape(STAGES, -1)
     for step in range(steps):
         time = since + step * h
         for stage, (row, node) in enumerate(zip(_TABLE, _NODES_OF_STAGES, strict=True)):

@@ -14,14 +14,12 @@ from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
 from taylor_verify.judge.causes.attitude_pieces import attitude_in_pieces
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.equations import Equations, parts
+from taylor_verify.judge.causes.equations import AFTER, Equations, outer, rotations, to_space
 from taylor_verify.judge.causes.fault import linear
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
-from taylor_verify.models.algebra import apply
-from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import with_numbers
 
@@ -148,9 +146,8 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
     begin = np.concatenate([own[:, :n], true, own[:, n:]], axis=1)
 
     def rates(time: Floats, z: Floats) -> Floats:
-        omega, R = _omega(right, z[:, :n]), rotation(parts(z[:, n : n + 4]))
-        in_space = apply(R, parts(omega))
-        turned = np.stack(attitude_rate(parts(z[:, n + 4 :]), in_space), axis=1)
+        in_space = to_space(rotations(z[:, n : n + 4]), _omega(right, z[:, :n]))
+        turned = AFTER @ outer(z[:, n + 4 :], in_space)
         return np.concatenate([right.rates(time, z[:, : n + 4]), turned], axis=1)
 
     ends = flow(rates, begin, arcs.since, arcs.spans, arcs.steps)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from typing import Final
 
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.written_numbers import Number, rewritten
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
@@ -18,7 +23,38 @@ _RATES: Final = tuple(
 _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 
 
-def misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
+def faults_of_states(answer: Answer) -> Iterator[Fault]:
+    """Yield the loads of a scene that are run otherwise; what no scene may have is none."""
+    acting = answer.right.acting
+    assert acting is not None
+    loads = acting.written
+    others = _misread_states(loads) if answer.has_states else _held_loads(loads, answer)
+    with suppress(ValueError):
+        for name, other in others:
+            if next(other.faults(), None) is None:
+                yield Fault(name, "states", {"acting": acting.of(other)})
+
+
+def _held_loads(loads: Loads, answer: Answer) -> Iterator[tuple[str, Loads]]:
+    """Yield loads that are taken once in a row, or several times, and held in between."""
+    spacing = Fraction(float(np.median(np.diff(answer.times)))).limit_denominator(10**6)
+    if not spacing > 0:
+        return
+    names = {name: f"{name}_held" for name, _ in loads.vectors}
+    vectors = tuple(
+        (name, tuple(f"{names[name]}{i}" for i in (1, 2, 3))) for name, _ in loads.vectors
+    )
+    for steps in (1, 2, 4, 5, 10):
+        every = spacing / steps
+        states = tuple(
+            Held(names[name], None, entries, every, Fraction(0), is_vector=True)
+            for name, entries in loads.vectors
+        )
+        name = f"loads taken every {float(every):.6g} and held in between"
+        yield name, replace(loads, vectors=vectors, states=states)
+
+
+def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield the loads of a scene with own states, run otherwise, with what was done."""
     held, own = loads.held_states, [s for s in loads.states if isinstance(s, Continuous)]
     for state in held:

@@ -1,17 +1,23 @@
-"""Methods replayed from row to row of an answer: which one, and how many steps make a row."""
+"""Methods replayed from row to row of an answer, alone or beside a fault: which one, in how many steps.
+
+The error of fine steps is fitted to the defects, linearly in h^p, beside each fault and each family. It
+gives the number of steps, with which the arcs are stepped again as the simulator's were.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs
+from taylor_verify.judge.causes.arcs import Arcs, parts_of
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.equations import Equations
+from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.fit import across, orthonormal
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.methods import (
     METHODS,
@@ -27,20 +33,41 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, which are this many roundings at least.
 _LEAVES: Final = 0.02
 _CLEAR: Final = 30.0
-# A method is asymptotic where its defects are this small; they point where the file's defects do.
-_ASYMPTOTIC: Final = 0.05
-_ALONG: Final = 0.8
-_SEARCHES: Final = 3
+# The steps of an arc by which the error of a method is measured; of explicit and implicit ones the most.
+_FINE: Final = 16
 _MOST: Final = 200
 _MOST_IMPLICIT: Final = 64
 # Evaluations of an implicit step, about.
 _EVALUATIONS: Final = 12
+# What a method leaves of the defects to first order, alone and beside a fault, and how small its part is.
+_ALONE: Final = 0.6
+_BESIDE: Final = 0.2
+_SLIGHT: Final = 1e-3
+# Of each method the best fits beside a fault give its numbers of steps; some methods are tried.
+_FITS: Final = 4
+_METHODS: Final = 3
 # Words that programs look for.
 _WORDS: Final = {
     "explicit Euler": "explicit gyroscopic step: explicit Euler",
     "backward Euler": "implicit gyroscopic step: backward Euler",
     "one Newton step of backward Euler": "implicit gyroscopic step: one Newton step of backward Euler",
 }
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A method with its number of steps from row to row, and the part of the defects that it leaves."""
+
+    name: str
+    method: Method
+    count: int
+    left: float
+
+    def step(self, answer: Answer) -> float:
+        return float(np.median(np.abs(np.diff(answer.times)))) / self.count
+
+    def words(self, answer: Answer) -> str:
+        return f"beside steps of {self.name}, h = {self.step(answer):.6g}"
 
 
 def replay(
@@ -55,7 +82,9 @@ def replay(
     """Return v after the spans, each in so many steps."""
     h = spans / steps
     evaluations = _EVALUATIONS if method.is_implicit else method.order
-    answer.budget.spend(steps * evaluations * v.shape[1] * (7 + 0.011 * v.size / v.shape[1]))
+    v = np.broadcast_to(v, (max(len(v), equations.sets), *v.shape[1:]))
+    price = equations.price(v.shape[1], len(v) * v.shape[2])
+    answer.budget.spend(steps * evaluations * price)
     for k in range(steps):
         v = method.step(equations, since + k * h, v, h)
         if v.shape[1] > answer.n:
@@ -72,66 +101,129 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
-    for name, method in known.items():
-        steps, left = _steps_of(arcs, method, stride)
-        if steps and left < max(_LEAVES, _CLEAR * arcs.floor):
-            h = float(np.median(np.abs(arcs.spans))) / steps / stride
-            words = _WORDS.get(name, name) if answer.n == 3 else name
-            if method.order > 1:
-                words = f"truncation of order {method.order}: {name}"
+    for steps in _each_best(_Replays(arcs, stride, [{}]).steps(known, _ALONE)):
+        if steps.left < max(_LEAVES, _CLEAR * arcs.floor):
+            words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
+            if steps.method.order > 1:
+                words = f"truncation of order {steps.method.order}: {steps.name}"
             yield Candidate(
-                name=f"{words}, h = {h:.6g}",
+                name=f"{words}, h = {steps.step(answer):.6g}",
                 kind="method",
-                defects=left,
-                prove=partial(_proof, answer, method, steps),
-                method=(method, steps),
+                defects=steps.left,
+                motion=partial(_motion, steps.method, steps.count),
+                near=_LEAVES,
+                method=(steps.method, steps.count),
             )
 
 
-def _proof(answer: Answer, method: Method, steps: int) -> Motion | None:
-    return whole(answer, answer.right, stepper(answer, method, steps))
+def steps_beside(
+    arcs: Arcs, stride: int, slopes: Sequence[Floats], faults: Sequence[Changes]
+) -> list[Steps]:
+    """Return the steps of a few methods that explain most of the defects beside a fault, best first.
+
+    ``slopes`` are those of families, (entries, numbers).
+    """
+    if arcs.of_right.shape != (arcs.answer.n, len(arcs.first)):
+        return []  # momenta are compared beside the start or the attitude, which no step of v leads to
+    bases = [orthonormal(each / np.linalg.norm(each, axis=0), 1e-9) for each in slopes]
+    explicit = {name: method for name, method in METHODS.items() if not method.is_implicit}
+    steps = _Replays(arcs, stride, [{}, *faults], bases).steps(explicit, _BESIDE)
+    return [each for each in _each_best(steps) if each.left < _BESIDE][:_METHODS]
 
 
-def stepper(answer: Answer, method: Method, steps: int) -> Callable[[Floats], Floats]:
-    """Return the steps of a method from each row to the next one."""
+def _each_best(steps: Iterator[Steps]) -> list[Steps]:
+    """Return the best steps of each method, the best of all first."""
+    best = dict[str, Steps]()
+    for each in sorted(steps, key=lambda each: each.left):
+        best.setdefault(each.name, each)
+    return [*best.values()]
+
+
+@dataclass(frozen=True)
+class _Replays:
+    """Arcs of an answer beside ``sets`` of changes, of which the first has none, or one of the bases."""
+
+    arcs: Arcs
+    stride: int
+    sets: Sequence[Changes]
+    bases: Sequence[Floats] = ()
+
+    def steps(self, methods: Mapping[str, Method], near: float) -> Iterator[Steps]:
+        """Yield each method with numbers of steps, if its error is near to the defects."""
+        defects = self._compared(self.arcs.defects(self.sets))
+        for name, method in methods.items():
+            errors = defects - self._stepped(method, _FINE, self.sets)
+            some = set[tuple[int, int]]()
+            for place, own in enumerate(zip(defects, errors, strict=True)):
+                some |= {(place, count) for count in self._counts(method, place, own, near)}
+            for place, count in sorted(some):
+                (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
+                if np.all(np.isfinite(rest)):
+                    yield Steps(name, method, count, min(self._lefts(place, rest)))
+
+    def _counts(
+        self, method: Method, place: int, own: tuple[Floats, Floats], near: float
+    ) -> set[int]:
+        """Return the numbers of steps from row to row by which the error would be the defects."""
+        parts, most = list[tuple[float, float]](), _MOST_IMPLICIT if method.is_implicit else _MOST
+        defects, error = own
+        for basis in self._beside(place):
+            seen = across(basis, error)
+            size = float(seen @ seen)
+            if not 0 < size < np.inf:
+                continue
+            part = float(seen @ defects) / size
+            left = float(np.linalg.norm(across(basis, defects) - part * seen)) / self.arcs.size
+            if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.arcs.size:
+                parts.append((left, part))
+        some = [round(_FINE / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
+        around = {max(1, count) + more for count in some[:_FITS] for more in (-1, 0, 1)}
+        return {count for count in around if 1 <= count <= most}
+
+    def _beside(self, place: int) -> Sequence[Floats]:
+        none = np.zeros((self.arcs.of_right[: self.arcs.answer.n].size, 0))
+        return [none, *self.bases] if place == 0 else [none]
+
+    def _lefts(self, place: int, rest: Floats) -> list[float]:
+        rests = [across(basis, rest) for basis in self._beside(place)]
+        return [float(np.linalg.norm(each)) / self.arcs.size for each in rests]
+
+    def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
+        """Return what so many steps of an arc leave, (sets, entries)."""
+        arcs, answer = self.arcs, self.arcs.answer
+        rows = []
+        for part in parts_of(sets):
+            equations = (
+                answer.right.copies(part) if len(part) > 1 else answer.right.changed(part[0])
+            )
+            begin = arcs.begin(max(answer.n, equations.coupled))
+            ends = replay(answer, method, equations, begin, arcs.since, arcs.spans, steps)
+            rest = (arcs.end - ends[:, : answer.n]) / answer.sizes[:, None]
+            rows.append(np.broadcast_to(rest, (len(part), *rest.shape[1:])))
+        return self._compared(np.concatenate(rows))
+
+    def _compared(self, defects: Floats) -> Floats:
+        n, arcs = self.arcs.answer.n, len(self.arcs.first)
+        return defects[:, :n, :arcs].reshape(len(defects), -1)
+
+
+def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
+    """Return the motion of an answer in steps from each row to the next one."""
     times = answer.times if answer.is_from_start else np.r_[answer.begins, answer.times]
     since, spans = times[:-1], np.diff(times)
-    return lambda z: replay(answer, method, answer.right, z, since, spans, steps)
+
+    def go(z: Floats) -> Floats:
+        return replay(answer, method, answer.right, z, since, spans, steps)
+
+    return whole(answer, answer.right, go)
 
 
-def _steps_of(arcs: Arcs, method: Method, stride: int) -> tuple[int, float]:
-    """Return the number of steps from a row to the next that fits best, and the part that it leaves."""
-    answer = arcs.answer
-    defects = arcs.of_right[: answer.n, : len(arcs.first)]
-    scale, size = answer.sizes[:, None], float(np.linalg.norm(defects))
-    exact = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
+def stepped(answer: Answer, steps: Steps) -> Answer:
+    """Return the answer with arcs that are stepped from row to row."""
+    h = steps.step(answer)
 
-    def ends(steps: int) -> Floats:
-        begin = arcs.begin(max(answer.n, answer.right.coupled))
-        count = steps * stride
-        (rows,) = replay(answer, method, answer.right, begin, arcs.since, arcs.spans, count)
-        return np.asarray(rows[: answer.n])
+    def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
+        count = max(1, round(float(np.median(np.abs(spans))) / h))
+        return replay(answer, steps.method, equations, begin, since, spans, count)
 
-    steps, error = 1, (ends(1) - exact) / scale
-    limit = _MOST_IMPLICIT if method.is_implicit else _MOST
-    while not np.linalg.norm(error) < _ASYMPTOTIC * np.sqrt(error.size) and steps < 32:
-        steps *= 2
-        error = (ends(steps) - exact) / scale
-    for _ in range(_SEARCHES):
-        own = float(np.linalg.norm(error))
-        if not 0 < own < np.inf:
-            return 0, np.inf
-        further = round(steps * (own / size) ** (1 / method.order))
-        if further == steps or not 1 <= further <= limit:
-            break
-        steps, error = further, (ends(further) - exact) / scale
-    if np.sum(error * defects) < _ALONG * float(np.linalg.norm(error)) * size:
-        return 0, np.inf
-    tried = {k: _left(ends(k), arcs) / size for k in {max(1, steps - 1), steps, steps + 1}}
-    best = min(tried, key=lambda k: tried[k])
-    return best, tried[best]
-
-
-def _left(ends: Floats, arcs: Arcs) -> float:
-    left = float(np.linalg.norm((arcs.end - ends) / arcs.answer.sizes[:, None]))
-    return left if np.isfinite(left) else np.inf
+    return replace(answer, stepping=ends)

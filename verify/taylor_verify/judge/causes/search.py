@@ -17,11 +17,10 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.answer import Answer, conjugate, matrices, steady_signs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.dynamics import dynamics
+from taylor_verify.judge.causes.dynamics import dynamics, in_numbers, in_states
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.own_states import cause_in_numbers, cause_in_states
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import are_saved_twice, wrong_rows
@@ -49,7 +48,7 @@ def causes_of(answer: Answer) -> list[Cause]:
         return undone
     by_group = readings(answer)
     if answer.has_states:
-        return _each_once(by_group) or cause_in_states(answer)
+        return _each_once(by_group) or _some(in_states(answer))
     undone = _undone(answer, by_group)
     if undone:
         return undone
@@ -63,10 +62,14 @@ def causes_of(answer: Answer) -> list[Cause]:
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
         of_motion = _of_motion(answer, moving, "attitude" in left)
-        return of_motion or _in_space(answer) or cause_in_states(answer)
+        return of_motion or _in_space(answer) or _some(in_states(answer))
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
+
+
+def _some(cause: Cause | None) -> list[Cause]:
+    return [] if cause is None else [cause]
 
 
 def _each_once(by_group: dict[str, Cause]) -> list[Cause]:
@@ -91,8 +94,8 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
         moving = []
     if moving:
         # Another pulse is nearer than a part of the run without it.
-        causes = cause_in_numbers(answer) if len(answer.right.switches) else []
-        causes = causes or _pieces(answer) or [*filter(None, [dynamics(answer)])]
+        causes = _some(in_numbers(answer)) if len(answer.right.switches) else []
+        causes = causes or _pieces(answer) or _some(dynamics(answer))
         cause = causes[-1] if causes else None
     if not has_wrong_attitude:
         return causes

@@ -9,7 +9,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.fault import Fault, Sizes, linear
@@ -91,9 +90,9 @@ def load_names(n: int) -> list[str]:
     return [f"{noun} {i}" for noun in nouns for i in (1, 2, 3)]
 
 
-def families_of_terms(answer: Answer, sizes: Sizes) -> Iterator[Family]:
+def families_of_terms(right: Equations, sizes: Sizes) -> Iterator[Family]:
     """Yield the families of terms: clock, gyroscopic term, wheels, loads, drag and damping."""
-    right, n = answer.right, answer.n
+    n = right.size
     family, factors = partial(linear, right), right.basis.factors
     yield family("clock", "clock", 1.0, [1], clock=[1])
     word = "gyroscopic term" if n == 3 else "Coriolis terms"

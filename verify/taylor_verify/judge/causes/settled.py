@@ -1,0 +1,200 @@
+"""The choice among candidates: fewest numbers first, each proven on the whole answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.answer import Answer
+from taylor_verify.judge.causes.bodies import entries, nearest_factor, structure
+from taylor_verify.judge.causes.budget import Spent
+from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
+from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
+from taylor_verify.words.causes import with_numbers
+
+# Error of float64 over a whole answer.
+_FLOAT64: Final = 5e-13
+# Defects of so many roundings of the file may be left.
+_DEFECT_ROUNDINGS: Final = 30.0
+# Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
+_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
+_STRICTEST: Final = 1e-4
+# Two families at once leave at most this.
+PAIR: Final = 1e-4
+NOTHING: Final = 1e-9
+# Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
+FIT_ROWS: Final = 160
+_POLISHED: Final = 4
+_ROUNDS: Final = 5
+_SETTLED: Final = 1e-11
+_SHIFT: Final = 1e-5
+_PROVEN: Final = 6
+# So few numbers are printed with as few digits as explain as much.
+FEW: Final = 3
+_DIGITS: Final = (2, 3, 4, 6)
+# A number so small beside the scale of its family is none.
+_NO_NUMBER: Final = 1e-8
+
+
+@dataclass(frozen=True)
+class _Proven:
+    candidate: Candidate
+    leaves: dict[str, float]
+    worst: float
+
+
+class Choice:
+    """Proofs that candidates explain the errors of some ``groups``.
+
+    ``floor`` is the rounding of the file as a part of the defects.
+    """
+
+    def __init__(self, answer: Answer, groups: Sequence[str], floor: float) -> None:
+        self.answer, self.groups, self.floor = answer, groups, floor
+        self._polished = 0
+
+    @property
+    def _least(self) -> float:
+        """The roundings of the file and of the search, as a part of the error."""
+        least = min(self.answer.worst[name] for name in self.groups)
+        return max(ROUNDINGS * self.answer.floor(self.groups), _FLOAT64 / least)
+
+    def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
+        """Return the proven cause, with all others that explain as well."""
+        proven: list[_Proven] = []
+        for candidate in sorted(filter(self._is_near, candidates), key=_simplest):
+            if proven and candidate.count > proven[0].candidate.count:
+                decided = self._is_decided(proven[0].candidate, candidate, proven)
+                if decided and candidate.count > 1:
+                    break
+                if decided:
+                    continue
+            proof = self._proof(candidate, leaves)
+            if proof is None:
+                continue
+            if proven and candidate.count > max(1, proven[0].candidate.count):
+                if not proven[0].worst > max(BETTER * proof.worst, self._least):
+                    continue
+                proven = []
+            proven.append(proof)
+            if len(proven) > _PROVEN:
+                break
+        return self._cause(proven)
+
+    def _is_near(self, candidate: Candidate) -> bool:
+        """Return True if the defects that are left allow a proof."""
+        return candidate.defects < max(candidate.near, _DEFECT_ROUNDINGS * self.floor)
+
+    def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
+        """Return True if a proven candidate with fewer numbers makes another one needless."""
+        if simple.defects > max(BETTER * other.defects, 5 * self.floor, NOTHING):
+            return False
+        kinds = {each.candidate.kind for each in proven}
+        is_worse = other.defects > BETTER * max(simple.defects, self.floor)
+        return other.count > 1 or other.kind in kinds or is_worse
+
+    def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
+        proof = self._left(candidate)
+        if proof is None or candidate.is_nothing:
+            return None
+        if candidate.family is not None and proof.worst > PAIR and self._polished < _POLISHED:
+            self._polished += 1
+            better = self._refitted(candidate)
+            if better is not None and better.worst < proof.worst:
+                proof = better
+        part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
+        allowed = min(max(most * part, self._least), CAPS[min(candidate.count, 1)])
+        return proof if proof.worst <= allowed and not proof.candidate.is_nothing else None
+
+    def _left(self, candidate: Candidate) -> _Proven | None:
+        """Return what a candidate leaves of the whole answer; None where it has no motion."""
+        motion = candidate.motion(self.answer)
+        if motion is None:
+            return None
+        leaves = self.answer.leaves(motion)
+        return _Proven(candidate, leaves, max(leaves.get(name, np.inf) for name in self.groups))
+
+    def _refitted(self, candidate: Candidate) -> _Proven | None:
+        """Return a candidate whose numbers are fitted once more, on the whole answer."""
+        few, family, numbers = self.answer.thinned(FIT_ROWS), candidate.family, candidate.numbers
+        assert family is not None
+        assert numbers is not None
+
+        def rest(numbers: Floats) -> Floats:
+            motion = candidate.of(numbers).motion(few)
+            if motion is None:
+                raise ValueError(numbers)
+            return np.asarray((few.file.v - motion.v) / few.sizes).ravel()
+
+        last = np.inf
+        with suppress(ValueError):
+            for _ in range(_ROUNDS):
+                base = rest(numbers)
+                largest = float(np.max(np.abs(base)))
+                if largest > 0.5 * last or largest < _SETTLED:
+                    break
+                ahead = [rest(numbers + step) for step in _SHIFT * np.diag(family.scale)]
+                slopes = (np.array(ahead) - base).T / _SHIFT
+                step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
+                last, numbers = largest, numbers - family.scale * step
+            return self._left(candidate.of(numbers))
+        return None
+
+    def _cause(self, proven: list[_Proven]) -> Cause | None:
+        if not proven:
+            return None
+        if "attitude" in self.answer.failed:
+            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= CAPS[0]]
+            proven = with_attitude or proven
+        proven.sort(key=lambda each: _simplest(each.candidate))
+        best = proven[0].candidate
+        as_well = max(BETTER * best.defects, 5 * self.floor, NOTHING)
+        alike = [p for p in proven if p.candidate.defects <= as_well]
+        # What the scene writes is nearer to its user than a term of the equations.
+        alike.sort(key=lambda each: self._nearness(each.candidate))
+        first, best = alike[0], self._shortened(alike[0])
+        text, changes = self._described(best)
+        others = tuple(self._described(each.candidate)[0] for each in alike[1:])
+        return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
+
+    def _shortened(self, proven: _Proven) -> Candidate:
+        """Return a candidate with the fewest digits of its numbers that explain as much."""
+        candidate, worst = proven.candidate, max(proven.worst, self._least / ROUNDINGS)
+        family, numbers = candidate.family, candidate.numbers
+        if family is None or numbers is None or family.count > FEW:
+            return candidate
+        large = np.where(np.abs(numbers) > _NO_NUMBER * family.scale, numbers, 0.0)
+        for digits in _DIGITS:
+            with suppress(Spent, ValueError):
+                short = candidate.of(np.array([float(f"{x:.{digits}g}") for x in large]))
+                left = self._left(short)
+                if left is not None and left.worst <= worst:
+                    return short
+        return candidate
+
+    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool]:
+        """Return how far a candidate is from the text of the scene: one without a number is nearer."""
+        has_number = " = " in self._described(candidate)[0]
+        return candidate.count, candidate.kind != WRITTEN, has_number
+
+    def _described(self, candidate: Candidate) -> tuple[str, Changes]:
+        """Return a candidate in words, with its changes; a body has the factor that changes the least."""
+        right, changes = self.answer.right, candidate.changes
+        if candidate.kind == "body" and candidate.count > 1:
+            mass = nearest_factor(right, changes["mass"])
+            words = with_numbers(candidate.name, *entries(right.mass, mass))
+            return words, {"mass": mass}
+        family, numbers = candidate.family, candidate.numbers
+        words = "" if family is None or numbers is None else structure(family, numbers)
+        return ": ".join(filter(None, (words, candidate.text))), changes
+
+
+def _simplest(candidate: Candidate) -> tuple[int, float]:
+    return candidate.count, candidate.defects
