@@ -33,7 +33,7 @@ class State(Parted):
     MOVING: ClassVar[tuple[str, ...]]
     attitude: Quaternion
 
-    @property
+    @cached_property
     def moving(self) -> Vector:
         """The state that enters its own equations, as one vector of three or six."""
         values = self.parts()

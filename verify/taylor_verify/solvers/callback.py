@@ -10,8 +10,10 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.convertible import as_rationals
 from taylor_verify.solvers.answered import MisshapenAnswer, Unfinished, answer_of
 from taylor_verify.solvers.files.file import TrajectoryFile
+from taylor_verify.solvers.opened import opened
 from taylor_verify.solvers.solver import Solver, columns, raised
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.solvers.values import number_as_mpf
@@ -53,7 +55,8 @@ class Callback(Solver):
         """Return the trajectory, with a ``file`` for an answer that is not made of states."""
         began = perf_counter()
         try:
-            answered = answer_of(self.answer(problem, **dict(self.settings)), problem)
+            raw = as_rationals(self.answer(opened(problem), **dict(self.settings)))
+            answered = answer_of(raw, problem)
             if not isinstance(answered, TrajectoryFile):
                 answered = np.asarray(answered)
         except Unfinished as reason:
