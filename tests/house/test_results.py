@@ -9,9 +9,11 @@ from fractions import Fraction
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 import taylor_verify
+from taylor_verify.records.showing import picture
 
 SCENE = "euler/with-attitude"
 TIMES = [0, "1/3", 2]
@@ -110,10 +112,20 @@ def test_a_judgement_is_read_by_quantity(results: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("name", ["Motion", "Trajectory", "Judgement"])
-def test_a_notebook_shows_a_table(name: str, results: dict[str, Any]) -> None:
-    """The HTML is well-formed, with a table."""
+def test_a_notebook_shows_a_table_and_a_picture(name: str, results: dict[str, Any]) -> None:
+    """The HTML is well-formed, with a table, and an SVG with a curve."""
     page = ElementTree.fromstring(f"<div>{results[name]._repr_html_()}</div>")
     assert page.find("table/tbody/tr") is not None
+    assert any(node.tag.endswith("polyline") for node in page.iter())
+
+
+def test_a_picture_leaves_out_what_has_no_place() -> None:
+    """NaN, infinity, and zero on a logarithmic axis are gaps; without any number there is no picture."""
+    drawn = picture([0, 1, 2, 3], {"a<b": [1.0, np.nan, 0.0, 100.0]}, log=True)
+    points = ElementTree.fromstring(drawn)[0].attrib["points"]
+    assert len(points.split()) == 2
+    assert "a&lt;b" in drawn
+    assert picture([0, 1], {"a": [np.nan, np.inf]}) == ""
 
 
 def test_a_refusal_is_a_value_error() -> None:

@@ -18,7 +18,7 @@ from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.quantities import MAIN
 from taylor_verify.records.reason import Carried, Cause, stated
 from taylor_verify.records.record import Record
-from taylor_verify.records.showing import counts, dataframe, html_table
+from taylor_verify.records.showing import counts, dataframe, html_table, picture
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
@@ -102,8 +102,14 @@ class Judgement:
             (v.quantity, v.verdict.value, figure(v.max), figure(v.bound), v.unit)
             for v in self.verdicts
         )
-        sentences = account(self.verdicts, self.causes, self.remarks)
-        return html_table(repr(self)[1:-1], headings, rows, sentences)
+        table = html_table(
+            repr(self)[1:-1], headings, rows, account(self.verdicts, self.causes, self.remarks)
+        )
+        gates = () if self.record is None else self.record.gates
+        curves = {
+            gate.quantity: gate.errors for gate in gates if len(gate.errors) == len(self.times)
+        }
+        return table + (picture(self.times, curves, "errors", log=True) if curves else "")
 
     def raise_for_failure(self) -> None:
         """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""

@@ -12,7 +12,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.records.showing import dataframe, html_table
+from taylor_verify.records.showing import dataframe, html_table, picture
 
 if TYPE_CHECKING:
     import pandas
@@ -93,10 +93,12 @@ class Sampled:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Return a table of the first rows."""
+        """Return a picture of the quantities against time, and a table of the first rows."""
         names = [name for name, _ in self._columns()]
         rows = [[str(value) for value in row] for row in islice(self._rows(), _MOST_SHOWN)]
-        return html_table(repr(self)[1:-1], names, rows)
+        curves = {name: column for name, column in self._columns() if name != "t"}
+        drawn = picture(self.times, curves) if len(self.times) > 1 else ""
+        return html_table(repr(self)[1:-1], names, rows) + drawn
 
 
 @dataclass(frozen=True)
