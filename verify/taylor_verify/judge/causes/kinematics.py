@@ -36,6 +36,9 @@ _CLEAR: Final = 20.0
 # What a replayed update leaves of the defects.
 _REPLAYED: Final = 1e-2
 _MOST: Final = 256
+# The error of an update in few steps of an arc points where the defects do.
+_FEW: Final = 4
+_ALONG: Final = 0.5
 
 # The weights (b, a) of q' = (b W q + a q W) / 2.
 _WRONG: Final = (
@@ -159,9 +162,9 @@ def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
         def error(steps: int, update: Any = update) -> Floats:
             return turns.rest(_updated(update, q, rates(steps), arcs.spans / steps)[0])
 
-        steps = (
-            method[1] if method else _steps(order, lambda k: _size(error(k) - exact), turns.size)
-        )
+        if method is None and not _is_along(exact, exact - error(_FEW)):
+            continue
+        steps = method[1] if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))
         h = float(np.median(np.abs(arcs.spans))) / best
@@ -172,6 +175,15 @@ def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
 def _size(rest: Floats) -> float:
     size = float(np.linalg.norm(rest))
     return size if np.isfinite(size) else np.inf
+
+
+def _apart(error: Callable[[int], Floats], exact: Floats, steps: int) -> float:
+    return _size(error(steps) - exact)
+
+
+def _is_along(one: Floats, other: Floats) -> bool:
+    """Return True if two errors have nearly the same direction."""
+    return bool(np.sum(one * other) > _ALONG * _size(one) * _size(other))
 
 
 def _steps(order: int, error: Callable[[int], float], size: float) -> int:
