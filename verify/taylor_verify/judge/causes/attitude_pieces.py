@@ -7,11 +7,11 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion, Places, angles
-from taylor_verify.judge.causes.arcs import moved, row_to_row
+from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.proof import chained, may_leave, with_units
+from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave
 
 # A turn between two rows that is wrong by so many roundings, and by this part of the largest, is a jump.
 _JUMP: Final = 40.0
@@ -26,9 +26,7 @@ def attitude_in_pieces(answer: Answer, right: Equations) -> Cause | None:
     """Return the cause of attitudes that are right from row to row but at few of them, given the motion."""
     q, n, arcs = answer.file.q, answer.n, row_to_row(answer)
     assert q is not None
-    begin = with_units(arcs.begin(n)[0])
-    ends = moved(answer, right, begin, arcs.since, arcs.spans, arcs.steps)
-    maps = np.asarray(ends[:, n:].transpose(2, 1, 0))
+    maps, ends = maps_of_attitude(right, arcs), arcs.ends(right, arcs.steps)
     turned = np.einsum("aij,aj->ai", maps, q[:-1])
     wrong = angles(q[1:], turned / np.linalg.norm(turned, axis=1, keepdims=True))
     # What turns more than the file's own omega lets it is no jump of the attitude alone.

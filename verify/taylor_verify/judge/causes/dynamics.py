@@ -34,7 +34,7 @@ from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
 # Beside the steps of a method the search has this work of its own.
-_BESIDE: Final = 300_000.0
+_BESIDE: Final = 100_000.0
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
@@ -64,7 +64,9 @@ def dynamics(answer: Answer) -> Cause | None:
     """Return the proven cause of the errors of the moving part, with all others that explain as well."""
     few, right, sizes = answer.thinned(FIT_ROWS), answer.right, Sizes.of(answer)
     arcs, stride = telling_arcs(few)
-    search = _Search(answer, arcs, lambda answer, other: whole(answer, right.changed(other)))
+    search = Search(
+        answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
+    )
     faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
     families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
     if right.loads is not None:
@@ -105,9 +107,9 @@ def in_numbers(answer: Answer) -> Cause | None:
     return None
 
 
-def _search_from_start(answer: Answer) -> _Search:
+def _search_from_start(answer: Answer) -> Search:
     courses = Courses.of(answer)
-    return _Search(answer, courses, courses.motion)
+    return Search(answer, courses, courses.motion, answer.moving)
 
 
 def _written(answer: Answer) -> list[Family]:
@@ -117,18 +119,22 @@ def _written(answer: Answer) -> list[Family]:
     return [each.family(right) for each in (*numbers_of_sampling(loads), *numbers(loads))]
 
 
-class _Search:
-    """Candidates by some ``evidence``; ``motion`` is that of changes at the rows of an answer."""
+class Search:
+    """Candidates for the errors of some ``groups``, by some ``evidence``.
+
+    ``motion`` is that of changes at the rows of an answer.
+    """
 
     def __init__(
         self,
         answer: Answer,
         evidence: Evidence,
         motion: Callable[[Answer, Changes], Motion | None],
+        groups: Sequence[str],
     ) -> None:
         self.answer, self.evidence, self.motion = answer, evidence, motion
         self.floor = evidence.floor
-        self.choice = Choice(answer, answer.moving, self.floor)
+        self.choice = Choice(answer, groups, self.floor)
         self.cause = self.choice.cause
 
     def by_arcs(

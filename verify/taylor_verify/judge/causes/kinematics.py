@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, Final
@@ -11,23 +11,34 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Arcs, moved, row_to_row
+from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row
 from taylor_verify.judge.causes.attitude_pieces import attitude_in_pieces
-from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.equations import AFTER, Equations, outer, rotations, to_space
-from taylor_verify.judge.causes.fault import linear
+from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.dynamics import Search
+from taylor_verify.judge.causes.equations import (
+    AFTER,
+    Changes,
+    Equations,
+    outer,
+    rotations,
+    to_space,
+)
+from taylor_verify.judge.causes.fault import Fault, linear
+from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
-from taylor_verify.judge.causes.proof import BETTER, LEAVES, chained, may_leave, with_units
+from taylor_verify.judge.causes.proof import chained, maps_of_attitude, with_units
 from taylor_verify.judge.causes.replays import replay
 from taylor_verify.scenes.instants import evenly
-from taylor_verify.words.causes import with_numbers
 
 _ARCS: Final = 16
 _CLEAR: Final = 20.0
-# What a hypothesis without numbers leaves of the defects.
+# What a replayed update leaves of the defects.
 _REPLAYED: Final = 1e-2
 _MOST: Final = 256
+# The error of an update in few steps of an arc points where the defects do.
+_FEW: Final = 4
+_ALONG: Final = 0.5
 
 # The weights (b, a) of q' = (b W q + a q W) / 2.
 _WRONG: Final = (
@@ -40,23 +51,8 @@ _WRONG: Final = (
 )
 
 
-@dataclass(frozen=True)
-class _Tried:
-    """A hypothesis: the part of the defects that it leaves, and its maps of q over arcs."""
-
-    name: str
-    kind: str
-    left: float
-    maps: Callable[[Arcs], Floats]
-    numbers: Floats | None = None
-
-    @property
-    def count(self) -> int:
-        return 0 if self.numbers is None else len(self.numbers)
-
-    @property
-    def text(self) -> str:
-        return self.name if self.numbers is None else with_numbers(self.name, (), (), self.numbers)
+# The maps of q over arcs.
+Maps = Callable[[Arcs], Floats]
 
 
 def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | None:
@@ -66,75 +62,66 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     """
     answer = answer.with_start(right.mass)
     rows = np.array(evenly(answer.count - 1, _ARCS))
-    arcs = Arcs(answer, rows, rows + 1)
-    assert answer.file.q is not None
-    ends = answer.file.q[rows + 1].T
-    exact = _turned(right, arcs)
-    size, floor = _apart(ends, exact), max(answer.noise[1], 1e-16) * np.sqrt(ends.size)
+    turns = _Turns(answer, Arcs(answer, rows, rows + 1), right)
     in_pieces = None if method else attitude_in_pieces(answer, right)
-    if in_pieces is not None or size < _CLEAR * floor:
+    if in_pieces is not None or turns.floor * _CLEAR > 1:
         return in_pieces
-    tried = list(_replays(right, arcs, ends, exact, method))
+    search = Search(answer, turns, turns.motion, ["attitude"])
+    candidates = [*_updates(turns, method)]
     if method is None:
-        tried += [*_wrong(right, arcs, ends, size), *_fits(right, arcs, ends, size)]
-    near = [
-        each
-        for each in tried
-        if each.left < max(LEAVES if each.count else _REPLAYED, 30 * floor / size)
-    ]
-    return _settled(answer, sorted(near, key=lambda each: (each.count, each.left)))
+        faults = [Fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
+        candidates += [*search.without_numbers(faults), *search.fitted(_families(answer, right))]
+        name = (
+            "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
+        )
+        candidates.append(turns.candidate(name, "kinematics", partial(_by_space, right)))
+    return search.cause(candidates)
 
 
-def _settled(answer: Answer, near: list[_Tried]) -> Cause | None:
-    every = row_to_row(answer)
-    for each in near:
-        simpler = [other for other in near if other.count < each.count]
-        if any(other.left < BETTER * each.left for other in simpler):
-            continue
-        assert answer.start.q is not None
-        q = chained(each.maps(every), answer.start.q[0])
-        left = answer.leaves(Motion(answer.truth.v, q)).get("attitude", np.inf)
-        if left <= may_leave(answer, ["attitude"], each.count):
-            same = [other for other in near if other.count == each.count and other is not each]
-            alike = tuple(other.text for other in same if other.left < 3 * each.left)
-            return Cause(each.name, each.kind, {"attitude": left}, each.text, alike)
-    return None
+@dataclass(frozen=True)
+class _Turns(Evidence):
+    """Attitudes at the ends of arcs, by equations that are ``right`` for the moving part."""
+
+    arcs: Arcs
+    right: Equations
+
+    @property
+    def steps(self) -> int:
+        return self.arcs.steps
+
+    @property
+    def rounding(self) -> Floats:
+        return np.full(4, max(self.answer.noise[1], 1e-16))
+
+    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+        n = self.answer.n
+        ends = self.arcs.ends(self.right.copies(sets), self.steps, n + 4)[:, n : n + 4]
+        return self.rest(np.broadcast_to(ends, (len(sets), *ends.shape[1:])))
+
+    def rest(self, q: Floats) -> Floats:
+        """Return the difference of the file from quaternions; q and -q are one attitude."""
+        assert self.answer.file.q is not None
+        ends, unit = (
+            self.answer.file.q[self.arcs.last].T,
+            q / np.linalg.norm(q, axis=-2)[..., None, :],
+        )
+        signs = np.sign(np.sum(ends * unit, axis=-2))[..., None, :]
+        return np.asarray(ends * signs - unit)
+
+    def motion(self, answer: Answer, changes: Changes) -> Motion:
+        return _chained(partial(maps_of_attitude, self.right.changed(changes)), answer)
+
+    def candidate(self, name: str, kind: str, maps: Maps) -> Candidate:
+        """Return the candidate whose attitudes follow by maps of q."""
+        q = self.arcs.begin(self.answer.n + 4)[0, self.answer.n :]
+        rest = self.rest(np.einsum("aij,ja->ia", maps(self.arcs), q))
+        left = float(np.linalg.norm(rest)) / self.size
+        return Candidate(name, kind, left, partial(_chained, maps), _REPLAYED)
 
 
-def _apart(ends: Floats, q: Floats) -> float:
-    """Return the size of the difference of quaternions."""
-    apart = float(np.linalg.norm(_rest(ends, q)))
-    return apart if np.isfinite(apart) else np.inf
-
-
-def _rest(ends: Floats, q: Floats) -> Floats:
-    """Return the difference of quaternions; q and -q are one attitude."""
-    unit = q / np.linalg.norm(q, axis=0)
-    return np.asarray(ends * np.sign(np.sum(ends * unit, axis=0)) - unit)
-
-
-def _turned(right: Equations, arcs: Arcs) -> Floats:
-    """Return q at the ends of the arcs by the equations."""
-    n = arcs.answer.n
-    return np.asarray(arcs.ends(right, arcs.steps, n + 4)[0, n : n + 4])
-
-
-def _weighted(changed: Equations, arcs: Arcs) -> Floats:
-    """Return the maps of q over the arcs by equations of the attitude."""
-    n, begin = arcs.answer.n, with_units(arcs.begin(arcs.answer.n)[0])
-    ends = moved(arcs.answer, changed, begin, arcs.since, arcs.spans, arcs.steps)
-    return np.asarray(ends[:, n:].transpose(2, 1, 0))
-
-
-def _wrong(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
-    for name, weights in _WRONG:
-        changed = right.changed({"turns": np.array(weights)})
-        left = _apart(ends, _turned(changed, arcs)) / size
-        yield _Tried(name, "kinematics", left, partial(_weighted, changed))
-    assert arcs.answer.file.q is not None
-    by_space = np.einsum("aij,aj->ia", _by_space(right, arcs), arcs.answer.file.q[arcs.first])
-    name = "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
-    yield _Tried(name, "kinematics", _apart(ends, by_space) / size, partial(_by_space, right))
+def _chained(maps: Maps, answer: Answer) -> Motion:
+    assert answer.start.q is not None
+    return Motion(answer.truth.v, chained(maps(row_to_row(answer)), answer.start.q[0]))
 
 
 def _by_space(right: Equations, arcs: Arcs) -> Floats:
@@ -154,56 +141,53 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
     return np.asarray(ends[:, n + 4 :].transpose(2, 1, 0))
 
 
-def _fits(right: Equations, arcs: Arcs, ends: Floats, size: float) -> Iterator[_Tried]:
-    omega = arcs.answer.truth.v[:, -3:]
+def _families(answer: Answer, right: Equations) -> list[Family]:
+    omega = answer.truth.v[:, -3:]
     pace = 1.0 if right.has_momenta else float(np.max(np.linalg.norm(omega, axis=1)))
     turns, name = right.changed({"turns": np.array([0.0, 1.0])}), "attitude turns by a factor"
-    families = (
+    return [
         linear(right, "attitude by the rate of another moment", "late rate", 0.1 / pace, ahead=[1]),
         linear(turns, name, "kinematics", 1.0, [1], turns=[[0, 1]]),
-    )
-    for family in families:
-        numbers = family.right.copy()
-        for _ in range(4):
-            rest = [
-                _rest(ends, _turned(right.changed(changes), arcs))
-                for changes in (family.changes(numbers), *family.around(numbers))
-            ]
-            slopes = family.slopes(np.array(rest[1:]))
-            numbers = numbers - np.linalg.lstsq(slopes, rest[0].ravel(), rcond=1e-9)[0]
-        if f"{numbers[0]:.6g}" == "1":
-            continue
-        changed = right.changed(family.changes(numbers))
-        left = _apart(ends, _turned(changed, arcs)) / size
-        yield _Tried(family.name, family.kind, left, partial(_weighted, changed), numbers)
+    ]
 
 
-def _replays(
-    right: Equations, arcs: Arcs, ends: Floats, exact: Floats, method: Any
-) -> Iterator[_Tried]:
-    n = arcs.answer.n
+def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
+    arcs, right, n = turns.arcs, turns.right, turns.answer.n
     if right.coupled > n:
         return
-    q, size = arcs.begin(n + 4)[:, n:], _apart(ends, exact)
-    unit = exact / np.linalg.norm(exact, axis=0)
-    rates = cache(partial(_rates, right, arcs, method))
+    q, rates = arcs.begin(n + 4)[:, n:], cache(partial(_rates, right, arcs, method))
+    exact = turns.rest(arcs.ends(right, arcs.steps, n + 4)[0, n : n + 4])
     for name, (order, update) in UPDATES.items():
 
-        def apart(rows: Floats, steps: int, update: Any = update) -> float:
-            return _apart(rows, _updated(update, q, rates(steps), arcs.spans / steps)[0])
+        def error(steps: int, update: Any = update) -> Floats:
+            return turns.rest(_updated(update, q, rates(steps), arcs.spans / steps)[0])
 
-        steps = method[1] if method else _steps(order, partial(apart, unit), size)
+        if method is None and not _is_along(exact, exact - error(_FEW)):
+            continue
+        steps = method[1] if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
-        tried = {k: apart(ends, k) / size for k in some}
-        best = min(tried, key=lambda k: tried[k])
+        best = min(some, key=lambda k: _size(error(k)))
         h = float(np.median(np.abs(arcs.spans))) / best
         words = f"attitude {name}" + ("" if method else f", h = {h:.6g}")
-        yield _Tried(
-            words, "attitude step", tried[best], partial(_maps, right, update, best, method)
-        )
+        yield turns.candidate(words, "attitude step", partial(_maps, right, update, best, method))
+
+
+def _size(rest: Floats) -> float:
+    size = float(np.linalg.norm(rest))
+    return size if np.isfinite(size) else np.inf
+
+
+def _apart(error: Callable[[int], Floats], exact: Floats, steps: int) -> float:
+    return _size(error(steps) - exact)
+
+
+def _is_along(one: Floats, other: Floats) -> bool:
+    """Return True if two errors have nearly the same direction."""
+    return bool(np.sum(one * other) > _ALONG * _size(one) * _size(other))
 
 
 def _steps(order: int, error: Callable[[int], float], size: float) -> int:
+    """Return the number of steps whose error has this size."""
     steps = 1
     for _ in range(4):
         own = error(steps)

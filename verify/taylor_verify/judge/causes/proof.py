@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import enough_steps, moved
+from taylor_verify.judge.causes.arcs import Arcs, enough_steps, moved
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.scenes.instants import evenly
@@ -133,6 +133,13 @@ def with_units(v: Floats) -> Floats:
     n, arcs = v.shape
     unit = np.broadcast_to(np.eye(4)[:, :, None], (4, 4, arcs))
     return np.concatenate([np.broadcast_to(v, (4, n, arcs)), unit], axis=1)
+
+
+def maps_of_attitude(equations: Equations, arcs: Arcs) -> Floats:
+    """Return the maps of q over arcs, (arcs, 4, 4); they are linear, given the moving part."""
+    n, begin = arcs.answer.n, with_units(arcs.begin(arcs.answer.n)[0])
+    ends = moved(arcs.answer, equations, begin, arcs.since, arcs.spans, arcs.steps)
+    return np.asarray(ends[:, n:].transpose(2, 1, 0))
 
 
 def chained(maps: Floats, first: Floats) -> Floats:

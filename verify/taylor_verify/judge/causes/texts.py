@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import partial
 from typing import Any, Final
 
 from taylor_verify.scenes.loads.loads import Loads
@@ -13,102 +11,85 @@ from taylor_verify.scenes.loads.states import Continuous
 from taylor_verify.scenes.loads.vocabulary import Entry
 
 _HANGING: Final = ("weight", "buoyancy")
+# The names of fields and the places in tuples that lead to an entry.
+_Path = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
 class Place:
-    """An ``entry`` of a scene, its key, its name in a sentence, and the loads with another entry there."""
+    """A place of a scene's ``loads``, its key, and its name in a sentence."""
 
+    loads: Loads
+    path: _Path
     key: str
     name: str
-    entry: Entry
-    put: Callable[[Entry], Loads]
+
+    @property
+    def entry(self) -> Entry:
+        """The number or the text at this place."""
+        node: Any = self.loads
+        for step in self.path:
+            node = getattr(node, step) if isinstance(step, str) else node[step]
+        return node  # type: ignore[no-any-return] (loads have entries there)
+
+    def put(self, entry: Entry) -> Loads:
+        """Return the loads with another entry at this place."""
+        changed: Loads = _with(self.loads, self.path, entry)
+        return changed
 
 
 def places(loads: Loads) -> Iterator[Place]:
     """Yield the places of all numbers and texts: loads, definitions, [space], [tables] and [states]."""
+    return (Place(loads, *each) for each in _paths(loads))
+
+
+def _with(node: Any, path: _Path, entry: Entry) -> Any:
+    if not path:
+        return entry
+    step, *rest = path
+    if not isinstance(step, str):
+        return (*node[:step], _with(node[step], tuple(rest), entry), *node[step + 1 :])
+    changed = {step: _with(getattr(node, step), tuple(rest), entry)}
+    return node._replace(**changed) if isinstance(node, tuple) else replace(node, **changed)
+
+
+def _paths(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
+    """Yield the path to each place, its key and its name."""
     yield from _of_lists(loads, "vectors", "", "")
-    for k, (name, entry) in enumerate(loads.definitions):
-        yield Place(f"define.{name}", name, entry, partial(_defined, loads, k))
+    for k, (name, _) in enumerate(loads.definitions):
+        yield ("definitions", k, 1), f"define.{name}", name
     yield from _of_lists(loads, "space", "space.", " of [space]")
-    for i, entry in enumerate(loads.rotor):
-        key, put = f"rotor[{i}]", partial(_in_field, loads, "rotor", i)
-        yield Place(key, f"rotor {i + 1}", entry, put)
+    for i in range(len(loads.rotor)):
+        yield ("rotor", i), f"rotor[{i}]", f"rotor {i + 1}"
     yield from _of_states(loads)
     yield from _of_hung(loads)
     for k, (name, table) in enumerate(loads.tables):
-        for i, (time, value) in enumerate(zip(table.times, table.values, strict=True)):
-            put = partial(_in_table, loads, k, i)
-            yield Place(f"tables.{name}.values[{i}]", f"{name} at t = {float(time):g}", value, put)
+        for i, time in enumerate(table.times):
+            key = f"tables.{name}.values[{i}]"
+            yield ("tables", k, 1, "values", i), key, f"{name} at t = {float(time):g}"
 
 
-def with_entry(entries: tuple[Any, ...], k: int, entry: Any) -> tuple[Any, ...]:
-    """Return a tuple with another entry at one place."""
-    return (*entries[:k], entry, *entries[k + 1 :])
-
-
-def _of_lists(loads: Loads, field: str, table: str, of: str) -> Iterator[Place]:
+def _of_lists(loads: Loads, field: str, table: str, of: str) -> Iterator[tuple[_Path, str, str]]:
     for k, (name, entries) in enumerate(getattr(loads, field)):
-        for i, entry in enumerate(entries):
-            put = partial(_in_list, loads, field, k, i)
-            yield Place(f"{table}{name}[{i}]", f"{name} {i + 1}{of}", entry, put)
+        for i in range(len(entries)):
+            yield (field, k, 1, i), f"{table}{name}[{i}]", f"{name} {i + 1}{of}"
 
 
-def _of_states(loads: Loads) -> Iterator[Place]:
+def _of_states(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
     for k, state in enumerate(loads.states):
-        field, noun = (
-            ("rate", "rate of") if isinstance(state, Continuous) else ("value", "value of")
-        )
-        groups: list[tuple[str, str, Any]] = [(field, noun, state.entries)]
-        groups.append(("start", "start of", state.start or ()))
-        for own, words, entries in groups:
-            for i, entry in enumerate(entries):
-                place = f"[{i}]" if state.is_vector else ""
-                key, put = f"states.{state.name}.{own}{place}", partial(_in_state, loads, k, own, i)
-                yield Place(key, f"{words} {state.components[i]}", entry, put)
+        own = "rate" if isinstance(state, Continuous) else "value"
+        for field, entries in ((own, state.entries), ("start", state.start or ())):
+            for i in range(len(entries)):
+                key = f"states.{state.name}.{field}" + (f"[{i}]" if state.is_vector else "")
+                yield ("states", k, field, i), key, f"{field} of {state.components[i]}"
 
 
-def _of_hung(loads: Loads) -> Iterator[Place]:
+def _of_hung(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
     for k, hung in enumerate(loads.hung):
-        for field, words in (
-            ("force", "force {} fixed in space"),
-            ("at", "component {} of its point"),
-        ):
-            for i, entry in enumerate(getattr(hung, field)):
-                put = partial(_in_hung, loads, k, field, i)
-                force = f"({', '.join(f'{float(f):g}' for f in hung.force)})"
-                name = words.format(i + 1) + (f", of the force {force}" if field == "at" else "")
-                yield Place(f"{_HANGING[k]}.{field}[{i}]", name, entry, put)
-
-
-def _defined(loads: Loads, k: int, entry: Entry) -> Loads:
-    name, _ = loads.definitions[k]
-    return replace(loads, definitions=with_entry(loads.definitions, k, (name, entry)))
-
-
-def _in_field(loads: Loads, field: str, i: int, entry: Entry) -> Loads:
-    changes: Any = {field: with_entry(getattr(loads, field), i, entry)}
-    return replace(loads, **changes)
-
-
-def _in_list(loads: Loads, field: str, k: int, i: int, entry: Entry) -> Loads:
-    name, entries = getattr(loads, field)[k]
-    return _in_field(loads, field, k, (name, with_entry(entries, i, entry)))  # type: ignore[arg-type]
-
-
-def _in_state(loads: Loads, k: int, field: str, i: int, entry: Entry) -> Loads:
-    state: Any = loads.states[k]
-    changed = replace(state, **{field: with_entry(getattr(state, field), i, entry)})
-    return replace(loads, states=with_entry(loads.states, k, changed))
-
-
-def _in_hung(loads: Loads, k: int, field: str, i: int, entry: Entry) -> Loads:
-    hung = loads.hung[k]
-    changes: Any = {field: with_entry(getattr(hung, field), i, Fraction(entry))}
-    return replace(loads, hung=with_entry(loads.hung, k, hung._replace(**changes)))
-
-
-def _in_table(loads: Loads, k: int, i: int, entry: Entry) -> Loads:
-    name, table = loads.tables[k]
-    values = with_entry(table.values, i, Fraction(entry))
-    return replace(loads, tables=with_entry(loads.tables, k, (name, replace(table, values=values))))
+        listed = f"({', '.join(f'{float(f):g}' for f in hung.force)})"
+        for i in range(3):
+            key = f"{_HANGING[k]}.force[{i}]"
+            yield ("hung", k, "force", i), key, f"force {i + 1} fixed in space"
+        for i in range(3):
+            name = f"component {i + 1} of its point, of the force {listed}"
+            yield ("hung", k, "at", i), f"{_HANGING[k]}.at[{i}]", name

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import pi
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -199,22 +199,27 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities."""
-    moving = _moving_names(loads)
-    drag: dict[tuple[int, int], tuple[list[str], set[int]]] = {}
-    for k, (_, entries) in enumerate(loads.vectors):
-        for i, entry in enumerate(entries):
-            if not isinstance(entry, str) or " if " in entry:
-                continue
-            parts = terms(entry)
-            of_drag = {
-                j for j, part in enumerate(parts) if not moving.isdisjoint(_NAME.findall(part))
-            }
-            if of_drag:
-                drag[k, i] = parts, of_drag
-    if len(drag) > 1:
-        yield Number(
-            "factor of all terms with velocities (drag)", 1.0, partial(_put_drag, loads, drag)
-        )
+    names = frozenset(_moving_names(loads))
+    texts = [entry for _, entries in loads.vectors for entry in entries if isinstance(entry, str)]
+    if sum(bool(_drag_of(names, text)) for text in texts) > 1:
+        name = "factor of all terms with velocities (drag)"
+        yield Number(name, 1.0, partial(_put_drag, loads, names))
+
+
+def _drag_of(names: frozenset[str], text: str) -> set[int]:
+    """Return the places of the terms of a text that read one of the names."""
+    parts = [] if " if " in text else terms(text)
+    return {k for k, part in enumerate(parts) if not names.isdisjoint(_NAME.findall(part))}
+
+
+def _put_drag(loads: Loads, names: frozenset[str], value: float) -> Loads:
+    def changed(text: str) -> str:
+        drag = _drag_of(names, text)
+        return _weighted(terms(text), drag, value) if drag else text
+
+    for name, _ in loads.vectors:
+        loads = rewritten(loads, changed, name)
+    return loads
 
 
 def _moving_names(loads: Loads) -> set[str]:
@@ -225,10 +230,3 @@ def _moving_names(loads: Loads) -> set[str]:
             if isinstance(entry, str) and not names.isdisjoint(_NAME.findall(entry)):
                 names.add(name)
     return names
-
-
-def _put_drag(loads: Loads, drag: dict[Any, Any], value: float) -> Loads:
-    vectors = [(name, list(entries)) for name, entries in loads.vectors]
-    for (k, i), (parts, which) in drag.items():
-        vectors[k][1][i] = _weighted(parts, which, value)
-    return replace(loads, vectors=tuple((name, tuple(entries)) for name, entries in vectors))
