@@ -219,7 +219,7 @@ def test_every_option_of_publish_is_here() -> None:
 
     known = vars(parse(["publish"])).keys()
     of_studies = {option.name for study in STUDIES for option in study.options}
-    others = {"studies", "unknown", "folder", "list", "json", "act", "verb", "completion"}
+    others = {"studies", "unknown", "folder", "list", "json", "act", "verb"}
     others |= {"quiet", "color", "edited"}
     assert known - others - of_studies == {*MADE, "site", "archive"}
 

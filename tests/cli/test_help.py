@@ -1,10 +1,9 @@
-"""Help where people are: a greeting, the near word, the usage of the verb, patterns, completion."""
+"""Help where people are: a greeting, the near word, the usage of the verb, patterns."""
 
 from __future__ import annotations
 
 import re
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 
@@ -164,51 +163,3 @@ def test_a_folder_of_one_s_own_is_no_scene(
     assert "got mine (it is a folder: name the scenes in it, 'mine/*.toml')" in (
         capsys.readouterr().err
     )
-
-
-# Completion.
-
-
-def completed(script: str, *words: str) -> list[str]:
-    """What bash offers for the last of some words, with that script."""
-    line = shlex.join(words)
-    call = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; COMP_LINE={shlex.quote(line)}"
-    asked = f'_shtab_taylor_verify {words[0]} "{words[-1]}" {words[-2]}'
-    show = 'printf "%s\\n" "${COMPREPLY[@]}"'
-    done = subprocess.run(
-        ["bash", "-c", f"{script}\n{call}\n{asked}\n{show}"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return done.stdout.split()
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no bash of its own")
-def test_bash_completes_verbs_options_and_scenes(capsys: Captured) -> None:
-    """The script is that of the library; shipped scenes are offered where a scene belongs."""
-    assert main(["--completion", "bash"]) == 0
-    script = capsys.readouterr().out
-    assert completed(script, "taylor-verify", "tra") == ["tradeoff"]
-    assert completed(script, "taylor-verify", "run", "--jo") == ["--jobs"]
-    assert completed(script, "taylor-verify", "run", "euler/tennis") == ["euler/tennis-racket"]
-    assert completed(script, "taylor-verify", "check", "--scene", "euler/apol") == ["euler/apollo"]
-    assert "--periods" in completed(script, "taylor-verify", "publish", "--per")
-
-
-@pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_other_shells_have_scripts(shell: str, capsys: Captured) -> None:
-    """With every verb and the scenes."""
-    assert main(["--completion", shell]) == 0
-    script = capsys.readouterr().out
-    assert all(re.search(rf"\b{verb}\b", script) for verb in ("check", "tradeoff", "euler/apollo"))
-
-
-def test_without_the_library_its_command_is_told(
-    monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    """shtab is an extra: one line names it."""
-    monkeypatch.setitem(sys.modules, "shtab", None)
-    assert main(["--completion", "bash"]) == 2
-    expected = "expected shtab (pip install 'taylor-verify[completion]'), got none @ --completion"
-    assert capsys.readouterr().err == f"taylor-verify: {expected}\n"

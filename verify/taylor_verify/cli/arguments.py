@@ -22,7 +22,6 @@ from importlib import import_module
 from typing import Final
 
 from taylor_verify.cli.answer import Answer
-from taylor_verify.cli.completion import SHELLS
 from taylor_verify.cli.parser import Parser, add_argument, near_word, unknown_words
 from taylor_verify.cli.verbs import add, described, verbs
 from taylor_verify.records.plugins import package_of
@@ -223,9 +222,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     for option, _, value in (word.partition("=") for word in arguments):
         if option.startswith("--") and value == "--":
             options.verb.error(f"expected a value, got -- @ {option}")
-    if options.completion:
-        options.act = partial(_complete, options.completion)
-    elif options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
+    if options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
         parser.error(f"expected a verb, got none ({', '.join(OWN_VERBS)})")
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
@@ -256,13 +253,6 @@ def _greet(options: argparse.Namespace) -> Answer:
 
     del options
     return greeting()
-
-
-def _complete(shell: str, options: argparse.Namespace) -> Answer:
-    from taylor_verify.cli.completion import completion
-
-    del options
-    return completion(_parser([verb.name for verb in verbs(OWN_VERBS)]), shell)
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -305,12 +295,6 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         exit_on_error=False,
     )
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
-    parser.add_argument(
-        "--completion",
-        metavar="SHELL",
-        choices=SHELLS,
-        help=f"print the script by which a shell completes words: {', '.join(SHELLS)} (needs shtab)",
-    )
     parser.set_defaults(act=_greet, verb=parser, json=False, quiet=False, color=COLOURS[0])
     own = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in OWN_VERBS.items():

@@ -44,10 +44,6 @@ from taylor_verify.tradeoff.solves import cold_caches
 from taylor_verify.tradeoff.trade_off import trade_off
 
 _NOT_RUN = "not run"
-_HEADINGS = {
-    "The front": "sentences",
-    "Asked for and achieved": "requests",
-}
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -164,11 +160,9 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
             f"Attainable, one rounding of the state a sample and nothing else: {', '.join(floors)}."
         )
         page.line(words)
-    for heading, key in _HEADINGS.items():
-        if trade.get(key):
-            page.line()
-            page.line(bold(heading))
-            page.indented("  ", *trade[key])
+    page.line()
+    page.line(bold("The front"))
+    page.indented("  ", *trade["sentences"])
     if trade.get("recommendation"):
         page.line()
         page.line(Text(trade["recommendation"]["sentence"], "green"))

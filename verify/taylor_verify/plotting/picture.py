@@ -63,14 +63,6 @@ def save(
     return list(replace_files(Path(folder), contents))
 
 
-def save_as(picture: Picture, file: Path) -> None:
-    """Write one picture to a file in the format of its ending.
-
-    Raises ImportError without matplotlib, OSError for a file that cannot be written.
-    """
-    replace_files(file.parent, {file.name: content(picture, file.suffix.lower().lstrip("."))})
-
-
 def content(picture: Picture, ending: str) -> bytes:
     """Return the file of a picture in one format. Raises ImportError without matplotlib."""
     with plotting():

@@ -14,13 +14,6 @@ class Provenance:
     command: str = ""
 
 
-@dataclass(frozen=True)
-class SceneProvenance(Provenance):
-    """The origin of numbers of one scene, whose digest is ``scene``; empty where they are of many."""
-
-    scene: str = ""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Machine:
     """The machine of a measurement; only times depend on it."""

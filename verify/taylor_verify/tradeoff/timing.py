@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from math import ceil, comb, inf
 from statistics import median
-from time import perf_counter, process_time
+from time import perf_counter
 from typing import Final, NamedTuple, TypeVar
 
 Answer = TypeVar("Answer")
@@ -79,14 +79,6 @@ def _without_garbage_collection() -> Iterator[None]:
 def calls_to_time(seconds: float, least: float = LEAST_SECONDS) -> int:
     """Return the number of calls of so many ``seconds`` that last ``least`` seconds together."""
     return min(_MOST_CALLS, max(1, ceil(least / seconds))) if seconds > 0 else _MOST_CALLS
-
-
-def seconds_of(call: Callable[[], object], count: int, clock: Clock = process_time) -> float:
-    """Return the mean seconds of so many calls."""
-    began = clock()
-    for _ in range(count):
-        call()
-    return (clock() - began) / count
 
 
 def clock_resolution(clock: Clock = perf_counter) -> float:

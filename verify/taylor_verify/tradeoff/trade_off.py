@@ -47,7 +47,6 @@ class TradeOff:
             "attainable": self.attainable,
             "front": [p.label for p in self.front],
             "sentences": front_sentences(self.points),
-            "requests": request_sentences(self.points),
             "timing": {
                 "repeats": self.repeats,
                 "seed": self.seed,
@@ -132,21 +131,5 @@ def front_sentences(points: Sequence[Point]) -> list[str]:
         sentences.append(
             f"A setting's slowest solve took up to {widest:.2g} times its fastest: smaller differences "
             "of times mean nothing."
-        )
-    return sentences
-
-
-def request_sentences(points: Iterable[Point]) -> list[str]:
-    """Return a sentence for each tolerance with the digits that were requested and achieved."""
-    sentences = []
-    for p in sound_points(points):
-        asked, got, requested = p.asked_digits, digits(p.error), p.timed.setting.requested
-        if asked is None or got is None or requested is None:
-            continue
-        ratio = p.error / requested
-        compared = f"{ratio:.2g} times" if ratio >= 1 else f"1/{1 / ratio:.2g} of"
-        sentences.append(
-            f"{p.label}: {asked:.1f} digits asked for, {got:.1f} got; the error is {compared} the "
-            "tolerance."
         )
     return sentences
