@@ -235,7 +235,8 @@ def _units(random: Random) -> FreeGyrostat:
 def _through_a_frame(random: Random) -> FreeGyrostat:
     """The whole momentum starts along an axis of a frame of the azimuth, or all but so."""
     inertia, omega = _moments(random), _full(random)
-    whole = tensors.scaled(Fraction(random.randint(1, 30)), random.choice(FRAMES).c)
+    axis = random.choice(random.choice(FRAMES)).c
+    whole = tensors.scaled(Fraction(random.randint(1, 30)), axis)
     whole = tensors.plus(
         whole, tensors.scaled(random.choice((Fraction(0), _tiny(random))), _full(random))
     )

@@ -56,7 +56,7 @@ def disagreement(scene: Scene, times: list[Fraction]) -> str:
 
 
 @pytest.mark.parametrize(
-    "name", by_turns([name for name in names() if has_route(load(name), "mpmath")])
+    "name", by_turns([name for name in names() if has_route(everything(load(name)), "mpmath")])
 )
 def test_on_every_shipped_scene(name: str) -> None:
     """Attitude and centre included, within the span of the scene, before it and after it."""

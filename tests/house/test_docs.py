@@ -155,7 +155,7 @@ def test_every_regime_is_documented() -> None:
         *("planar-swing", "planar-turn", "planar-front", "planar-uniform", "planar-steady"),
     )
     euler = regimes()
-    assert {"max-axis", "separatrix", "oblique-moment"} <= euler
+    assert {"max-axis", "separatrix", "straight-moment"} <= euler
     documented = set(re.findall(r"`([\w -]+)`", text_of("regimes.md")))
     assert {*euler, *kirchhoff, NO_CLOSED_FORM} <= documented
 

@@ -6,9 +6,8 @@ Each function imports what it needs: the two routes load different libraries.
 from __future__ import annotations
 
 from taylor_verify.exact.euler.fixed_axis import axis_under
-from taylor_verify.exact.euler.moments.regime import LoadedSpin
 from taylor_verify.exact.euler.regime import FreeSpin
-from taylor_verify.exact.solution import Solution
+from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
@@ -24,7 +23,6 @@ def top(scene: Scene) -> tuple[RigidBody, Spin]:
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm where anything tracked has none."""
     from taylor_verify.exact.euler.fixed_axis import in_balls
-    from taylor_verify.exact.euler.moments.erf import loaded_rotation
     from taylor_verify.exact.gyrostat.sigma import top_rotation
 
     body, start = top(scene)
@@ -32,9 +30,9 @@ def enclosed(scene: Scene) -> Solution:
     if body.is_free:
         return top_rotation(spin, attitude)
     steady_axis = axis_under(spin, body.moment)
-    if steady_axis is not None:
-        return in_balls(*steady_axis, attitude)
-    return loaded_rotation(LoadedSpin(body.inertia, body.moment, start.omega), attitude)
+    if steady_axis is None:
+        raise NoClosedForm("a constant moment turns the axis of rotation")
+    return in_balls(*steady_axis, attitude)
 
 
 def closed_form(scene: Scene) -> Solution | None:

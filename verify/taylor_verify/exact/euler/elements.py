@@ -17,10 +17,9 @@ from mpmath import mp, mpf
 from taylor_verify.exact.element import Element, Elements, described, settled
 from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.euler.fixed_axis import FixedAxisRegime, axis_under
-from taylor_verify.exact.euler.moments.regime import LoadedSpin, MomentRegime
 from taylor_verify.exact.euler.orbit import Orbit, principal_frame
 from taylor_verify.exact.euler.regime import FreeSpin, Regime
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
+from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.numbers import tensors
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
@@ -46,42 +45,22 @@ _STORY: Final[Mapping[Regime, str]] = {
     ),
 }
 _WORK: Final = "Not conserved: T grows by the work of the moment, H by its impulse."
-_LOADED_STORY: Final[Mapping[MomentRegime, str]] = {
-    MomentRegime.SPHERICAL: (
-        "Three equal moments of inertia and a constant moment in body axes: omega runs along a "
-        "straight line at a constant pace."
-    ),
-    MomentRegime.AXIAL: (
-        "Two equal moments of inertia and a constant moment along the axis: the spin grows evenly, "
-        "and the transverse omega, of constant size, turns in proportion to it, which is a chirp."
-    ),
-    MomentRegime.TRANSVERSE: (
-        "Two equal moments of inertia and a constant moment across the axis: the spin is constant; "
-        "the transverse omega goes round a circle, or, without spin, along a straight line."
-    ),
-    MomentRegime.OBLIQUE: (
-        "Two equal moments of inertia and a constant moment that is neither along the axis nor "
-        "across it: the spin grows evenly, and the transverse omega follows Fresnel's integrals."
-    ),
-}
-
 _FIXED_AXIS_STORY: Final[Mapping[FixedAxisRegime, tuple[str, ...]]] = {
     FixedAxisRegime.STEADY: (
         "The gyroscopic moment of a steady rotation balances the constant moment: omega is constant.",
     ),
     FixedAxisRegime.STRAIGHT: (
-        "Three different moments of inertia and a constant moment along a principal axis: omega lies "
-        "along it too, and grows evenly for ever.",
+        "A constant moment along a principal axis: omega lies along it too, and grows evenly for ever.",
         _WORK,
     ),
 }
 
 
 def elements(scene: Scene, digits: int) -> Elements:
-    """Return the elements of a free body; for a body under a moment at most a period, and sentences."""
+    """Return the elements of a free body; for a body under a moment sentences alone."""
     body, start = top(scene)
     if not body.is_free:
-        return _loaded(body, start.omega, digits)
+        return _loaded(body, start.omega)
     spin = FreeSpin(body.inertia, start.omega)
     conserved = spin.twice_energy / 2, spin.momentum_squared
 
@@ -96,36 +75,17 @@ def story(spin: FreeSpin) -> str:
     return _steady_story(spin) if spin.regime is Regime.STEADY else _STORY[spin.regime]
 
 
-def _loaded(body: RigidBody, omega: tensors.Vector, digits: int) -> Elements:
+def _loaded(body: RigidBody, omega: tensors.Vector) -> Elements:
     """Return the elements of a body under a constant moment; T' = M.omega, so T is not conserved."""
     steady_axis = axis_under(FreeSpin(body.inertia, omega), body.moment)
     if steady_axis is not None:
         regime, _ = steady_axis
         return Elements(regime.value, (), _FIXED_AXIS_STORY[regime])
-    try:
-        spin = LoadedSpin(body.inertia, body.moment, omega)
-    except NoClosedForm:
-        story = (
-            "A constant moment in body axes acts: no closed form is built, and the motion has "
-            "neither a period nor a modulus that could be named."
-        )
-        return Elements(NO_CLOSED_FORM, (), (story, _WORK))
-    numbers = settled(lambda _: _circle(spin), digits)
-    return Elements(spin.regime.value, numbers, (_LOADED_STORY[spin.regime], _WORK))
-
-
-_CIRCLE: Final = """
-    period :: time :: omega recurs in body axes :: (Js - Jd)(e.omega)/Jd
-    rate :: radians/time :: the transverse omega turns, in body axes :: (Js - Jd)(e.omega)/Jd
-"""
-
-
-def _circle(spin: LoadedSpin) -> list[Element]:
-    """The numbers of the one motion under a moment that recurs, at a constant spin."""
-    if spin.regime is not MomentRegime.TRANSVERSE or not spin.free.turning:
-        return []
-    rate = mp.convert(abs(spin.free.turning)) / mp.sqrt(mp.convert(spin.free.axis_squared))
-    return described(_CIRCLE, (2 * mp.pi / rate, rate))
+    story = (
+        "A constant moment in body axes acts: no closed form is built, and the motion has neither a "
+        "period nor a modulus that could be named."
+    )
+    return Elements(NO_CLOSED_FORM, (), (story, _WORK))
 
 
 _KEPT: Final = """

@@ -30,7 +30,7 @@ _GUARD_DIGITS: Final = 8
 
 
 class FixedAxisRegime(StrEnum):
-    """The motions of a triaxial body under a moment that have a closed form; the words of ``regime``."""
+    """The motions under a constant moment that have a closed form; the words of ``regime``."""
 
     STEADY = "steady-moment"  # the gyroscopic moment balances M: omega is constant
     STRAIGHT = "straight-moment"  # omega and M along one principal axis: the spin grows evenly
@@ -66,16 +66,11 @@ class FixedAxis:
 
 
 def axis_under(spin: FreeSpin, moment: Vector) -> tuple[FixedAxisRegime, FixedAxis] | None:
-    """The motion of a body that keeps its axis under a moment (not zero); None where it does not.
-
-    A straight motion of a body with two equal moments of inertia is left to its own regimes.
-    """
+    """The motion of a body that keeps its axis under a moment (not zero); None where it does not."""
     if not any(tensors.plus(spin.torque, moment)):
         return FixedAxisRegime.STEADY, FixedAxis(spin.omega)
     pushed = tensors.apply(tensors.inverse(spin.inertia), moment)
-    if spin.discriminant == 0 or any(tensors.cross(pushed, moment)):
-        return None
-    if any(tensors.cross(spin.omega, moment)):
+    if any(tensors.cross(pushed, moment)) or any(tensors.cross(spin.omega, moment)):
         return None
     return FixedAxisRegime.STRAIGHT, FixedAxis(spin.omega, pushed)
 
