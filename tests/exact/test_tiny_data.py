@@ -55,7 +55,7 @@ SEEDED = {
     "gap": small_gap,
     "coefficient": small_coefficient,
 }
-QUICK = {("start", 300), ("gap", 300), ("coefficient", 20)}
+QUICK = {("start", 20), ("gap", 300), ("coefficient", 20)}
 
 
 @pytest.mark.parametrize(
