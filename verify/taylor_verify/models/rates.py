@@ -45,24 +45,15 @@ class Linearised:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
 
         The unit is radians per unit of time. A component that is too small for the error control grows or
-        turns at an eigenvalue of J, in any units. The eigenvalues are bounded by |J^16|^(1/16), which is
-        some tenths too large; if it is worse, they are computed. The attitude turns at |omega|/2.
+        turns at an eigenvalue of J, in any units. The attitude turns at |omega|/2.
         """
         n = self._momenta
         with np.errstate(all="ignore"):
             entries = self._augmented(np.asarray(states)).dot(self._table)
         omega = _largest(entries[..., -4:]) if self._turns else 0.0
-        J = entries[..., :-4].reshape(*entries.shape[:-1], n, n)
-        bound = size = n * _largest(J)
-        if not isfinite(size + omega):
+        bound = largest_eigenvalue(entries[..., :-4].reshape(*entries.shape[:-1], n, n))
+        if not isfinite(bound + omega):
             return inf
-        power, before = J / size if size else J, bound
-        for k in range(_SQUARINGS):
-            power, before = power @ power, bound
-            bound = size * (n * _largest(power)) ** (0.5 / 2**k)
-        # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
-        if not before <= _NEARLY * bound:
-            bound = float(np.abs(np.linalg.eigvals(J)).max())
         if 2 * omega > bound:
             # Scaled, so that no square overflows.
             turns = np.linalg.norm(entries[..., -4:] / omega, axis=-1)
@@ -102,6 +93,23 @@ class Linearised:
         augmented[..., 0] = 1.0
         augmented[..., 1:] = states[..., : self._momenta]
         return augmented
+
+
+def largest_eigenvalue(J: Floats) -> float:
+    """Return a bound of the eigenvalues of all matrices of an array, some tenths too large.
+
+    It is |J^16|^(1/16); if that is worse, the eigenvalues are computed. Infinite where J is not finite.
+    """
+    n = J.shape[-1]
+    bound = size = n * _largest(J)
+    if not isfinite(size):
+        return inf
+    power, before = J / size if size else J, bound
+    for k in range(_SQUARINGS):
+        power, before = power @ power, bound
+        bound = size * (n * _largest(power)) ** (0.5 / 2**k)
+    # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
+    return bound if before <= _NEARLY * bound else float(np.abs(np.linalg.eigvals(J)).max())
 
 
 @lru_cache

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from taylor_verify.models.form import Form
 from taylor_verify.models.functions import Functions, functions_of
+from taylor_verify.models.kinks import values
 from taylor_verify.models.symbol import Symbol
 
 _ARITHMETIC: Final = ("+", "-", "*", "/")
@@ -36,34 +37,45 @@ class Lines:
     functions: tuple[str, ...] = ()
 
 
-def lines(form: Form) -> Lines:
-    """Return the lines that compute the rates of a form."""
-    code = _Code()
-    results = tuple(code.word(rate) for rate in form.rates(*_names(form), Symbol("t")))
+def lines(form: Form, places: Sequence[int] = ()) -> Lines:
+    """Return the lines that compute the rates of a form, or the steps of its loads at some places."""
+    code, (states, parameters) = _Code(), _names(form)
+    if places:
+        steps = values(form, states, parameters, Symbol("t"))
+        wanted = [steps[place] for place in places]
+    else:
+        wanted = form.rates(states, parameters, Symbol("t"))
+    results = tuple(map(code.word, wanted))
     return Lines(tuple(code.lines), results, code.constants, tuple(code.functions))
 
 
 def straight_line(
-    form: Form, parameters: Sequence[Any], functions: Functions | None = None
+    form: Form,
+    parameters: Sequence[Any],
+    functions: Functions | None = None,
+    places: tuple[int, ...] = (),
 ) -> Rates:
     """Return ``rates(t, state)`` in the arithmetic of the parameters and the state.
 
     The loads of a scene may read t, the time since the start; nothing else does. ``functions`` are those
-    of the state, where these are not those of the parameters.
+    of the state, where these are not those of the parameters. With ``places`` it is not the rates that are
+    returned, but the steps of the loads there.
     """
-    bound, constants, names = _bound(form)
+    bound, constants, names = _bound(form, places)
     functions = functions or (functions_of(parameters[0]) if names else {})
     rates: Rates = bound(*parameters, *constants, *(functions[name] for name in names))
     return rates
 
 
 @lru_cache(maxsize=32)
-def _bound(form: Form) -> tuple[Callable[..., Rates], tuple[Any, ...], tuple[str, ...]]:
+def _bound(
+    form: Form, places: tuple[int, ...] = ()
+) -> tuple[Callable[..., Rates], tuple[Any, ...], tuple[str, ...]]:
     """Return the function from parameters, constants and functions to the rates; and the last two.
 
     The functions are returned by name.
     """
-    code, (states, names) = lines(form), _names(form)
+    code, (states, names) = lines(form, places), _names(form)
     text = [
         f"def bound({_listed([*names, *map(Symbol, (*code.constants, *code.functions))])}):",
         " def rates(t, state):",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, final
@@ -11,10 +11,13 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.models.form import Form
+from taylor_verify.models.functions import FLOATS, functions_of
 from taylor_verify.models.kinks import Kink, changing, smooth, values
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.roots import lengths, radicands
+from taylor_verify.models.written import Written
 from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
+from taylor_verify.solvers.straight_line import straight_line
 from taylor_verify.solvers.taylor.numbers import arithmetic
 
 # Vectors whose second singular value is a smaller part of their first lie on one line.
@@ -88,8 +91,33 @@ def smoothed(problem: Problem) -> tuple[Problem, tuple[Kink, ...]]:
         return problem, ()
     parameters = list(problem.parameters)
     for kink in kinks:
-        parameters += map(Fraction, kink.chosen(_sign(problem, form, parameters, kink)))
+        sign = _clear_sign(problem, form, parameters, kink) or _sign(
+            problem, form, parameters, kink
+        )
+        parameters += map(Fraction, kink.chosen(sign))
     return replace(problem, form=form, parameters=tuple(parameters)), kinks
+
+
+def _clear_sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -> int:
+    """Return the sign of a kink's difference at the start, 0 where doubles do not tell it clearly."""
+    later = [0.0] * (len(form.parameters) - len(known))
+    state = [float(value) for value in problem.initial_momenta]
+    steps = _steps(form, state, [*map(float, known), *later], float(problem.begin))
+    difference = steps[kink.place] if steps else 0.0
+    if not abs(difference) > _CLEAR * max(map(abs, steps), default=0.0):
+        return 0
+    return 1 if difference > 0 else -1
+
+
+def _steps(
+    form: Form, state: Sequence[float], parameters: Sequence[float], time: float
+) -> list[float]:
+    """Return the value of each step in doubles; none where some step has no value."""
+    places = tuple(range(len(form.equations.steps))) if isinstance(form.equations, Written) else ()
+    try:
+        return straight_line(form, parameters, FLOATS, places)(time, state)
+    except (ArithmeticError, ValueError):
+        return []
 
 
 def _sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -> int:
@@ -115,9 +143,9 @@ def _sign(problem: Problem, form: Form, known: Sequence[Fraction], kink: Kink) -
 def missed(problem: Problem, kinks: Sequence[Kink], state: Sequence[Any], chosen: Any) -> bool:
     """Return True where the last state is on another branch than the parameters ``chosen`` say."""
     numbers = [float(value) for value in chosen]
-    steps = values(problem.form, list(map(float, state)), numbers, float(problem.times[-1]))
+    steps = _steps(problem.form, list(map(float, state)), numbers, float(problem.times[-1]))
     first = len(numbers) - sum(len(kink.names) for kink in kinks)
-    for kink in kinks:
+    for kink in kinks if steps else ():
         difference, width = steps[kink.place], len(kink.names)
         expected = [float(value) for value in kink.chosen(1 if difference > 0 else -1)]
         if (
@@ -145,32 +173,36 @@ def _moved(problem: Problem, state: Sequence[Any], time: Any, step: Any) -> list
 
 
 class Lengths:
-    """The vectors whose lengths the loads of a problem take, at its start and at the rows of its way."""
+    """The vectors whose lengths the loads of a problem take."""
 
-    def __init__(self, problem: Problem, rows: np.ndarray[Any, Any]) -> None:
-        self._parts, self._changing = lengths(problem.form), changing(problem.form)
-        start = [float(value) for value in problem.initial_momenta]
-        states = np.vstack([start, *rows.astype(float)])
-        times = np.array([float(t) for t in (problem.begin, *problem.times)][: len(states)])
-        parameters = [float(value) for value in problem.parameters]
+    def __init__(self, problem: Problem) -> None:
+        form, self._parts = problem.form, lengths(problem.form)
+        self._places = tuple(sorted({place for parts in self._parts for place in parts}))
+        self._constant = set(self._places) - changing(form)
+        self._start = [float(value) for value in problem.initial_momenta]
+        self._times = np.array([float(t) for t in (problem.begin, *problem.times)])
+        self._values = straight_line(
+            form, list(map(float, problem.parameters)), functions_of(self._times), self._places
+        )
+
+    def along(self, rows: np.ndarray[Any, Any]) -> tuple[frozenset[int], bool]:
+        """Return the places of the parts that are zero at the start and at all rows of a way.
+
+        And return whether a vector stays on one line: it may go through zero there.
+        """
+        states = np.vstack([self._start, *rows.astype(float)])
+        times = self._times[: len(states)]
         with np.errstate(all="ignore"):
-            steps = values(problem.form, list(states.T), parameters, times)
-        places = {place for parts in self._parts for place in parts}
-        self._steps = {place: np.nan_to_num(steps[place] + 0 * times) for place in places}
+            values = self._values(times, list(states.T))
+        found = (np.nan_to_num(value + 0 * times) for value in values)
+        steps = dict(zip(self._places, found, strict=True))
+        zeros = frozenset(place for place, step in steps.items() if not step.any())
+        return zeros, any(self._is_on_a_line(steps, places) for places in self._parts)
 
-    @property
-    def zeros(self) -> frozenset[int]:
-        """The places of the parts that are zero all the time."""
-        return frozenset(place for place, step in self._steps.items() if not step.any())
-
-    def are_on_a_line(self) -> bool:
-        """Return True where a vector stays on one line: it may go through zero there."""
-        for places in self._parts:
-            if any(place not in self._changing and self._steps[place].all() for place in places):
-                # A part that keeps a value is never zero.
-                continue
-            vectors = np.array([self._steps[place] for place in places])
-            sizes = np.linalg.svd(vectors, compute_uv=False)
-            if len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]:
-                return True
-        return False
+    def _is_on_a_line(self, steps: Mapping[int, Any], places: Sequence[int]) -> bool:
+        if any(place in self._constant and steps[place].all() for place in places):
+            # A part that keeps a value is never zero.
+            return False
+        vectors = np.array([steps[place] for place in places])
+        sizes = np.linalg.svd(vectors, compute_uv=False)
+        return len(sizes) < 2 or not sizes[1] > _ON_A_LINE * sizes[0]

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from time import perf_counter
-from typing import Any, Final, final
+from typing import Any, Final, NamedTuple, final
 
 import numpy as np
 
@@ -72,32 +72,27 @@ class Taylor(Solver):
     def solve(self, problem: Problem) -> Trajectory:
         if reason := self.unsuited(problem):
             return refused(reason)
-        return piece_by_piece(problem, self._solve_piece)
-
-    def _solve_piece(self, problem: Problem) -> Trajectory:
-        """Return the trajectory, with kinks in place of lengths that have one part alone."""
-        if not lengths(problem.form):
-            return self._solve(problem)
-        return self._solve(replace(problem, form=unsquared(problem.form)))
+        return piece_by_piece(problem, self._solve)
 
     def _solve(self, problem: Problem) -> Trajectory:
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
-        way_of = _kept_way if len(problem.times) <= _MOST_INSTANTS else _way
-        way, turned, kinks = way_of(problem, tolerance, self.is_optimised)
+        prepared = _kept if len(problem.times) <= _MOST_INSTANTS else _prepared
+        way, form, turned, kinks, vectors, has_roots = prepared(
+            problem, tolerance, self.is_optimised
+        )
         ready = perf_counter()
         is_slow = arithmetic(problem.rung).is_software
         outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
         seconds = perf_counter() - ready
-        if lengths(problem.form) and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
-            vectors = Lengths(problem, rows)
-            if outcome is Outcome.NON_FINITE or vectors.are_on_a_line():
-                form = unsquared(problem.form, vectors.zeros)
-                if form != problem.form:
-                    return self._solve(replace(problem, form=form))
+        if vectors is not None and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
+            zeros, are_on_a_line = vectors.along(rows)
+            if outcome is Outcome.NON_FINITE or are_on_a_line:
+                if (other := unsquared(form, zeros)) != form:
+                    return self._solve(replace(problem, form=other))
                 return refused(f"{self.name} {_NO_LENGTH}")
-        if outcome is Outcome.INTERRUPTED and radicands(turned.form):
+        if outcome is Outcome.INTERRUPTED and has_roots:
             return refused(f"{self.name} {_NO_LENGTH}")
         if kinks and len(rows) and missed(turned, kinks, rows[-1], way.parameters):
             return Trajectory(Outcome.INTERRUPTED, detail="a crossing of a kink was not noticed")
@@ -195,13 +190,27 @@ def _foreseen(problem: Problem) -> float:
     return Way(integrator, turned, scout).fastest()
 
 
-def _way(
-    problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool
-) -> tuple[Way, Problem, tuple[Kink, ...]]:
-    """Return the way of a problem, the problem without kinks that it goes, and these kinks.
+class _Prepared(NamedTuple):
+    """What follows from a question: the way of the problem ``turned``, which has no kinks.
+
+    ``form`` has kinks in place of lengths that have one part alone; ``vectors`` are those of its lengths.
+    """
+
+    way: Way
+    form: Form
+    turned: Problem
+    kinks: tuple[Kink, ...]
+    vectors: Lengths | None
+    has_roots: bool
+
+
+def _prepared(problem: Problem, tolerance: tuple[int, int] | None, is_optimised: bool) -> _Prepared:
+    """Return what follows from a question.
 
     The tolerance is a quotient, which is looked up sooner than a Fraction.
     """
+    if lengths(problem.form):
+        problem = replace(problem, form=unsquared(problem.form))
     turned, kinks = smoothed(problem)
     integrator = compiled(
         turned.form,
@@ -210,7 +219,14 @@ def _way(
         is_optimised or pays(turned.form, problem.rung, problem),
         kinks=kinks,
     )
-    return Way(integrator, turned, problem), turned, kinks
+    return _Prepared(
+        Way(integrator, turned, problem),
+        problem.form,
+        turned,
+        kinks,
+        Lengths(problem) if lengths(problem.form) else None,
+        bool(radicands(turned.form)),
+    )
 
 
-_kept_way = lru_cache(maxsize=_MOST_WAYS)(_way)
+_kept = lru_cache(maxsize=_MOST_WAYS)(_prepared)

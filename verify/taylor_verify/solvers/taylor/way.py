@@ -19,12 +19,12 @@ from taylor_verify.solvers.taylor.differenced import Differenced
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify.solvers.trajectory import Outcome
 
-# In units of the fastest linear rate at hand. heyoka's own step on a regular orbit is of the first size;
-# a start close to an unstable axis, where the step would grow with the logarithm of the distance, is what
-# the cap is for. A step h leaves out about (e h/p)^p of a component that grows or turns at that rate,
-# however small it is beside the others: at h = 1 and order 40, less than 2^-150. With h = 2 it would be
-# little enough too, but so long a step goes into a flip, whose pole is near, and loses hundreds of units.
-_LONGEST_STEP, _LONGEST_OF_HIGH_ORDER, _HIGH_ORDER = 0.5, 1.0, 40
+# In units of the fastest linear rate at hand. A start close to an unstable axis, where heyoka's own step
+# would grow with the logarithm of the distance, is what the cap is for. A step h leaves out h^(p+1)/(p+1)!
+# of a component that grows or turns at that rate, however small it is beside the others: with h = p/20 less
+# than a thousandth of a rounding, since heyoka takes p from the rounding. Longer steps of high orders would
+# do that too, but they go into a flip, whose pole is near, and lose hundreds of units.
+_LONGEST_STEP, _FULL_ORDER = 1.0, 20
 # heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
 # step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
 # and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
@@ -105,7 +105,7 @@ class Way:
         grid, samples = self._grid
         rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
         ran = self._went(_stretches(grid, self._calls), rate)
-        if self._was_too_fast(ran, rate):
+        if self._was_too_fast(ran, grid, rate):
             look_count = max(self._calls, _look_count(self._radians))
             grid, samples = self._instants(look_count)
             ran = self._went(_stretches(grid, look_count), rate, is_watched=True)
@@ -124,7 +124,13 @@ class Way:
     def fastest(self) -> float:
         """Return the fastest rate at the instants; infinite where the way does not reach its end."""
         ran = self.run()
-        return self._linearised.fastest(ran.rows) if ran.outcome is Outcome.FINISHED else inf
+        return self._fastest(ran.rows, self._times) if ran.outcome is Outcome.FINISHED else inf
+
+    def _fastest(self, rows: Rows, times: np.ndarray[Any, Any]) -> float:
+        """Return the fastest rate at some rows, of which loads may read the times."""
+        if isinstance(self._linearised, Differenced):
+            return self._linearised.fastest(rows, times)
+        return self._linearised.fastest(rows)
 
     def _went(
         self, stretches: Sequence[np.ndarray[Any, Any]], rate: float, is_watched: bool = False
@@ -143,7 +149,7 @@ class Way:
             if leg.outcome is not Outcome.FINISHED:
                 break
             if is_watched:
-                rate = max(rate, self._linearised.fastest(leg.rows[-1]))
+                rate = max(rate, self._fastest(leg.rows[-1:], instants[-1:]))
         return legs[0] if len(legs) == 1 else _joined(legs)
 
     def _leg(self, instants: np.ndarray[Any, Any], rate: float) -> Ran:
@@ -172,14 +178,16 @@ class Way:
         longest = step if 0 < step < _UNCUT * cap else cap
         return Ran(outcome, rows, longest, int(steps), seconds)
 
-    def _was_too_fast(self, ran: Ran, rate: float) -> bool:
+    def _was_too_fast(self, ran: Ran, grid: np.ndarray[Any, Any], rate: float) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
         if not len(ran.rows):
             return False
-        some = ran.rows[:: -ceil(len(ran.rows) / _ROWS_LOOKED_AT)]
-        if ran.outcome is Outcome.FINISHED:
-            return not self._linearised.is_within(some, _SLACK * self._longest / ran.longest)
-        return self._linearised.fastest(some) > rate
+        some = slice(None, None, -ceil(len(ran.rows) / _ROWS_LOOKED_AT))
+        rows, is_whole = ran.rows[some], ran.outcome is Outcome.FINISHED
+        allowed = _SLACK * self._longest / ran.longest if is_whole else rate
+        if is_whole and isinstance(self._linearised, Linearised):
+            return not self._linearised.is_within(rows, allowed)
+        return not self._fastest(rows, grid[: len(ran.rows)][some]) <= allowed
 
     @property
     def _callback(self) -> _Advance | None:
@@ -219,7 +227,7 @@ def _joined(legs: Sequence[Ran]) -> Ran:
 
 def longest_step(order: int) -> float:
     """Return the longest step that is taken in an order, in units of the fastest linear rate."""
-    return _LONGEST_STEP if order < _HIGH_ORDER else _LONGEST_OF_HIGH_ORDER
+    return _LONGEST_STEP * min(1.0, order / _FULL_ORDER)
 
 
 def most_steps(radians: float) -> int:
