@@ -10,7 +10,7 @@ so this file needs only the standard library.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import fsum, isfinite, log, sqrt
@@ -41,13 +41,14 @@ class Convergence:
     straight line in log-log; None if no range of steps has an order. ``steps`` are the steps used, in
     descending order. ``level`` is the smallest error that smaller steps reach, None if the error still
     falls. ``stalls_at`` is the step at which it stops falling, and ``by_rounding`` is True if rounding
-    explains that.
+    explains that. ``reason`` says all this in words.
     """
 
     order: float | None
     spread: float | None
     steps: tuple[float, ...]
     level: float | None
+    reason: str
     stalls_at: float | None = None
     by_rounding: bool = False
 
@@ -63,17 +64,23 @@ def convergence(
     perfect rounding would leave, for all steps or for each. Raises ValueError for different lengths and for
     steps that are not positive or not distinct.
     """
-    points = _points(steps, errors, roundoff_floor)
+    points, broken = _points(steps, errors, roundoff_floor)
     stop = _stop(points)
     usable = [point for point in points[:stop] if point.is_clear]
     chosen = _straight(usable)
     least = min(points[stop:], key=lambda point: point.error, default=None)
     order, spread = (None, None) if chosen is None else _slope(chosen)
+    words = [
+        *_order_words(usable, chosen, order),
+        *([f"no answer with step {', '.join(f'{s:.3g}' for s in broken)}"] if broken else []),
+        *_floor_words(points, least),
+    ]
     return Convergence(
         order=order,
         spread=spread,
         steps=tuple(point.step for point in chosen or ()),
         level=least.error if least else None,
+        reason="; ".join(words),
         stalls_at=points[stop].step if least else None,
         by_rounding=least is not None and least.is_rounding,
     )
@@ -104,8 +111,8 @@ class _Point:
 
 def _points(
     steps: Sequence[float], errors: Sequence[float | None], floors: float | Sequence[float]
-) -> list[_Point]:
-    """Return the points from the largest step to the smallest, without those whose runs broke."""
+) -> tuple[list[_Point], list[float]]:
+    """Return the points from the largest step to the smallest, and the steps whose runs broke."""
     floor_of_step = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
     if not len(steps) == len(errors) == len(floor_of_step):
         raise ValueError(
@@ -114,12 +121,15 @@ def _points(
         )
     if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
         raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
-    points = [
-        _Point(float(step), float(error), float(floor))
-        for step, error, floor in zip(steps, errors, floor_of_step, strict=True)
-        if error is not None and isfinite(error)
-    ]
-    return sorted(points, key=lambda point: -point.step)
+    points, broken = [], []
+    for step, error, floor in sorted(
+        zip(steps, errors, floor_of_step, strict=True), key=lambda p: -p[0]
+    ):
+        if error is not None and isfinite(error):
+            points.append(_Point(float(step), float(error), float(floor)))
+        else:
+            broken.append(float(step))
+    return points, broken
 
 
 def _local(a: _Point, b: _Point) -> float:
@@ -181,3 +191,37 @@ def _centred(values: Sequence[float]) -> list[float]:
     """Return the values less their mean."""
     mean = fsum(values) / len(values)
     return [value - mean for value in values]
+
+
+# The words.
+
+
+def _order_words(
+    usable: Sequence[_Point], chosen: Sequence[_Point] | None, order: float | None
+) -> Iterator[str]:
+    """Yield the order and the steps that show it."""
+    if chosen is None or order is None:
+        lacking = f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
+        if len(usable) >= _FEWEST:
+            listed = ", ".join(f"{local:.2f}" for local in _locals(usable))
+            lacking = f"from step to step it is {listed}, nowhere twice the same"
+        yield f"no order: {lacking}"
+        return
+    yield f"order {order:.2f}"
+    yield f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
+    if any(point.step > chosen[0].step for point in usable):
+        yield "larger ones are not asymptotic yet"
+
+
+def _floor_words(points: Sequence[_Point], level: _Point | None) -> Iterator[str]:
+    """Yield the ``level`` at which errors stop falling, and whether it is rounding that stops them."""
+    if level is not None:
+        why = ""
+        if level.is_rounding:
+            why = ": rounding"
+        elif level.floor > 0:
+            times = f"{level.error / level.floor:.1g} times"
+            why = f": {times} what rounding leaves, so not by rounding"
+        yield f"errors stop falling at {level.error:.1g}{why}"
+    elif near := [point for point in points if not point.is_clear]:
+        yield f"errors reach rounding at {near[0].error:.1g}"
