@@ -94,7 +94,7 @@ def test_a_sweep_leaves_rows_a_summary_and_the_worst_cases(template: str, tmp_pa
     assert omega.ratio is not None
     assert omega.ratio.largest == ratios[-1]
     assert ratios[9] <= omega.ratio.median <= ratios[9] * 1.001
-    assert {file.name for file in out.iterdir()} >= {"summary.md", "summary.csv"}
+    assert {file.name for file in out.iterdir()} >= {"summary.md", "summary.json"}
     assert json.loads((out / "summary.json").read_text())["total"] == 20
     assert [case.ratio for case in result.worst] == sorted(
         (case.ratio for case in result.worst), reverse=True
@@ -297,7 +297,7 @@ def test_a_folder_with_another_sweep_is_refused(template: str, tmp_path: Path) -
 
 @pytest.mark.usefixtures("quick")
 @pytest.mark.parametrize(
-    "name", ["template.toml", "summary.csv", "verdicts/mine", "worst/mine.toml"]
+    "name", ["template.toml", "summary.json", "verdicts/mine", "worst/mine.toml"]
 )
 def test_files_of_the_user_are_never_overwritten(template: str, tmp_path: Path, name: str) -> None:
     """A folder in which a name of a sweep is taken is refused, and stays as it is."""

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-import random
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,7 +20,6 @@ from taylor_verify.exact.invariants import decisive, invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors import measured
 from taylor_verify.judge.errors.state import Series
-from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock
@@ -205,32 +203,6 @@ def test_numbers_come_back_from_blocks_over_the_last_scale() -> None:
     one = Series()
     one.add(np.array([mpf(1)]), mpf(3))
     assert one.joined()[0].tolist() == [1 / 3]
-
-
-# How numbers are held.
-
-
-def numbers() -> Iterator[float]:
-    """Doubles of all sizes, halves of the fourth digit among them, and what is no number."""
-    draw = random.Random(4)
-    yield from (0.0, -0.0, math.inf, -math.inf, math.nan, 5e-324, 1.7e308, 1e-310)
-    yield from (1.0005, 1000.5, 1.2345, 9999.5, 99995.0, 0.00012345, 2.0**-53, 10.0, 1e22, 1e23)
-    yield from (draw.randrange(10**5) / 10 ** draw.randrange(12) for _ in range(2000))
-    yield from (math.ldexp(draw.random(), draw.randrange(-1070, 1020)) for _ in range(2000))
-
-
-def test_doubles_are_like_a_tuple() -> None:
-    """They are equal to a tuple of the same numbers, and so are their parts; nobody can change them."""
-    doubles = Doubles([1.0, 2.5, 3.0])
-    assert doubles == (1.0, 2.5, 3.0)
-    assert doubles[1:] == (2.5, 3.0)
-    assert doubles[0] == 1.0
-    assert doubles != (1.0, 2.5)
-    assert Doubles() == ()
-    assert hash(doubles) == hash((1.0, 2.5, 3.0))
-    array = np.array(doubles)
-    array[0] = 7.0
-    assert doubles[0] == 1.0
 
 
 def test_rows_are_formed_as_their_values_are() -> None:

@@ -246,7 +246,7 @@ def test_all_faults_of_a_template_are_named_at_once() -> None:
         *("sweep.numbers.a", "sweep.numbers.b.uniform", "sweep.numbers.c.formula"),
         *("sweep.numbers.d", "sweep.numbers.e.normal", "sweep.numbers.h.log_uniform"),
         *("sweep.numbers.i.uniform", "sweep.numbers.m", "sweep.numbers.n.linspace"),
-        *("body.inertia[0].unit", "body.inertia[1]", "sweep.numbers.f"),
+        *("body.inertia[0].unit", "body.inertia[1]"),
         *("title", "initial.omega[1]", "time.end", "titel"),
     ]
 
@@ -353,8 +353,8 @@ def test_a_misspelt_distribution_is_answered_with_the_near_one() -> None:
         '{ expression = "2 * a" }',
     ],
 )
-def test_a_faulty_formula_uses_its_names(rule: str) -> None:
-    """A formula that cannot be read is one fault; the numbers that it names are not said to be unused."""
+def test_a_faulty_formula_is_one_fault(rule: str) -> None:
+    """A formula that cannot be read is one fault, at its place."""
     numbers = "[sweep.numbers]\na = { uniform = [1, 2] }"
     (fault,) = refusal_of(f"inertia = [{rule}, 1, 1]", numbers)
     assert "body.inertia[0]" in fault

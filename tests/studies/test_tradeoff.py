@@ -262,7 +262,7 @@ def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyP
 def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:
     """A target that no setting reaches is said, with the setting that comes nearest."""
     asked = [setting_of(Scripted("slow", 1.0))]
-    with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow.*rounding alone.*is mp\d+"):
+    with pytest.raises(OutOfReach, match=r"1e-40.*most accurate, slow"):
         recommended(trade_off(scene, asked, repeats=1), 1e-40)
     # Before it is measured, it is known from the rounding alone.
     with pytest.raises(OutOfReach, match=r"1e-40.*on f64 rounding alone leaves.*is mp\d+"):

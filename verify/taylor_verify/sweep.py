@@ -43,7 +43,7 @@ def sweep(
     jobs
         The number of processes on this machine; as many as cores unless given.
     out
-        A folder for the dataset, the summary, the picture and the worst cases. Without it nothing is left.
+        A folder for the dataset, the summary and the worst cases. Without it nothing is left.
     resume
         Go on from the chunks that the same sweep, in the same folder, had finished.
     worst

@@ -3,7 +3,7 @@
     document["course"]["omega"]      the motion at dense times
     document["body"]                 principal moments and axes, and the momentum of wheels
     document["acting"]               loads and own states at the same times, of a scene that writes them
-    document["analytic"]             the numbers of the orbit: period, flip time, steady spins
+    document["analytic"]             the numbers of the orbit: period, flip time
 
 Each number is the exact one, by closed form or enclosure, rounded to the figures of a picture.
 """

@@ -17,7 +17,7 @@ from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
 from taylor_verify.draw.caption import NotDrawn, caption
 from taylor_verify.draw.course import turns
 from taylor_verify.draw.mesh import Face, Mesh
-from taylor_verify.draw.surface import SPHERE, Surface
+from taylor_verify.draw.surface import Surface
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.rows import quaternions
 
@@ -142,7 +142,7 @@ def _inset(document: Document) -> dict[str, Any] | None:
 def _on_surface(drawn: Surface) -> dict[str, Any]:
     borders = [curve for curve in drawn.curves if curve.look["gid"] == "separatrix"]
     return {
-        "semi": _rounded(drawn.semi_axes or SPHERE, 6),
+        "semi": _rounded(drawn.semi_axes, 6),
         "course": _rounded(drawn.course),
         "curves": [_rounded(curve.points) for curve in borders],
         "letter": drawn.letter,

@@ -67,7 +67,7 @@ def picture(portrait: Document) -> Picture:
     drawn = surface(portrait)
     alt = (
         f"The angular velocity of {portrait['scene']} on its ellipsoid of inertia, whose semi-axes are "
-        f"{', '.join(plain(a) for a in drawn.semi_axes or ())}: "
+        f"{', '.join(plain(a) for a in drawn.semi_axes)}: "
         f"{_WORDS[int(np.sign(portrait['damping']))]}"
     )
     return captioned(portrait, "polhode", "Polhode", alt, partial(figure, drawn))

@@ -1,4 +1,4 @@
-"""Curves and marks on an ellipsoid about the origin, or in a plane, with the legend: one picture of all."""
+"""Curves and marks on an ellipsoid about the origin, with the legend: one picture of all."""
 
 from __future__ import annotations
 
@@ -49,32 +49,28 @@ class Mark:
 class Surface:
     """A course (n, 3) at its times (n,), which darkens with time, and what is drawn beside it.
 
-    ``letter`` names the vector whose course it is. ``axes`` are the names of the axes of the ellipsoid;
-    without ``semi_axes`` the course is in a plane, seen from ``view``.
+    ``letter`` names the vector whose course it is. ``axes`` are the names of the axes of the ellipsoid.
     """
 
     times: Numbers
     course: Numbers
     letter: str
     name: str
-    semi_axes: tuple[float, float, float] | None = SPHERE
+    semi_axes: tuple[float, float, float] = SPHERE
     axes: tuple[str, ...] = ("1", "2", "3")
     curves: tuple[Curve, ...] = ()
     marks: tuple[Mark, ...] = ()
-    view: View | None = None
 
     @property
     def sinks(self) -> bool:
         """True if the course leaves the surface: damping takes energy from the body, or adds some."""
-        q = np.square(self.course / np.array(self.semi_axes or SPHERE)).sum(axis=1)
+        q = np.square(self.course / np.array(self.semi_axes)).sum(axis=1)
         return bool(np.abs(q - 1).max() > _OFF)
 
     @property
     def side(self) -> View:
         """The view in which the course, and the axis that it goes round, face the reader."""
-        if self.view is not None:
-            return self.view
-        mean = (self.course / np.array(self.semi_axes or SPHERE)).mean(axis=0)
+        mean = (self.course / np.array(self.semi_axes)).mean(axis=0)
         order = np.argsort(-np.abs(mean))
         direction = np.zeros(3)
         direction[order] = np.where(mean[order] >= 0, _FACING, np.negative(_FACING))
@@ -103,16 +99,12 @@ def figure(drawn: Surface, words: str) -> Figure:
     entries: list[Entry] = [({"color": scale()(0.6), "linewidth": _WIDTH}, drawn.name)]
     parts: list[Curve | Mark] = [*drawn.curves, *drawn.ends, *drawn.marks]
     entries += [(look, name) for name, look in {each.name: each.look for each in parts}.items()]
-    note = f"Faint: on the far side. {words}" if drawn.semi_axes else words
-    stage.legend(entries, note, _LEGEND)
+    stage.legend(entries, f"Faint: on the far side. {words}", _LEGEND)
     stage.time_bar(drawn.times, _TIME)
     return stage.figure
 
 
 def _stage(drawn: Surface) -> Stage:
-    if drawn.semi_axes is None:
-        points = np.concatenate([drawn.course, *(curve.points for curve in drawn.curves)])
-        return Stage.showing(drawn.side.project(points), drawn.side, _STAGE, _HEIGHT)
     solid = Ellipsoid(drawn.semi_axes)
     stage = Stage.around(solid, drawn.side, _STAGE, _HEIGHT, drawn.course)
     stage.name_axes(drawn.semi_axes, drawn.axes)

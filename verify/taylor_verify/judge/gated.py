@@ -28,9 +28,8 @@ from taylor_verify.judge.floor.inputs import InputRounding
 from taylor_verify.judge.floor.steps import Steps
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
 from taylor_verify.judge.rows import Run
-from taylor_verify.records.doubles import four_digits
 from taylor_verify.records.reason import Carried, InputShare, Reason, RoundoffFloor
-from taylor_verify.records.record import GateRecord
+from taylor_verify.records.record import GateRecord, four_digits
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.mpfr import in_mpfr

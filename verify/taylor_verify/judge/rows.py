@@ -15,7 +15,6 @@ from taylor_verify.judge.provenance import provenance
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung, hexadecimal
-from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.faults import shown
 from taylor_verify.records.record import GateRecord, Record
 from taylor_verify.records.status import Status
@@ -107,6 +106,6 @@ def run_record(run: Run, gates: Iterable[GateRecord]) -> Record:
         outcome=trajectory.outcome.value,
         steps=trajectory.steps,
         unit_roundoff=float(problem.rung.unit_roundoff),
-        times=Doubles(run.times),
+        times=tuple(run.times.tolist()),
         gates=tuple(gates),
     )

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
-
-from taylor_verify.records.doubles import Doubles
 
 
 @dataclass(frozen=True)
@@ -20,18 +18,10 @@ class GateRecord:
 
     quantity: str
     unit: str
-    errors: Sequence[float]
-    attainable: Sequence[float]
+    errors: tuple[float, ...]
+    attainable: tuple[float, ...]
     truth_radius: float
-    shifts: Sequence[float] = ()
-
-    def __post_init__(self) -> None:
-        _pack(self, "errors", "attainable", "shifts")
-
-    def document(self) -> dict[str, Any]:
-        """Return the gate as JSON holds it."""
-        series = {name: tuple(getattr(self, name)) for name in ("errors", "attainable", "shifts")}
-        return {**vars(self), **series}
+    shifts: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -52,21 +42,15 @@ class Record:
     outcome: str
     steps: int
     unit_roundoff: float
-    times: Sequence[float]
+    times: tuple[float, ...]
     gates: tuple[GateRecord, ...]
-
-    def __post_init__(self) -> None:
-        _pack(self, "times")
 
     def document(self) -> dict[str, Any]:
         """Return the record as JSON holds it."""
-        gates = [gate.document() for gate in self.gates]
-        return {**vars(self), "times": tuple(self.times), "gates": gates}
+        return {**vars(self), "gates": [{**vars(gate)} for gate in self.gates]}
 
 
-def _pack(record: GateRecord | Record, *fields: str) -> None:
-    """Hold numbers of a record in eight bytes each, in whatever sequence they came."""
-    for field in fields:
-        numbers = getattr(record, field)
-        if not isinstance(numbers, Doubles):
-            object.__setattr__(record, field, Doubles(numbers))
+def four_digits(values: Iterable[float]) -> tuple[float, ...]:
+    """Return the numbers, each the nearest double to its own first four decimal digits."""
+    tolist = getattr(values, "tolist", None)
+    return tuple(map(float, map("{:.4g}".format, values if tolist is None else tolist())))

@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
-from taylor_verify.records.doubles import Doubles
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, complete, read
@@ -50,8 +49,6 @@ _RUN = ("scene", "solver", "setting", "rung")
 _Timed = Mapping[tuple[Any, ...], Mapping[str, Any]]
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
-# A number of Python takes some hundred bytes with its text.
-_PIECE: Final = 2**14
 # A row is for programs, and a large file has thousands of them.
 _ROW_ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False, separators=(",", ":"))
 
@@ -241,20 +238,18 @@ def machine(verdict: Verdict) -> dict[str, Any]:
 
 
 def _record_texts(records: Iterable[Record]) -> dict[str, Iterator[str]]:
-    """Return the text of each record in pieces: a long one is text only while it is written."""
+    """Return the text of each record, which is made while it is written."""
     by_name: dict[str, Record] = {}
     for record in records:
         name = record_name(record.scene, record.solver, record.rung)
         first = by_name.setdefault(name, record)
-        if first is not record and "".join(_pieces_of(first)) != "".join(_pieces_of(record)):
+        if first is not record and _text(first) != _text(record):
             raise ValueError(f"expected one record a run, got two unlike ones @ {name}")
-    return {name: _pieces_of(record) for name, record in by_name.items()}
+    return {name: map(_text, [record]) for name, record in by_name.items()}
 
 
-def _pieces_of(record: Record) -> Iterator[str]:
-    # The numbers of a record stay packed until they are text.
-    gates = [vars(gate) for gate in record.gates]
-    return _pieces({**_MADE_BY, **vars(record), "gates": gates})
+def _text(record: Record) -> str:
+    return laid_out({**_MADE_BY, **record.document()})
 
 
 def _own_records(data: Path) -> list[Path]:
@@ -265,59 +260,16 @@ def _own_records(data: Path) -> list[Path]:
 
 def laid_out(document: Mapping[str, Any]) -> str:
     """Return JSON with a line for every key and for every row of a list of rows."""
-    return "".join(_pieces(document))
+    members = (f"{_ENCODER.encode(key)}: {_value(value)}" for key, value in document.items())
+    return "{" + ",\n ".join(members) + "}\n"
 
 
-def _pieces(document: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the JSON of ``laid_out`` in short pieces, however many numbers there are."""
-    yield "{"
-    yield from _joined(
-        ",\n ", (_member(key, _value(value), ": ") for key, value in document.items())
-    )
-    yield "}\n"
-
-
-def _value(value: Any) -> Iterator[str]:
+def _value(value: Any) -> str:
     rows = value if isinstance(value, (list, tuple)) else ()
     if rows and all(isinstance(row, dict) for row in rows):
-        yield "[\n  "
-        yield from _joined(",\n  ", (_json(row, _ROW_ENCODER) for row in rows))
-        yield "\n ]"
-    else:
-        yield from _json(value)
-
-
-def _json(value: Any, encoder: json.JSONEncoder = _ENCODER) -> Iterator[str]:
-    """Yield a value as JSON; packed numbers become text a piece at a time."""
-    separator = encoder.item_separator
-    if isinstance(value, Doubles):
-        parts = (value[k : k + _PIECE] for k in range(0, len(value), _PIECE))
-        yield "["
-        yield from _joined(separator, ([_encoded(list(part), encoder)[1:-1]] for part in parts))
-        yield "]"
-    elif isinstance(value, dict) and any(isinstance(each, Doubles) for each in value.values()):
-        colon = encoder.key_separator
-        yield "{"
-        yield from _joined(
-            separator,
-            (_member(key, _json(each, encoder), colon) for key, each in value.items()),
-        )
-        yield "}"
-    else:
-        yield _encoded(value, encoder)
-
-
-def _member(key: str, value: Iterable[str], colon: str) -> Iterator[str]:
-    yield _ENCODER.encode(key) + colon
-    yield from value
-
-
-def _joined(separator: str, texts: Iterable[Iterable[str]]) -> Iterator[str]:
-    """Yield the pieces of all texts, with a separator between two texts."""
-    for number, text in enumerate(texts):
-        if number:
-            yield separator
-        yield from text
+        lines = ",\n  ".join(_encoded(row, _ROW_ENCODER) for row in rows)
+        return f"[\n  {lines}\n ]"
+    return _encoded(value, _ENCODER)
 
 
 def _encoded(value: Any, encoder: json.JSONEncoder) -> str:

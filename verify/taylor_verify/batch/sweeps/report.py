@@ -1,10 +1,10 @@
-"""Files of a sweep: its summary as Markdown, CSV and JSON, and the worst cases as scenes."""
+"""Files of a sweep: its summary as Markdown and JSON, and the worst cases as scenes."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final
@@ -18,27 +18,15 @@ from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCa
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import code, prose, table
 from taylor_verify.words.page import traced
-from taylor_verify.words.sheet import sheet
 
 WORST: Final = "worst"
 _NAMES: Final = tuple(each.name for each in fields(Quantiles))
 _HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
-SUMMARY_NAMES: Final = (
-    *(f"summary.{kind}" for kind in ("md", "csv", "json")),
-    WORST,
-)
+SUMMARY_NAMES: Final = ("summary.md", "summary.json", WORST)
 """The names in a sweep's folder of the summary and the worst cases."""
 _REASON: Final = "# Why: "
 # What stands in a name of a scene and in no name of a file.
 _ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
-_SHEET: Final = (
-    "quantity",
-    "unit",
-    "judged",
-    *(status.value for status in Status),
-    *(f"ratio_{name}" for name in _NAMES),
-    *(f"max_{name}" for name in _NAMES),
-)
 
 
 def write_summary(
@@ -56,7 +44,6 @@ def write_summary(
     }
     texts |= {
         "summary.md": page(summary),
-        "summary.csv": sheet(_SHEET, map(_row, summary.quantities)),
         "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
     }
     # Those that are written now are not removed, nor scenes that the user has put there.
@@ -130,14 +117,6 @@ def _worst_table(cases: Sequence[WorstCase]) -> str:
         ]
         rows.append([*row, prose("; ".join(case.causes))] if is_explained else row)
     return table([*headings, *(["likely cause"] if is_explained else [])], rows)
-
-
-def _row(spread: Spread) -> Mapping[str, Any]:
-    row: dict[str, Any] = {"quantity": spread.quantity, "unit": spread.unit, **spread.counts}
-    row["judged"] = spread.judged
-    for prefix, quantiles in (("ratio", spread.ratio), ("max", spread.max)):
-        row |= {f"{prefix}_{name}": getattr(quantiles, name, None) for name in _NAMES}
-    return row
 
 
 def _file(rank: int, case: WorstCase) -> str:

@@ -7,7 +7,6 @@ significant digits, and all that is made of these is exact again.
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Context, Decimal, InvalidOperation, Overflow
@@ -19,7 +18,6 @@ _DIGITS: Final = Context(prec=20)
 _GUARDED: Final = Context(prec=60)
 _LONGEST: Final = 200
 _LARGEST_POWER: Final = 20
-_WORD: Final = re.compile(r"[A-Za-z]\w*")
 _MOST_BITS: Final = 13_280  # 4000 digits
 _ALLOWED: Final = "a formula in numbers defined above, + - * / ** and sqrt log exp"
 _FUNCTIONS: Final[Mapping[str, Callable[[Decimal], Decimal]]] = {
@@ -66,11 +64,6 @@ def formula(text: object) -> Formula:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ValueError(_ALLOWED) from None
     return Formula(text, frozenset(_names(tree)))
-
-
-def words(text: str) -> set[str]:
-    """Return the words of a text that may be names, also where the text is no formula."""
-    return set(_WORD.findall(text))
 
 
 @lru_cache

@@ -16,7 +16,7 @@ from taylor_verify.records.faults import Faults, Refused, shown
 from taylor_verify.records.regular_file import read_bytes
 from taylor_verify.scenes.families.cube import Spread
 from taylor_verify.scenes.families.family import Family, Variable
-from taylor_verify.scenes.families.formula import Formula, words
+from taylor_verify.scenes.families.formula import Formula
 from taylor_verify.scenes.families.rules import KINDS, UNIT, rule
 from taylor_verify.scenes.families.toml_text import toml
 from taylor_verify.scenes.families.trial import place_of, trial_faults
@@ -73,7 +73,6 @@ class _Reading:
         self._variables: list[Variable] = []
         # Paths of variables that are not known, because of a fault.
         self._faulty: list[str] = []
-        self._used: set[str] = set()
         # Tables of the scene that stand for no known number, by place.
         self._tables: dict[str, Mapping[str, Any]] = {}
         self._digits = DIGITS
@@ -92,21 +91,13 @@ class _Reading:
             **options,
         )
         of_scene = self._of_scene(family)
-        self._compare_with_use()
+        if not self._variables and not self._faulty:
+            mend = "{ uniform = [1, 3] } in place of a number"
+            self._faults.add("a number that is drawn", "none", self._place, mend)
         faults = [*self._faults.lines, *of_scene]
         if faults:
             raise Refused(faults)
         return family
-
-    def _compare_with_use(self) -> None:
-        """Report named numbers that no formula uses, and a template in which nothing is drawn."""
-        for variable in self._variables:
-            if variable.is_named and variable.path not in self._used | set(self._faulty):
-                place = f"{SWEEP}.numbers.{variable.path}"
-                self._faults.add("a number that the scene uses", "one that is not", place)
-        if not self._variables and not self._faulty:
-            mend = "{ uniform = [1, 3] } in place of a number"
-            self._faults.add("a number that is drawn", "none", self._place, mend)
 
     # The table [sweep].
 
@@ -185,7 +176,6 @@ class _Reading:
             self._faults.add("a unit where the number stands", shown(unit), f"{place}.{UNIT}")
             made = None
         names = made.names if isinstance(made, Formula) else frozenset()
-        self._used |= names or _words(entries)
         if made is None or names & set(self._faulty):
             self._faulty.append(path)
             return 1
@@ -204,7 +194,6 @@ class _Reading:
         if entries is None or not fault.startswith(_TABLE_FOR_NUMBER):
             return fault
         self._faulty.append(place_of(fault))
-        self._used |= _words(entries)
         faults = Faults()
         rule(entries, place_of(fault), self._digits, (), faults)
         return faults.lines[0]
@@ -217,12 +206,6 @@ def _is_rule(entries: Mapping[str, Any]) -> bool:
     return len(entries) == 1 and any(
         difflib.get_close_matches(key, KINDS, n=1, cutoff=_NEAR) for key in entries
     )
-
-
-def _words(entries: Mapping[str, Any]) -> set[str]:
-    """Return the words in the texts of a table, which may be names that a faulty formula uses."""
-    texts = [value for key, value in entries.items() if key != UNIT and isinstance(value, str)]
-    return {word for text in texts for word in words(text)}
 
 
 def _pieces(text: str) -> Iterator[str | int]:
