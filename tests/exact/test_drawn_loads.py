@@ -64,9 +64,7 @@ def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
     return reasons
 
 
-@pytest.mark.parametrize(
-    ("seed", "count"), [(1, 8), pytest.param(2, 2000, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("seed", "count"), [(1, 8), pytest.param(2, 2000, marks=pytest.mark.slow)])
 def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
     """The enclosure gives up at most a fiftieth of all of them, each with its reason."""
     reasons = answers(seed, count)

@@ -111,28 +111,6 @@ def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "euler/generic on f64, taylor" in (tmp_path / STUDY.path).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["growth", "--periods", "10"], "expected at least 3162 periods, got 10"),
-        (["growth", "--periods", "many"], "expected a number of periods, got 'many'"),
-        (["--periods", "1e4"], "expected --periods with `publish growth`, got it with no study"),
-        (["hard", "--long"], "expected --long with `publish growth`, got it with hard"),
-        (["growth", "--period", "3"], "expected an option, got --period; did you mean --periods?"),
-        (["growth", "--period=3"], "expected an option, got --period; did you mean --periods?"),
-        (["--lon", "growth"], "expected an option, got --lon; did you mean --long?"),
-    ],
-)
-def test_a_wrong_call_is_refused(
-    options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Too few periods, no number, options misspelt or without their study: exit status 2, one line."""
-    assert main(["publish", *options, "--from", str(tmp_path)]) == 2
-    error = capsys.readouterr().err
-    assert message in error
-    assert "expected a study" not in error
-
-
 def test_a_number_that_is_not_finite_is_stored_as_none(monkeypatch: pytest.MonkeyPatch) -> None:
     """An ensemble is the same when it is read again; one without a finite error has no numbers."""
     asked = question("euler/about-max-axis", lanes=2)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
-from builders.scenes import asked_at, scene_file
+from builders.scenes import asked_at
 
 import taylor_verify
-from taylor_verify.cli import main
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.standing import Standing
 from taylor_verify.records.status import Status
@@ -153,18 +150,3 @@ def test_an_unsuited_solver_is_unavailable_and_not_run(scene: str, name: str, re
     (p,) = trade_off(short(scene), [setting(name, F64)], repeats=1).points
     assert (p.standing, p.timed.trajectory.steps) == (Standing.NOT_RUN, 0)
     assert reason in p.because
-
-
-# The command.
-
-
-def test_the_verb_measures_what_it_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The verb measures the settings of --solver, and taylor's beside them."""
-    call = ["tradeoff", str(scene_file(tmp_path)), "--rung", "f32", "--repeats", "1", "--json"]
-    assert main([*call, "--solver", "geometric:splitting?step=0.1", "--solver", "taylor"]) == 0
-    (trade,) = json.loads(capsys.readouterr().out)["scenes"]
-    families = [row["family"] for row in trade["points"]]
-    assert set(families) == {"taylor f32", "geometric splitting"}
-    assert all(row["requested"] is not None for row in trade["points"])

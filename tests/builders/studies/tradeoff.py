@@ -78,7 +78,6 @@ RATIOS = {
     ("outside:cvode-bdf?rtol=1e-9&atol=1e-9", "f64"): 0.9,
 }
 
-REACHED = "reached the last sample"
 SCENE = TradeScene("euler/generic", "A body", ("omega",), "0")
 
 NUMBERS_MADE = TradeNumbers(
