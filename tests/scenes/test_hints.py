@@ -98,6 +98,9 @@ TRIED = [
     ("euler", "body", "samples", "write `samples` in [time]"),
     ("kirchhoff", "time", "couple", "write `couple` in [body]"),
     ("kirchhoff", "initial", "track", "write `track` at the top"),
+    ("kirchhoff", "body", "omega", "write `angular_velocity` in [initial]"),
+    ("kirchhoff", "time", "drag", "in [body] write `force = ["),
+    ("euler", "", "cg", "in [body] write `weight = {"),
 ]
 
 

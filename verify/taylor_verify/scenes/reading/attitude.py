@@ -93,6 +93,10 @@ def _axis_angle(table: Table) -> Vector | None:
 
 def _euler(table: Table) -> Vector | None:
     """Return the quaternion of three turns about axes that move along, in the order of the sequence."""
+    if len(three := table.peek("euler")) == 3:
+        table.take("euler", "a table")
+        table.fault("a table", shown(three), "euler", _of_three(three))
+        return None
     inner = table.table("euler")
     if inner is None:
         return None

@@ -102,6 +102,7 @@ torque torques moment: write `couple`, in body axes: numbers, or text in t and t
 thrust forces wrench propeller thrusters: write `force` and `couple`, in body axes: numbers, or text
   in t and the state such as "9*exp(-t/5)"
 linear_velocity angular_velocity linear_impulse angular_impulse attitude: it stands in [initial]
+omega: write `angular_velocity` in [initial], together with `linear_velocity`
 """
 _INITIAL: Final = """\
 quaternion orientation q quat pose quaternion_xyzw quat_xyzw xyzw: write `attitude = [q0, q1, q2,
@@ -204,7 +205,11 @@ def advice(part: str, model: str = "") -> Callable[[str, object], str]:
             return sentence + _lines(key.lower(), value, sentence) * (part == "initial")
         here = f"[{part}]" if part else "at the top"
         places = [place for place, keys in _PLACES.items() if key in keys and place != here]
-        return f"write `{key}` {'in ' * places[0].startswith('[')}{places[0]}" if places else ""
+        if places:
+            return f"write `{key}` {'in ' * places[0].startswith('[')}{places[0]}"
+        others = ((other, hints(other, model).get(key.lower())) for other in ("body", "initial"))
+        written = (f"in [{other}] {words}" for other, words in others if words)
+        return next((sentence for sentence in written if "] write" in sentence), "")
 
     return advise
 

@@ -115,11 +115,11 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     track = _track(top, model, own)
     body, loads = _loaded_body(top, model, states or ()) if model else _unread(top)
     motion, initial = _motion_and_start(top, model, body) if model else (None, None)
-    time = _part(top, "time", clock)
+    time = _part(top, "time", clock, model)
     body = loaded(body, loads, states, top, folder, time)
     if body is not None and motion is not None and time is not None:
         body = body.with_loads(motion.loads(body, time.start))
-    top.close(advice(""))
+    top.close(advice("", model.name if model else ""))
     if title is None or source is None or model is None or track is None:
         raise Refused(faults.lines)
     if faults.lines or body is None or initial is None or time is None:

@@ -109,6 +109,7 @@ def _settled_by_start(
     fit = start.fitting([each.rows for each in every], _AGREE) if start else []
     if len(fit) != 1:
         got, ours = f"{choice.shown}: {choice.doubt}", " ".join(COLUMNS["quaternion"])
+        got += ", and neither begins with the scene's attitude" if start and not fit else ""
         faults.add(ours, got, place, f"say which: --columns {choice.scalar_requests}")
         return None, []
     first = every[fit[0]]

@@ -1,6 +1,7 @@
 """Messages as `ros2 topic echo` and `rostopic echo` print them: documents of YAML between lines of `---`.
 
 A line is a key and perhaps its value, or an item of a list; what is inside another object is indented.
+`gz topic -e` prints protobuf's text: objects in braces, and a blank line between messages.
 """
 
 from __future__ import annotations
@@ -16,9 +17,12 @@ from taylor_verify.solvers.files.formats.column import KEYS, Table, refuse_part
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.entries import Entries, table
 
-_START: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:---\s+)?\w+:[ \t]*\r?\n[ \t]+\w+:")
+_START: Final = re.compile(
+    rb"(?:\xef\xbb\xbf)?\s*(?:---\s+)?\w+(?::[ \t]*| \{)\r?\n[ \t]+\w+(?::| \{)"
+)
 _BEGINNING: Final = 4096
 _BETWEEN: Final = "---"
+_OPENS, _CLOSES = " {", "}"
 _KEY: Final = re.compile(r"([^\s:#\[\]{}'\"]+):(?:\s+(.*))?")
 
 
@@ -34,14 +38,17 @@ def read(file: Content, path: Path, part: str) -> Table:
 
 
 def _messages(file: Content, path: Path) -> Iterator[Entries]:
-    message = _Message()
-    for number, line in enumerate(file.lines(), start=1):
-        if line.startswith(_BETWEEN):
+    message, has_braces = _Message(), False
+    for number, text in enumerate(file.lines(), start=1):
+        line = text.rstrip()
+        has_braces |= line.endswith(_OPENS)
+        if line.startswith(_BETWEEN) or (has_braces and not line):
             if message.entries.values:
                 yield message.entries
             message = _Message()
-        elif line.strip() and not line.lstrip().startswith("#"):
-            message.take(line.rstrip(), f"{path}, line {number}")
+        elif line and not line.lstrip().startswith(("#", _CLOSES)):
+            opened = f"{line.removesuffix(_OPENS)}:" if line.endswith(_OPENS) else line
+            message.take(opened, f"{path}, line {number}")
             KEYS.check(len(message.entries.values), path)
     if message.entries.values:
         yield message.entries

@@ -30,6 +30,8 @@ MARKS: Final = (";", "\t", "|", ",", _BLANKS)
 _WIDE_BLANKS: Final = re.compile(r"\s{2,}|\t")
 # A name with its unit in brackets, between blanks.
 _WITH_UNIT: Final = re.compile(r"[^\s\[(]+(?:\s{0,3}[\[(][^\[\]()]{0,40}[\])])?")
+# A cell between blanks; the day of GMAT's dates has blanks in it.
+_CELL: Final = re.compile(r"\d{1,2} [A-Za-z]{3} \d{4} \d{1,2}:\S+|\S+")
 _OUTSIDE_BRACKETS: Final = re.compile(r",(?![^\[(,]{0,20}[\])])")
 _OF_RULES: Final = frozenset("-=+|:_ \t\r\n")
 _DECIMAL_COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
@@ -79,7 +81,7 @@ def _rows(lines: Iterable[str], mark: str) -> Iterator[list[str]]:
 
 def _apart_by_blanks(line: str) -> list[str]:
     if '"' not in line:
-        return line.split()
+        return _CELL.findall(line) if ":" in line else line.split()
     return next(csv.reader([line.strip()], delimiter=" ", skipinitialspace=True))
 
 

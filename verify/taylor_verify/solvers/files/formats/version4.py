@@ -104,11 +104,11 @@ def _of_modelica(matrices: dict[str, _Matrix], path: Path) -> Iterator[Array]:
     # Time is said to be in matrix 0, and stands in that of the results.
     places = [(int(row[0]), int(row[1])) for row in info]
     for name, (table, column) in zip(texts, places, strict=True):
-        data = matrices.get("data_1" if table == 1 else "data_2")
+        data = matrices.get(f"data_{table or 2}")
         if data is None or table == 1:
             continue
         values = data.values.T if is_transposed else data.values
         if not 1 <= abs(column) <= values.shape[1]:
-            raise refusal("a column of data_2", str(column), f"{path}, {cut(name)}")
+            raise refusal(f"a column of data_{table or 2}", str(column), f"{path}, {cut(name)}")
         entries = values[:, abs(column) - 1]
         yield _array(name, -entries if column < 0 else entries, "f")
