@@ -51,14 +51,24 @@ def test_switches_are_exact() -> None:
         assert abs(motion["omega"][1][1] - mpf(1) / 3) <= mpf(10) ** -30
 
 
-def test_a_root_that_ends_the_motion_is_named() -> None:
-    """w' = -sqrt(w) from 1/4 comes to rest at t = 1, where the root has no derivative."""
-    scene = about_axes('["-sqrt(w1)", 0, 0]', '["1/4", 0, 0]', "2")
-    with pytest.raises(Unsettled) as refusal:
-        solution(scene).motion([Fraction(1, 2), Fraction(2)], 20)
-    assert refusal.value.motion is not None
-    with mp.workdps(30):
-        assert abs(refusal.value.motion["omega"][0][0] - mpf(1) / 16) <= mpf(10) ** -20
+@pytest.mark.parametrize(
+    ("text", "function", "time"),
+    [
+        # w' = -sqrt(w) from 1/4 comes to rest, where the root has no derivative.
+        ("-sqrt(w1)", r"sqrt\(w1\)", "1.0"),
+        ("sqrt(1/2 - t)", r"sqrt\(1/2 - t\)", "0.5"),
+        ("(1 - 2*t)^(1/3)", r"\(1 - 2 \* t\)\^\(1/3\)", "0.5"),
+        # (1 - w)^2 = 9/16 - 2 t.
+        ("1/(1 - w1)", r"1 / \(1 - w1\)", "0.28"),
+        ("asin(t/2 + 1/2)", r"asin\(1/2 \* t \+ 1/2\)", "1.0"),
+        ("tan(t)", r"tan\(t\)", "1.57"),
+    ],
+)
+def test_a_function_that_ends_the_motion_is_named(text: str, function: str, time: str) -> None:
+    """The refusal has the function, the entry that it stands in, and the time; rows before it stand."""
+    scene = about_axes(f'["{text}", 0, 0]', '["1/4", 0, 0]', "2")
+    with pytest.raises(Unsettled, match=rf"{function}.* in body.moment\[0\].* near t = ({time})"):
+        solution(scene).motion([Fraction(1, 8), Fraction(2)], 20)
 
 
 def test_written_loads_have_no_closed_form() -> None:

@@ -27,8 +27,9 @@ from taylor_verify.exact.enclosure.system import Piece, System, Taken
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import Vector
-from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Instant
+from taylor_verify.scenes.loads.steps import needed, text_of
 from taylor_verify.scenes.scene import Scene
 
 
@@ -68,6 +69,7 @@ class LoadedBody:
             own=self._layout.own,
             instants=loads.instants if loads.held_values else None,
             taken=self._taken,
+            told=self._told,
         )
 
     @cached_property
@@ -125,6 +127,23 @@ class LoadedBody:
                 self._tapes[steps] = PieceTapes(self._scene, self._layout, piece)
             self._tapes_from[piece.begin] = self._tapes[steps]
         return self._tapes_from[piece.begin]
+
+    def _told(self, elapsed: Fraction, is_later: bool, place: int) -> str:
+        """A step of the loads as text, with the first place of the scene that needs it."""
+        piece = self._loads.piece(elapsed, is_later)
+        addresses = [f"body.{v}[{i}]" for v in VECTORS[self._loads.model] for i in range(3)]
+        addresses += [f"the rate of {name}" for name in self._loads.continuous]
+        addresses += [f"body.rotor[{i}]" for i in range(3)]
+        outputs = (*piece.outputs, *piece.rates, *piece.rotor)
+        where = next(
+            (
+                a
+                for a, k in zip(addresses, outputs, strict=False)
+                if place in needed(piece.steps, [k])
+            ),
+            "a load",
+        )
+        return f"{text_of(piece.steps, place)} in {where}"
 
     def _taken(self, instant: Instant) -> Taken:
         """The values that are taken at an instant, by the later piece."""

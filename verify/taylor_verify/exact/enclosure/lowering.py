@@ -38,8 +38,9 @@ class Lowering:
         """The expressions of the steps at some places, and of no step that these do not need."""
         made: dict[int, Sum] = {}
         for place in needed(steps, places):
-            step = steps[place]
+            step, first = steps[place], len(self._graph.operations)
             made[place] = self._expression(step, [made[k] for k in step.operands])
+            self._graph.written |= dict.fromkeys(range(first, len(self._graph.operations)), place)
         return [made[place] for place in places]
 
     def _expression(self, step: Step, operands: list[Sum]) -> Sum:

@@ -37,7 +37,12 @@ Slope = tuple[arb, int]
 
 
 class Domain(ArithmeticError):
-    """A function that has no value, or no derivative, at the point from which a step begins."""
+    """A function that has no value, or no derivative, at the point from which a step begins.
+
+    ``node`` is its place on the tape, if that is known.
+    """
+
+    node: int | None = None
 
 
 class Part(NamedTuple):

@@ -15,7 +15,7 @@ from flint import arb, ctx
 
 from taylor_verify.exact.enclosure.coefficients import Rows, falling_bits
 from taylor_verify.exact.enclosure.kinks import Norm, sign_of
-from taylor_verify.exact.enclosure.operations import ZERO, Domain, Factors, State
+from taylor_verify.exact.enclosure.operations import ZERO, Domain, Factors, Operation, State
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.numbers.irrational import ball
 
@@ -94,9 +94,16 @@ class Series(Nodes):
             if degree is not None and k > degree:
                 self._append(i, ZERO)
             elif k == 0:
-                self._append(i, operation.first(i, self))
+                self._append(i, self._first(i, operation))
             else:
                 self._append(i, operation.following(i, self, k))
+
+    def _first(self, i: int, operation: Operation) -> arb:
+        try:
+            return operation.first(i, self)
+        except Domain as end:
+            end.node = i
+            raise
 
     def _add_to_state(self, k: int) -> None:
         """The coefficients of order k + 1 of the state."""

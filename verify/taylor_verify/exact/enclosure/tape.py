@@ -83,6 +83,8 @@ class Graph:
 
     def __init__(self) -> None:
         self.operations: list[Operation] = []
+        # The step of the loads that a node was made for, by its place.
+        self.written: dict[int, int] = {}
         self._places: dict[Operation, int] = {}
         self._pairs: dict[tuple[type[Operation], int], int] = {}
 
@@ -145,12 +147,14 @@ class Graph:
 class Tape:
     """Operations in order, the places of the components of the state, and those of the outputs.
 
-    The outputs are the rates of all components, or functions that are wanted at single times.
+    The outputs are the rates of all components, or functions that are wanted at single times. ``written``
+    is the step of the loads that a node was made for, where it was made for one.
     """
 
     operations: tuple[Operation, ...]
     states: tuple[int, ...]
     outputs: tuple[int, ...]
+    written: Mapping[int, int] = field(default_factory=dict, compare=False)
 
     @classmethod
     def of(cls, graph: Graph, size: int, expressions: Sequence[Sum]) -> Tape:
@@ -163,7 +167,9 @@ class Tape:
         for place, node in enumerate(order):
             places[node] = place
         operations = tuple(joined[node].moved(places) for node in order)
-        return cls(operations, tuple(places[n] for n in states), tuple(places[n] for n in outputs))
+        written = {places[n]: graph.written[n] for n in order if n in graph.written}
+        state_places, output_places = (tuple(places[n] for n in each) for each in (states, outputs))
+        return cls(operations, state_places, output_places, written)
 
     @property
     def size(self) -> int:

@@ -21,6 +21,7 @@ from taylor_verify.exact.enclosure.box import (
     within,
 )
 from taylor_verify.exact.enclosure.crossing import Touched
+from taylor_verify.exact.enclosure.ending import ending
 from taylor_verify.exact.enclosure.flow import Flow
 from taylor_verify.exact.enclosure.image import Functions, Image
 from taylor_verify.exact.enclosure.jumps import OnJump
@@ -316,16 +317,39 @@ class Walk:
     def _check(self) -> None:
         if self._flat > _MOST_FLAT:
             raise self._stuck(_TOUCHED)
-        self._watch.check(
-            self._box, self._largest, self._lengths, self._steps, self._now, self._pending
-        )
+        try:
+            self._watch.check(
+                self._box, self._largest, self._lengths, self._steps, self._now, self._pending
+            )
+        except Coarse as reason:
+            raise reason if reason.stuck is None else self._stuck(reason.because) from None
+        except Unreached as reason:
+            raise self._at_end() or reason from None
 
-    def _stuck(self, because: str) -> Coarse:
-        return self._watch.stuck(because, self._now, self._pending)
+    def _stuck(self, because: str) -> Coarse | Unreached:
+        """The exception for a motion that cannot be followed from here; more bits help at no end."""
+        return self._at_end() or self._watch.stuck(because, self._now, self._pending)
+
+    def _at_end(self) -> Unreached | None:
+        if not (function := self._ending()):
+            return None
+        return self._unreached(f"{function} has no value or no derivative near")
 
     def _ended(self, end: Domain) -> Unreached:
+        function = "" if end.node is None else self._ending()
+        return self._unreached(f"{end} near", f" ({function})" if function else "")
+
+    def _unreached(self, because: str, more: str = "") -> Unreached:
         time = float_text(self._course.begin + self._now)
-        return Unreached(f"{end} near t = {time}", self._pending[-1])
+        return Unreached(f"{because} t = {time}{more}", self._pending[-1])
+
+    def _ending(self) -> str:
+        """The function at which the motion ends here, and where it is written; empty of none."""
+        system, now, is_later = self._system, self._course.origin + self._now, self._last >= 0
+        last = self._lengths[-1] if self._lengths else abs(self._guess)
+        tape = system.pieces(now, is_later).tape
+        place = ending(tape, self._box.point, now, last if is_later else -last)
+        return "" if place is None or system.told is None else system.told(now, is_later, place)
 
 
 def _larger(first: Sequence[float], second: Sequence[float]) -> tuple[float, ...]:

@@ -30,6 +30,8 @@ JUMPS: Final[Mapping[str, Callable[[Fraction], Fraction]]] = {
     "sign": lambda a: Fraction((a > 0) - (a < 0)),
     "floor": lambda a: Fraction(a // 1),
 }
+_STRENGTH: Final = {"+": 1, "-": 1, "*": 2, "/": 2, "power": 3}
+_LONGEST_TEXT: Final = 80
 _ARITHMETIC: Final[Mapping[str, Callable[[Fraction, Fraction], Fraction]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
@@ -70,6 +72,29 @@ def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
             reached.add(place)
             left += steps[place].operands
     return sorted(reached)
+
+
+def text_of(steps: Sequence[Step], place: int) -> str:
+    """Return a step as text in the grammar of the scene; a long one by its function alone."""
+    step = steps[place]
+    if step.operation in ("number", "input", "pi"):
+        return step.name or str(step.operation if step.number is None else step.number)
+    if step.operation == "power":
+        return f"{_within(steps, step.operands[0], 3)}^({step.number})"
+    if step.operation not in _STRENGTH:
+        text = f"{step.operation}({', '.join(text_of(steps, k) for k in step.operands)})"
+        return text if len(text) <= _LONGEST_TEXT else f"{step.operation}(...)"
+    strength = _STRENGTH[step.operation]
+    parts = [_within(steps, k, strength + n) for n, k in enumerate(step.operands)]
+    if step.operation == "+":
+        # 4 - t, and not -t + 4.
+        parts.sort(key=lambda part: part.startswith("-"))
+    return f" {step.operation} ".join(parts).replace("-1 * ", "-").replace("+ -", "- ")
+
+
+def _within(steps: Sequence[Step], place: int, strength: int) -> str:
+    text = text_of(steps, place)
+    return f"({text})" if _STRENGTH.get(steps[place].operation, 9) < strength else text
 
 
 class Steps:
