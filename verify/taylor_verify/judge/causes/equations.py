@@ -96,7 +96,8 @@ class Equations:
     @cached_property
     def switches(self) -> Floats:
         """The times between which the loads are smooth."""
-        return np.array([] if self.loads is None else self.loads.switches, dtype=float)
+        switches = np.array([] if self.loads is None else self.loads.switches, dtype=float)
+        return np.unique(switches[:, None] + np.ravel(self.late))
 
     @cached_property
     def current(self) -> Floats:
