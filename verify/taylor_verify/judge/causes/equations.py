@@ -227,7 +227,7 @@ class Equations:
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
         each = 0.012 * components
         if self.acting is not None:
-            once, each = once + _TEXTS, each + _TEXTS_OF_ONE
+            once, each = once + _TEXTS * (1 + bool(self.own)), each + _TEXTS_OF_ONE
         return once + each * states
 
     def _expressions(self, time: Floats, z: Floats, nu: Floats, R: Any) -> Floats:
