@@ -24,6 +24,8 @@ _STEPS: Final = 32
 _COARSE: Final = 1e-6
 _FINEST: Final = 2e-14
 _ORDER: Final = 2.0**8
+# Times so far from a switch, relative to the time, are on one side of it whatever rounds.
+_INSIDE: Final = 2.0**-50
 # Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
 _STATES: Final = 2400
@@ -75,8 +77,9 @@ def _parted(since: Floats, spans: Floats, switches: Floats) -> list[tuple[Floats
 
 def _within(equations: Equations, since: Floats, spans: Floats) -> Rates:
     """Return the rates at times on the inner side of the ends, where a load may jump."""
-    low = np.minimum(since, since + spans)
-    high = np.maximum(low, np.nextafter(np.maximum(since, since + spans), -np.inf))
+    low, high = np.minimum(since, since + spans), np.maximum(since, since + spans)
+    inside = np.minimum(_INSIDE * np.maximum(np.abs(low), np.abs(high)), (high - low) / 2)
+    low, high = low + inside, high - inside
     return lambda time, z: equations.rates(np.clip(time, low, high), z)
 
 

@@ -22,7 +22,7 @@ from taylor_verify.scenes.loads.states import Instant
 _CLEAR: Final = 300.0
 _ROWS: Final = 6
 _SPREAD: Final = 8
-_MOST_STEPS: Final = 8
+_HALVINGS: Final = 4
 _ACCURATE: Final = 1e-5
 
 
@@ -43,24 +43,29 @@ class Courses(Evidence):
 
     def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
         answer = self.answer
-        motions = courses(answer, sets, steps or self.steps)
+        motions = courses(answer, sets, self.step)
         return np.array([((answer.file.v - each.v) / answer.sizes).T for each in motions])
 
-    @cached_property
+    @property
     def steps(self) -> int:
-        """The steps from row to row that are accurate enough for the error."""
-        steps, answer = 1, self.answer
+        return 1
+
+    @cached_property
+    def step(self) -> float:
+        """A step that is accurate enough for the error."""
+        answer = self.answer
+        h = float(np.max(np.abs(np.diff(answer.times, prepend=answer.begins))))
         goal = max(_ACCURATE * answer.off, float(np.min(answer.rounding)))
-        while steps < _MOST_STEPS:
-            (motion,) = courses(answer, [{}], steps)
+        for _ in range(_HALVINGS):
+            (motion,) = courses(answer, [{}], h)
             if np.max(np.abs(motion.v - answer.truth.v) / answer.sizes) < goal:
                 break
-            steps *= 2
-        return steps
+            h /= 2
+        return h
 
     def motion(self, answer: Answer, changes: Changes) -> Motion | None:
         """Return the motion of a changed scene at the rows of an answer; None if it runs away."""
-        (motion,) = courses(answer, [changes], self.steps)
+        (motion,) = courses(answer, [changes], self.step)
         return motion if np.all(np.isfinite(motion.v)) else None
 
 
@@ -73,16 +78,16 @@ def _first_wrong(answer: Answer) -> int:
     return min((int(rows[0]) for rows in clear if len(rows)), default=answer.count - 1)
 
 
-def courses(answer: Answer, sets: Sequence[Changes], steps: int) -> Iterator[Motion]:
+def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motion]:
     """Yield the motion at the rows of an answer of each set of changes."""
     for part in parts_of(sets):
         right = answer.right
         equations = right.copies(part) if len(part) > 1 else right.changed(part[0])
-        rows = _course(answer, replace(equations, has_momenta=True), len(part), steps)
+        rows = _course(answer, replace(equations, has_momenta=True), len(part), h)
         yield from (_motion(answer, each) for each in rows)
 
 
-def _course(answer: Answer, equations: Equations, sets: int, steps: int) -> Floats:
+def _course(answer: Answer, equations: Equations, sets: int, h: float) -> Floats:
     """Return the velocities, attitudes and centres at the rows, (sets, rows, components)."""
     loads = equations.loads
     assert loads is not None
@@ -94,7 +99,7 @@ def _course(answer: Answer, equations: Equations, sets: int, steps: int) -> Floa
     for mark in marks:
         since, span = np.array([now]), np.array([mark - now])
         if mark > now:
-            z = moved(answer, equations, z, since, span, steps)
+            z = moved(answer, equations, z, since, span, max(1, round(float(span[0]) / h)))
         if mark in taken:
             values = _taken(equations, taken[mark], z, values)
             equations = replace(equations, held=values)

@@ -28,7 +28,7 @@ from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
-from taylor_verify.judge.causes.written_numbers import faults_of_angles, numbers
+from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
 _PAIR_ROUNDINGS: Final = 100.0
@@ -70,7 +70,7 @@ def dynamics(answer: Answer) -> Cause | None:
     faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
     families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
     if right.loads is not None:
-        faults += faults_of_angles(right)
+        faults += faults_of_texts(right)
         families += [number.family(right) for number in numbers(right.loads)]
     return search.by_arcs(faults, families, stride)
 
@@ -84,7 +84,7 @@ def in_states(answer: Answer) -> Cause | None:
     faults = [*faults_of_states(answer)]
     if not answer.has_states:
         return search.cause([*search.without_numbers(faults)])
-    faults += [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_angles(right)]
+    faults += [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_texts(right)]
     cause = search.cause([*search.without_numbers(faults)])
     with suppress(Spent):
         cause = cause or search.cause([*search.fitted(_written(answer))])

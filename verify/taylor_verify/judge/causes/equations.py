@@ -96,7 +96,8 @@ class Equations:
     @cached_property
     def switches(self) -> Floats:
         """The times between which the loads are smooth."""
-        return np.array([] if self.loads is None else self.loads.switches, dtype=float)
+        switches = np.array([] if self.loads is None else self.loads.switches, dtype=float)
+        return np.unique(switches[:, None] + np.ravel(self.late))
 
     @cached_property
     def current(self) -> Floats:
@@ -226,7 +227,7 @@ class Equations:
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
         each = 0.012 * components
         if self.acting is not None:
-            once, each = once + _TEXTS, each + _TEXTS_OF_ONE
+            once, each = once + _TEXTS * (1 + bool(self.own)), each + _TEXTS_OF_ONE
         return once + each * states
 
     def _expressions(self, time: Floats, z: Floats, nu: Floats, R: Any) -> Floats:

@@ -29,6 +29,7 @@ from taylor_verify.records.quantities import MOMENTA, VELOCITIES
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.trajectory import Trajectory
 
@@ -59,16 +60,25 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     mass = energy if given.model == "euler" else np.linalg.inv(energy)
     n, loads = len(mass), given.body.loads
     constant = [entry for name in body.load_names() for entry in parts[name]]
+    acting = None if loads is None else Acting(given, loads)
+    if acting is not None and _are_constant(acting.written):
+        constant, acting = np.ravel(acting.loads(0.0, np.zeros(n))).tolist(), None
     added = body.added_mass
     return replace(
         Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
-        load=np.array(constant, dtype=float) if loads is None else np.zeros(n),
+        load=np.array(constant, dtype=float) if acting is None else np.zeros(n),
         has_momenta=has_momenta,
         start=float(given.clock.start),
         damping=float(body.damping),
         added=None if added is None else np.array(added, dtype=float),
-        acting=None if loads is None else Acting(given, loads),
+        acting=acting,
     )
+
+
+def _are_constant(loads: Loads) -> bool:
+    """Return True if texts write no more than constant loads in body axes."""
+    has_more = loads.inputs or loads.states or loads.rotor or loads.switches
+    return not (has_more or any(loads.current))
 
 
 def material(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import pi
@@ -19,6 +19,7 @@ from taylor_verify.judge.causes.fit import DIFFERENCE, Family
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.texts import Place, places
 from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.tables import Kind
 
 KIND: Final = "number"
 _LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -59,12 +60,21 @@ def numbers(loads: Loads) -> list[Number]:
     return [number for number in every if _is_free(number)][:_MOST]
 
 
-def faults_of_angles(right: Equations) -> Iterator[Fault]:
-    """Yield the numbers of sines and cosines in degrees for radians, and the other way round."""
-    for number in () if right.loads is None else numbers(right.loads):
+def faults_of_texts(right: Equations) -> Iterator[Fault]:
+    """Yield numbers of sines and cosines with degrees and radians exchanged, and tables of another kind."""
+    loads, acting = right.loads, right.acting
+    if loads is None or acting is None:
+        return
+    for number in numbers(loads):
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+    for k, (name, table) in enumerate(loads.tables):
+        for kind in (kind for kind in Kind if kind is not table.kind):
+            other = (name, replace(table, kind=kind))
+            tables = (*loads.tables[:k], other, *loads.tables[k + 1 :])
+            changes = {"acting": acting.of(replace(loads, tables=tables))}
+            yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
 
 
 def _is_free(number: Number) -> bool:
