@@ -502,7 +502,7 @@ def test_explain_holds_the_elements_and_the_condition(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "on", "rounded", "regimes"),
     [
-        ("euler/satellite-degrees", "f64", ["body", "start"], ("max-axis", "max-axis")),
+        ("kirchhoff/vacuum-ellipsoid", "f64", ["body", "start"], ("separatrix", "min-axis")),
         ("euler/separatrix", "f64", [], ("separatrix", "separatrix")),
         ("euler/separatrix", "f32", [], ("separatrix", "separatrix")),
     ],

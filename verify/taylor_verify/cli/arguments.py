@@ -109,8 +109,8 @@ scene {_SCENE}
 --until T  the end of the span of --event, from the start of the scene
 --digits N [30]  the number of significant digits; default: 30
 --route arb|mpmath|taylor  how to compute: arb, the closed form with proven error bounds (default where
-  there is one); mpmath, that of a free rigid body by other formulas; taylor, Taylor series with
-  proven error bounds (default elsewhere)
+  there is one); mpmath, the same by other formulas; taylor, Taylor series with proven error bounds
+  (default elsewhere)
 --attitude matrix|quaternion|zyx [matrix]  R row by row (default), q0 q1 q2 q3, or yaw pitch roll in rad
 """,
     ),

@@ -33,8 +33,8 @@ def exact(
     digits
         The number of significant digits of every vector.
     route
-        ``arb`` (closed form in balls), ``mpmath`` (by other formulas, for a free rigid body) or ``taylor``
-        (Taylor series in balls); ``arb`` where there is a closed form and else ``taylor``, unless given.
+        ``arb`` (closed form in balls), ``mpmath`` (closed form by other formulas) or ``taylor`` (Taylor
+        series in balls); ``arb`` where there is a closed form and else ``taylor``, unless given.
 
     Returns
     -------
