@@ -15,7 +15,7 @@ from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.taylor.driver import Taylor
 
-_WHOLE: Final = ("euler/with-attitude",)
+_WHOLE: Final = ("euler/with-attitude", "kirchhoff/whole-motion")
 _ROUTES_INSTANTS, _ROUTES_DIGITS = 10, 50
 _ENCLOSED: Final = ("euler/constant-moment", "kirchhoff/auv-turn", "kirchhoff/general-body")
 _ENCLOSED_DIGITS: Final = 30

@@ -103,9 +103,11 @@ def test_the_size_of_the_damping(name: str, e: int) -> None:
     for sign in (1, -1):
         scene = damped(name, sign * Fraction(10) ** e)
         times = [Fraction(1, 100), Fraction(-1, 300)]
-        routes = (*closed_routes(scene), "taylor")
-        balls, *others = (solution(scene, route).motion(times, DIGITS) for route in routes)
-        assert all(apart(balls, other) <= 1 for other in others)
+        balls, mpmath, series = (
+            solution(scene, route).motion(times, DIGITS) for route in ("arb", "mpmath", "taylor")
+        )
+        assert apart(balls, mpmath) <= 1
+        assert apart(balls, series) <= 1
 
 
 def test_the_decay_counts_from_the_start() -> None:
@@ -186,7 +188,7 @@ def test_loads_and_wheels_leave_it_to_the_series(name: str) -> None:
 
 def test_what_is_out_of_reach_is_said_in_time() -> None:
     """A growth of e^100000 ends in a sentence, with the rows of the other times, and no number for it."""
-    scene = damped("euler/full-tensor", Fraction(-1))
+    scene = damped("kirchhoff/four-real-roots", Fraction(-1))
     for route in ("arb", "mpmath"):
         with pytest.raises(Unsettled, match="the time of the motion without damping") as doubt:
             solution(scene, route).motion([Fraction(1), Fraction(10) ** 5], DIGITS)

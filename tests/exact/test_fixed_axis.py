@@ -11,13 +11,14 @@ from builders.scenes import vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
+from taylor_verify.exact.kirchhoff.solid import short_digits
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Clock, Motion, Spin
+from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 40
@@ -98,3 +99,11 @@ def test_a_moment_that_turns_the_axis_leaves_no_closed_form() -> None:
                 solution(scene, route)
         assert solution(scene).route == "taylor"
         assert solution(scene).regime == elements(scene).regime == NO_CLOSED_FORM
+
+
+@pytest.mark.parametrize("faster", [1, 1000, Fraction(1, 1000)])
+def test_the_digits_of_a_short_way_do_not_depend_on_the_unit_of_time(faster: Fraction) -> None:
+    """A way of 1e-9 beside a lever of 1: nine digits, in seconds as in milliseconds."""
+    start = Impulse(vector(1, 0, 0), vector(0, 1, 0))
+    U, time = vector(Fraction(faster, 1000), 0, 0), Fraction(1, 10**6) / faster
+    assert short_digits(U, start, [time]) == 9

@@ -13,6 +13,7 @@ from taylor_verify.chain import posed
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import exact_value, rung
 from taylor_verify.scenes.reading.reader import load, read
@@ -114,6 +115,17 @@ def test_the_closed_form_lies_inside_the_enclosure(name: str) -> None:
     assert agree(rows(scene, "arb"), rows(scene, "taylor"))
 
 
+@by_top
+def test_both_closed_forms_agree(name: str) -> None:
+    """Jacobi's functions in mpmath give what Weierstrass's in balls do, or say which routes there are."""
+    _, scene = TOPS[name]
+    if name in OTHERS:
+        with pytest.raises(NoClosedForm, match="its routes are arb and taylor"):
+            solution(scene, "mpmath")
+    else:
+        assert agree(rows(scene, "arb"), rows(scene, "mpmath"))
+
+
 def drawn(seed: int) -> Scene:
     """A body of revolution about a drawn direction, with its weight and perhaps a wheel on the axis."""
     draw = Random(seed)
@@ -134,10 +146,12 @@ def texts(numbers: Iterable[Fraction]) -> str:
 
 
 @pytest.mark.parametrize("seed", by_turns(range(12)))
-def test_drawn_tops_agree_by_both_routes(seed: int) -> None:
-    """Tops of any axis, weight, wheel and start: closed form and enclosure within their radii."""
+def test_drawn_tops_agree_by_all_three_routes(seed: int) -> None:
+    """Tops of any axis, weight, wheel and start: mpmath, balls and the enclosure within their radii."""
     scene = drawn(seed)
-    assert agree(rows(scene, "arb", 12), rows(scene, "taylor", 12))
+    proven = rows(scene, "taylor", 12)
+    assert agree(rows(scene, "arb", 12), proven)
+    assert agree(rows(scene, "mpmath", 12), proven)
 
 
 @pytest.mark.parametrize("spin", [Fraction(k, 4) for k in (8, 10, 11, 12, 13, 16)])

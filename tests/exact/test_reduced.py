@@ -154,13 +154,16 @@ def test_a_space_that_turns_on_the_wrong_side_is_seen(monkeypatch: pytest.Monkey
         assert apart(motion, TaylorSolution(scene).motion(TIMES, DIGITS)) > 1e-3
 
 
-def test_a_displacement_to_the_wrong_side_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("route", ["arb", "mpmath"])
+def test_a_displacement_to_the_wrong_side_is_seen(
+    monkeypatch: pytest.MonkeyPatch, route: str
+) -> None:
     """The broken twin: moved back by -d, y and the path are wrong in their first digit."""
     scene, right = moved(revolved(), AWAY), displaced.moved_back
     monkeypatch.setattr(
         displaced, "moved_back", lambda d, start: right(tensors.scaled(Fraction(-1), d), start)
     )
-    motion = solution(scene, "arb").motion(TIMES, DIGITS)
+    motion = solution(scene, route).motion(TIMES, DIGITS)
     with mp.workdps(DIGITS + 20):
         assert apart(motion, TaylorSolution(scene).motion(TIMES, DIGITS)) > 0.1
 

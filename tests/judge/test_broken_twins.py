@@ -23,6 +23,7 @@ from taylor_verify.exact.euler import fixed_axis, jacobi
 from taylor_verify.exact.euler import orbit as euler_orbit
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.gyrostat import sigma
+from taylor_verify.exact.kirchhoff import wave
 from taylor_verify.exact.kirchhoff.plane import Plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
@@ -171,13 +172,14 @@ def test_the_sign_of_the_phase_is_seen_in_every_regime(
 
 
 def _modulus_for_parameter(patch: Patch) -> None:
-    """k for m."""
+    """k for m, in both models."""
 
     def wrong(m: mpf, m_prime: mpf) -> Landen:
         del m_prime
         return Landen(mp.sqrt(m), 1 - mp.sqrt(m))
 
-    patch.setattr(euler_orbit, "Landen", wrong)
+    for module in (euler_orbit, wave):
+        patch.setattr(module, "Landen", wrong)
 
 
 def _axes_exchanged(patch: Patch) -> None:
@@ -192,17 +194,23 @@ def _axes_exchanged(patch: Patch) -> None:
 
 
 def _one_branch_of_the_start(patch: Patch) -> None:
-    """u_0 as if cn were positive at the start."""
-    spin = euler_orbit.Orbit._phase_of
+    """u_0 as if cn were positive at the start, in both models."""
+    spin, swing = euler_orbit.Orbit._phase_of, wave.CosineWave._argument
 
     def rotating(self: euler_orbit.Orbit, sn: mpf, cn: mpf, dn: mpf) -> mpf:
         return spin(self, sn, abs(cn), dn)
 
+    def swinging(self: wave.CosineWave, risen: mpf, left: mpf, speed: Fraction) -> mpf:
+        u = swing(self, risen, left, speed)
+        acute = min(abs(u), 2 * self.quarter_period - abs(u))
+        return acute if u > 0 else -acute
+
     patch.setattr(euler_orbit.Orbit, "_phase_of", rotating)
+    patch.setattr(wave.CosineWave, "_argument", swinging)
 
 
 def _transposed(patch: Patch) -> None:
-    """Space to body for body to space."""
+    """Space to body for body to space; in a fluid test_exact_kirchhoff_attitude has its own."""
     right = jacobi.Triaxial.at
 
     def wrong(self: jacobi.Triaxial, t: Fraction, turned: bool) -> Any:
@@ -213,7 +221,7 @@ def _transposed(patch: Patch) -> None:
 
 
 def _windings_lost(patch: Patch) -> None:
-    """An integral of the third kind that forgets its whole periods."""
+    """An integral of the third kind that forgets its whole periods; in a fluid as above."""
     right = jacobi.Triaxial.__init__
 
     def wrong(self: jacobi.Triaxial, *arguments: Any) -> None:
@@ -228,9 +236,13 @@ def _windings_lost(patch: Patch) -> None:
     [
         (_modulus_for_parameter, "max-axis"),
         (_modulus_for_parameter, "min-axis"),
+        (_modulus_for_parameter, "four-roots"),
+        (_modulus_for_parameter, "two-roots"),
+        (_modulus_for_parameter, "cubic"),
         (_axes_exchanged, "max-axis"),
         (_axes_exchanged, "min-axis"),
         (_one_branch_of_the_start, "min-axis, cn < 0"),
+        (_one_branch_of_the_start, "two-roots, cn < 0"),
         (_transposed, "max-axis"),
         (_transposed, "min-axis"),
         (_transposed, "separatrix"),

@@ -27,6 +27,8 @@ class Landen:
             raise ValueError(f"expected 0 <= m and 0 < m', got {mp.nstr(m)}, {mp.nstr(m_prime)}")
         a, b, c_squared = mpf(1), mp.sqrt(m_prime), mp.convert(m)
         self._k_prime = b
+        factor = mpf(1) / 2
+        self._share = factor * c_squared  # 1 - E/K = sum 2^(n-1) c_n^2, DLMF 19.8.6
         self._moduli: list[tuple[mpf, mpf]] = []  # of step n: k_{n+1} and (k'_n)^2
         # At the foot of the chain sn, cn are sin, cos up to k_N^2, and a_N is the mean up to k_N^2.
         negligible = mp.ldexp(1, -mp.prec - 4)
@@ -34,7 +36,8 @@ class Landen:
             a_next = (a + b) / 2
             c = c_squared / (4 * a_next)  # not (a - b)/2: no difference of nearly equal numbers
             self._moduli.append((c / a_next, (b / a) ** 2))
-            a, b, c_squared = a_next, mp.sqrt(a * b), c**2
+            a, b, c_squared, factor = a_next, mp.sqrt(a * b), c**2, 2 * factor
+            self._share += factor * c_squared
         self._mean = a
         self.quarter_period = mp.pi / (2 * a)
 
@@ -47,6 +50,23 @@ class Landen:
         if r < 0:
             sn = -sn
         return (-sn, -cn, dn) if half_turns % 2 else (sn, cn, dn)
+
+    def squared_sine(self, u: mpf) -> mpf:
+        """m int_0^u sn^2 du = (1 - E/K) u - Z(u), with Jacobi's zeta function Z of the period 2K.
+
+        Z(u) has the poles of the sum of Z1(v + i K1'/2) and Z1(v - i K1'/2), v = u/(1 + k1), to which
+        the addition theorem gives Z(u) = 2/(1 + k1) [Z1(v) + k1 sn cn dn/(1 + k1 sn^2)] with sn, cn,
+        dn of (v, k1). At the foot of the chain it vanishes.
+        """
+        K = self.quarter_period
+        cn, sn = mp.cos_sin(self._mean * (u - 2 * mp.nint(u / (2 * K)) * K))
+        dn, zeta = mpf(1), mpf(0)
+        for k, m_prime in reversed(self._moduli):
+            denominator = 1 + k * sn * sn
+            zeta = 2 / (1 + k) * (zeta + k * sn * cn * dn / denominator)
+            cn, sn = cn * dn / denominator, (1 + k) * sn / denominator
+            dn = mp.sqrt(cn * cn + m_prime * sn * sn)
+        return self._share * u - zeta
 
     def _beyond(self, v: mpf) -> Triple:
         """The three functions at K - v, for 0 <= v <= K/2."""

@@ -41,7 +41,12 @@ def turn(axis: Sequence[mpf], angle: mpf) -> Frame:
 
 def product(p: Frame, q: Frame) -> Frame:
     columns = transposed(q)
-    return [[mp.fdot(column, row) for column in columns] for row in p]
+    return [applied(columns, row) for row in p]
+
+
+def applied(frame: Frame, vector: Sequence[mpf]) -> list[mpf]:
+    """The matrix times the vector."""
+    return [mp.fdot(row, vector) for row in frame]
 
 
 def transposed(frame: Frame) -> Frame:

@@ -39,8 +39,8 @@ class Kind(ABC, Generic[B, S]):
     room: ClassVar[str]
     """The package of this kind, for what is imported late.
 
-    Its module ``closed`` has the closed form of a scene in balls, ``enclosed``, which may raise
-    NoClosedForm. Its module ``elements`` has ``elements`` (scene, digits) of the orbit.
+    Its module ``closed`` has the closed forms of a scene: ``enclosed`` in balls, ``closed_form`` in mpmath;
+    each may raise NoClosedForm. Its module ``elements`` has ``elements`` (scene, digits) of the orbit.
     """
 
     # The state and the equations.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -21,7 +21,9 @@ from taylor_verify.scenes.scene import Scene
 
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
-CLOSED_ROUTES: Final = ("arb", "mpmath")
+# The functions of a closed form by route, in ``closed`` of each kind's room.
+_FUNCTIONS: Final[Mapping[str, str]] = {"arb": "enclosed", "mpmath": "closed_form"}
+CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
 
 
 @final
@@ -75,18 +77,11 @@ def _closed_form(scene: Scene, route: str) -> Solution:
     if scene.body.loads is not None:
         module = "taylor_verify.exact.euler.libration"
     try:
-        closed: Solution = function_at(f"{module}:enclosed")(scene)
+        closed: Solution | None = function_at(f"{module}:{_FUNCTIONS[route]}")(scene)
     except Undecided as doubt:
         raise NoClosedForm(f"the kind of motion is not decided: {doubt}") from doubt
-    if route == "mpmath":
-        return _in_mpmath(scene)
-    return closed
-
-
-def _in_mpmath(scene: Scene) -> Solution:
-    """The second closed form, that of a free rigid body."""
-    closed: Solution | None = function_at("taylor_verify.exact.euler.closed:closed_form")(scene)
     if closed is None:
+        _closed_form(scene, "arb")
         raise NoClosedForm("in mpmath, where this motion has none: its routes are arb and taylor")
     return closed
 

@@ -36,12 +36,12 @@ def enclosed(scene: Scene) -> Solution:
 
 
 def closed_form(scene: Scene) -> Solution | None:
-    """The motion of a free body in mpmath; None for any other scene."""
+    """The motion in mpmath; None under a moment."""
     from taylor_verify.exact.euler import jacobi
 
-    if not isinstance(scene.body, RigidBody) or not scene.body.is_free:
-        return None
     body, start = top(scene)
+    if not body.is_free:
+        return None
     return jacobi.free_rotation(FreeSpin(body.inertia, start.omega), _tracked(scene, start))
 
 

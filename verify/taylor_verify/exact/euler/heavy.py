@@ -96,6 +96,17 @@ def enclosed(scene: Scene) -> Solution:
     return carried(NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value)
 
 
+def closed_form(scene: Scene) -> Solution | None:
+    """The motion in mpmath, None where only balls are made; raises NoClosedForm likewise."""
+    from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
+
+    top = top_of(scene)
+    if top.kind != _ELLIPTIC:
+        return None
+    start, back = _in_axes(scene, top)
+    return carried(NutatingBody(top.kind, top.nutation, start, scene.track), back, top.regime.value)
+
+
 def top_of(scene: Scene) -> Top:
     """Return a scene's top; raises NoClosedForm, with the reason, where its body is none."""
     body, start = scene.body, scene.initial

@@ -17,7 +17,7 @@ from taylor_verify.exact.euler.heavy import Top, TopRegime, top_of
 from taylor_verify.exact.euler.libration import Pitch, pitch_of
 from taylor_verify.exact.kirchhoff.closed import case
 from taylor_verify.exact.kirchhoff.general import own_elements, recurring
-from taylor_verify.exact.kirchhoff.swing import swing
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene
 
@@ -49,7 +49,7 @@ def elements(scene: Scene, digits: int) -> Elements:
         top = top_of(scene)
     except NoClosedForm:
         return Elements(NO_CLOSED_FORM, (), (_WRITTEN,))
-    numbers = settled(lambda _: list(_numbers(top)), digits)
+    numbers = settled(lambda working: list(_numbers(top, working)), digits)
     return Elements(top.regime.value, numbers, (_STORY[top.regime], _TOP))
 
 
@@ -59,11 +59,12 @@ def _of_pitch(pitch: Pitch, digits: int) -> Elements:
     return Elements(solved.regime, numbers, (_PITCH,))
 
 
-def _numbers(top: Top) -> Iterator[Element]:
+def _numbers(top: Top, working: int) -> Iterator[Element]:
     nutation = top.nutation
     if top.kind == "cubic":
+        values = NutatingBody(top.kind, nutation, top.start).elements(working)
         period = "period of nutation: the height of the axis recurs"
-        yield from recurring(swing(nutation), _WAVE, period, "Hydromechanics 49 (8)")
+        yield from recurring(values, _WAVE, period, "Hydromechanics 49 (8)")
     # In axes about n vectors are sqrt(n.n) times as long.
     nu, F = mp.convert(nutation.axes.nu), mp.sqrt(mp.convert(nutation.F2))
     pull = 4 * abs(mp.convert(nutation.weight)) * F / mp.convert(nutation.body.r) / nu

@@ -19,6 +19,8 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
+from flint import arb
+from mpmath import mp
 
 from taylor_verify.exact.carried import carried
 from taylor_verify.exact.conserved.derivation import Derivation
@@ -53,11 +55,20 @@ def enclosed(scene: Scene) -> Solution:
     pitch = pitch_of(scene)
     if pitch is None:
         return heavy.enclosed(scene)
-    return _in_space(scene, pitch, closed.enclosed(pitch.scene))
+    return _in_space(scene, pitch, closed.enclosed(pitch.scene), arb)
 
 
-def _in_space(scene: Scene, pitch: Pitch, inner: Solution) -> Solution:
-    """The solution by that in the turning frame."""
+def closed_form(scene: Scene) -> Solution | None:
+    """The motion in mpmath, None where it has none; raises NoClosedForm likewise."""
+    pitch = pitch_of(scene)
+    if pitch is None:
+        return heavy.closed_form(scene)
+    inner = closed.closed_form(pitch.scene)
+    return None if inner is None else _in_space(scene, pitch, inner, mp)
+
+
+def _in_space(scene: Scene, pitch: Pitch, inner: Solution, functions: Any) -> Solution:
+    """The solution by that in the turning frame; ``functions`` has the sine and the cosine."""
     spin = np.array(pitch.scene.body.energy_matrix, dtype=object)[3:, 3:]
     start = np.array(rotation_matrix(scene.initial.attitude), dtype=object)
 
@@ -69,7 +80,7 @@ def _in_space(scene: Scene, pitch: Pitch, inner: Solution) -> Solution:
         rows["omega"] = omega
         if frames is not None:
             angles = [number(pitch.rate) * number(t) for t in elapsed]
-            turns = [_about(pitch.k, a.cos(), a.sin()) for a in angles]
+            turns = [_about(pitch.k, functions.cos(a), functions.sin(a)) for a in angles]
             rows["attitude"] = exactly(start) @ np.array(turns) @ frames
 
     return carried(inner, back)

@@ -15,6 +15,10 @@ def enclosed(scene: Scene) -> Solution:
     return free_rotation(*free_gyrostat(scene))
 
 
+def closed_form(scene: Scene) -> None:
+    """The motion in mpmath: there is none."""
+
+
 def free_gyrostat(scene: Scene) -> tuple[FreeGyrostat, Quaternion | None]:
     """Return the motion without a moment, and the attitude where it is tracked; else NoClosedForm."""
     body, start = scene.body, scene.initial

@@ -21,13 +21,13 @@ from mpmath import mp, mpf
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.kirchhoff.carrier import Carrier
 from taylor_verify.exact.kirchhoff.general import conserved, recurring
+from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,
     derivative,
     value,
 )
 from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime, turning_points
-from taylor_verify.exact.kirchhoff.swing import swing
 from taylor_verify.numbers import tensors
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -104,7 +104,7 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
     elif kind == "steady":
         yield from _disturbance(nutation)
     elif kind != "rest":
-        values = _wave(kind, nutation)
+        values = _wave(kind, nutation, start, working)
         period = "period of nutation: x3 and the shape of (x, y) recur"
         yield from recurring(values, _WAVE, period, _SOURCE)
         if kind in ("hyperbolic", "heteroclinic"):
@@ -117,10 +117,10 @@ def _orbit(kind: str, nutation: Nutation, start: Impulse, working: int) -> Itera
             yield Element("discriminant", number, "", meaning, formula)
 
 
-def _wave(kind: str, nutation: Nutation) -> Mapping[str, mpf]:
+def _wave(kind: str, nutation: Nutation, start: Impulse, working: int) -> Mapping[str, mpf]:
     """The period of nutation where x3 recurs, and the rate and the parameters of elliptic functions."""
     if kind in ELLIPTIC:
-        return swing(nutation)
+        return NutatingBody(kind, nutation, start).elements(working)
     if kind == "trigonometric":
         return {"period": 2 * mp.pi / mp.sqrt(mp.convert(-Carrier.of(nutation).A))}
     return {}
@@ -176,7 +176,8 @@ def _range(kind: str, nutation: Nutation, working: int) -> Iterator[Element]:
     if kind == "heteroclinic":
         ends = [-F, F]
     elif kind in ELLIPTIC:
-        ends = [*turning_points(nutation, working)]
+        points = turning_points(nutation, working)
+        ends = [mp.convert(points.z1), mp.convert(points.z2)]
     else:
         ends = _elementary_ends(Carrier.of(nutation))
     unit = mp.sqrt(mp.convert(nutation.axes.nu))

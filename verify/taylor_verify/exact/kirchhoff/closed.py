@@ -1,7 +1,8 @@
 """The choice of the closed form for a solid in a fluid, in exact rationals.
 
 A free motion is reduced first: to the origin where B is symmetric, and by multiples of 1 in B and in A
-where the case has them. Then it is the first of the cases below that fits.
+where the case has them. Then it is the first of the cases below that fits. The reductions, the ways back
+and the decisions are shared; the two routes of a case share no formula.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from taylor_verify.exact.carried import carried
-from taylor_verify.exact.kirchhoff import weierstrass
+from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
@@ -19,7 +20,7 @@ from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, 
 from taylor_verify.exact.kirchhoff.plane import regime as regime_in_plane
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
-from taylor_verify.exact.kirchhoff.regime import nutation_of, regime
+from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime
 from taylor_verify.exact.kirchhoff.solid import is_steady, solid
 from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
@@ -35,18 +36,28 @@ Subject = Nutation | Plane | Impulse | Curve
 
 @dataclass(frozen=True)
 class Case:
-    """A motion that has a closed form: what is left after the reductions, and its solution in balls."""
+    """A motion that has a closed form: what is left after the reductions, and its routes.
+
+    ``floats`` is that of 49 (12) to (17). Where it is None, the second is Taylor.
+    """
 
     regime: str
     reduced: Reduced
     subject: Subject
     balls: Callable[[], Solution]
+    floats: Callable[[], Solution] | None = None
 
 
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm, with the reason, where it has none."""
     solved = case(scene)
     return solved.reduced.carried_back(solved.balls())
+
+
+def closed_form(scene: Scene) -> Solution | None:
+    """The motion in mpmath, None where it has none; raises NoClosedForm likewise."""
+    solved = case(scene)
+    return None if solved.floats is None else solved.reduced.carried_back(solved.floats())
 
 
 def case(scene: Scene) -> Case:
@@ -86,6 +97,7 @@ def revolution(whole: Reduced) -> Case | None:
         reduced,
         nutation,
         lambda: weierstrass.NutatingBody(kind, nutation, start, track),
+        (lambda: jacobi.NutatingBody(kind, nutation, start, track)) if kind in ELLIPTIC else None,
     )
 
 
@@ -97,11 +109,17 @@ def flat(whole: Reduced) -> Case | None:
     reduced, place = reduced_plane
     kind, back = regime_in_plane(place), in_plane(place)
     alike = case(of_revolution(reduced.scene, place))
+    balls, floats = alike.balls, alike.floats
+
+    def made(route: Callable[[], Solution]) -> Solution:
+        return carried(alike.reduced.carried_back(route()), back, kind)
+
     return Case(
         kind,
         reduced,
         place,
-        lambda: carried(alike.reduced.carried_back(alike.balls()), back, kind),
+        lambda: made(balls),
+        None if floats is None else lambda: made(floats),
     )
 
 

@@ -121,6 +121,13 @@ class Nutation:
         """True if x is along axis 3 at the start."""
         return self.F2 == self.z**2
 
+    def drift(self, z: Fraction) -> Fraction:
+        """r F Z' where x3 = z, with Z the way of the centre along F: Hydromechanics 49 (20)."""
+        body = self.body
+        steady = body.p * self.F2 + body.q * self.FG
+        screw = (body.q_prime - body.q) * self.y3
+        return body.r * (steady + (body.p_prime - body.p) * z**2 + screw * z) / self.axes.nu
+
     def touches_pole(self, side: int) -> bool:
         """Return True if f vanishes at x3 = F (side 1) or x3 = -F (side -1), that is G = side y3."""
         same_size = self.F2 * self.y3**2 == self.FG**2

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
 from math import ceil, log2
-from typing import Final
+from typing import Any, Final
 
 from flint import arb, ctx, fmpq, fmpq_poly
-from mpmath import mpf
 
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
@@ -15,6 +17,7 @@ from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.real_roots import real_roots
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
@@ -76,29 +79,97 @@ def regime(nutation: Nutation) -> str:
     return "four-roots" if discriminant > 0 else "two-roots"
 
 
-def turning_points(nutation: Nutation, digits: int) -> tuple[mpf, mpf]:
-    """The roots of f between which x3 swings, to ``digits`` significant digits of their difference.
+@dataclass(frozen=True)
+class TurningPoints:
+    """z1 <= z <= z2, and the other roots of f, as rationals near enough to the true ones.
 
-    Of irrational constants rationals near them are taken: so these roots prove nothing, and two precisions
+    Every difference of two of the numbers here, and F^2 - z1^2 and F^2 - z2^2, has the relative
+    error asked for. Going up from z1 and round through infinity, the real roots are z1, z2, z4, z3,
+    where None is infinity; a complex pair is given as ``pair`` = (middle, n^2) instead, for
+    middle +- i n. ``at_top`` says that z2 = F, and ``at_bottom`` that z1 = -F, exactly.
+    """
+
+    z1: Fraction
+    z2: Fraction
+    z3: Fraction | None
+    z4: Fraction | None
+    pair: tuple[Fraction, Fraction] | None
+    at_top: bool
+    at_bottom: bool
+
+
+def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
+    """The turning points to ``digits`` significant digits of every difference.
+
+    The smallest difference is not known beforehand: the precision rises until it has its digits. Of
+    irrational constants rationals near them are taken: so these roots prove nothing, and two precisions
     must agree. Raises Unsettled if they do not come apart.
     """
+    poles = nutation.touches_pole(1), nutation.touches_pole(-1)
     near = nutation.near(_BITS_PER_DIGIT * digits + _MORE_BITS)
     wanted = ceil(digits * log2(10))
     for bits in (2 * wanted << n for n in range(_DOUBLINGS)):
         with ctx.workprec(bits):
-            low, high = _beside(near)
-            if (high - low).rel_accuracy_bits() >= wanted:
-                return midpoint(low), midpoint(high)
+            points = _arranged(near, nutation.z, poles)
+            if min(map(arb.rel_accuracy_bits, _differences(near, points))) >= wanted:
+                z1, z2, z3, z4 = map(_rational, (points.z1, points.z2, points.z3, points.z4))
+                pair = points.pair and (_rational(points.pair[0]), _rational(points.pair[1]))
+                return TurningPoints(z1, z2, z3, z4, pair, points.at_top, points.at_bottom)
     raise Unsettled("the roots of the quartic of x3 do not come apart")
 
 
-def _beside(nutation: Nutation) -> tuple[arb, arb]:
-    """The roots on both sides of the start; a start at a turning point is one of them."""
+def _arranged(nutation: Nutation, start: Fraction, poles: tuple[bool, bool]) -> TurningPoints:
+    """The roots in the order of the formulas, in balls; a start at a turning point is exactly that."""
     f, z = nutation.f, ball(nutation.z)
-    roots = real_roots(fmpq_poly([fmpq(*c.as_integer_ratio()) for c in reversed(f)]))
+    roots: list[Any] = real_roots(fmpq_poly([fmpq(*c.as_integer_ratio()) for c in reversed(f)]))
     lower = sum(root.mid() <= z.mid() for root in roots) - 1
     if nutation.speed == 0:
         lower = min(range(len(roots)), key=lambda k: abs(roots[k] - z).mid())
+        roots[lower] = start
         lower -= value(derivative(f), nutation.z) < 0
     lower = max(0, min(lower, len(roots) - 2))
-    return roots[lower], roots[lower + 1]
+    z1, z2 = roots[lower], roots[lower + 1]
+    at_top = poles[0] and _is_pole(nutation, roots, lower + 1, side=1)
+    at_bottom = poles[1] and _is_pole(nutation, roots, lower, side=-1)
+    if len(f) == 5 and len(roots) == 2:
+        pair: Any = _complex_pair(nutation, ball(z1), ball(z2))
+        return TurningPoints(z1, z2, None, None, pair, at_top, at_bottom)
+    circle = [*roots, *[None] * (4 - len(roots))]
+    z4, z3 = circle[(lower + 2) % 4], circle[(lower + 3) % 4]
+    return TurningPoints(z1, z2, z3, z4, None, at_top, at_bottom)
+
+
+def _is_pole(nutation: Nutation, roots: list[Any], index: int, side: int) -> bool:
+    """Return True if this root is the pole side * F, one of the roots: it is the nearest one."""
+    F2 = ball(nutation.F2)
+    squares = [ball(root) * abs(ball(root)) * side for root in roots]
+    distances = [abs(F2 - square).mid() for square in squares]
+    return bool(distances[index] == min(distances))
+
+
+def _complex_pair(nutation: Nutation, z1: arb, z2: arb) -> tuple[arb, arb]:
+    """(middle, n^2) from the coefficients and the two real roots."""
+    lead, cubic, square = nutation.f[:3]
+    middle = -(ball(cubic / lead) + z1 + z2) / 2
+    return middle, ball(square / lead) - z1 * z2 - middle * (2 * (z1 + z2) + middle)
+
+
+def _differences(nutation: Nutation, points: TurningPoints) -> list[arb]:
+    """The numbers that enter a closed form and whose digits count."""
+    z1, z2, z, F2 = (ball(entry) for entry in (points.z1, points.z2, nutation.z, nutation.F2))
+    numbers = [z2 - z1]
+    numbers += [z - z1, z2 - z] * (nutation.speed != 0)
+    numbers += [F2 - z1 * z1] * (not points.at_bottom)
+    numbers += [F2 - z2 * z2] * (not points.at_top)
+    others = [ball(root) for root in (points.z3, points.z4) if root is not None]
+    numbers += [a - b for a in others for b in (z1, z2)]
+    numbers += [a - b for a, b in pairwise(others)]
+    if points.pair is not None:
+        middle, n2 = map(ball, points.pair)
+        numbers += [n2, *((z - middle) * (z - middle) + n2 for z in (z1, z2))]
+    return numbers
+
+
+def _rational(root: Any) -> Any:
+    """The midpoint of a ball; what is no ball as it is."""
+    return exact_value(midpoint(root)) if isinstance(root, arb) else root
