@@ -4,11 +4,9 @@
 # ///
 """The Hydrodynamics plugin applies the Coriolis force of added mass with the wrong sign.
 
-Versions: gz-sim 11.0.0 of July 2026 (commit 93bbf3ed1), and since buildCoriolisMatrix takes negative
-coefficients.
+Versions: gz-sim 11.0.0 (commit 93bbf3ed1), and since buildCoriolisMatrix takes negative coefficients.
 
-Expected: a force -C_A(v) v on a body whose parameters are those that the plugin asks for (xDotU, ... <
-0).
+Expected: a force -C_A(v) v on a body with the parameters that the plugin asks for (xDotU, ... < 0).
 
 Came: +C_A(v) v. A body that nothing else acts on then changes its momentum in space, body and fluid
 together, by 54 % within ten seconds; with the other sign it keeps it to rounding. The power is zero

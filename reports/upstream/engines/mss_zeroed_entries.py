@@ -4,20 +4,16 @@
 # ///
 """remus100 of MSS and Python Vehicle Simulator sets entries of the Coriolis matrix of added mass to zero.
 
-Versions: MSS of 2024 (remus100.m of 2024-02-13); Python Vehicle Simulator of 2025 (version 2.0),
-remus100.py.
+Versions: MSS of 2024 (remus100.m of 2024-02-13); Python Vehicle Simulator 2.0 of 2025 (remus100.py).
 
-Expected: without damping and weight the vehicle keeps the momentum of body and fluid in space, and its
-energy.
+Expected: without damping and weight momentum in space, of body and fluid, and energy are kept.
 
-Came: remus100.m says that it leaves out the couple of Munk in yaw and terms in pitch; with them go the
-forces that belong to them, (2, 6) and (6, 2). Within ten seconds the momentum changes by 35 %, the
-energy by nothing. remus100.py zeroes four entries, of couples alone: the momentum stays, and the energy
-changes by 77 %.
+Came: remus100.m leaves out the couple of Munk in yaw and terms in pitch, as it says, and with them the
+forces (2, 6) and (6, 2): in ten seconds the momentum changes by 35 %, the energy by nothing. remus100.py
+zeroes four entries, of couples alone: the momentum stays, and the energy changes by 77 %.
 
-Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration.
-remus100.m, `CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py,
-`CA[4][0] = 0`.
+Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration. remus100.m,
+`CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py, `CA[4][0] = 0`.
 """
 
 import sys
@@ -26,18 +22,13 @@ import numpy as np
 
 rigid = np.array([31.9005, 31.9005, 31.9005, 0.117383, 4.22073, 4.22073])
 added = np.array([0.863302, 30.2936, 30.2936, 0.0352491, 3.59386, 3.59386])
-NONE = []
 MSS = [(5, 3), (3, 5), (5, 1), (1, 5), (6, 1), (1, 6), (6, 2), (2, 6)]
 PYTHON = [(5, 1), (5, 4), (6, 1), (6, 2)]
 
 
-def cross(v):
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def coriolis(mass, v, zeroed=NONE):
-    x, y = np.split(mass * v, 2)
-    matrix = np.block([[np.zeros((3, 3)), -cross(x)], [-cross(x), -cross(y)]])
+def coriolis(mass, v, zeroed=()):
+    x, y = (np.cross(np.eye(3), part) for part in np.split(mass * v, 2))
+    matrix = np.block([[np.zeros((3, 3)), -x], [-x, -y]])
     for row, column in zeroed:
         matrix[row - 1, column - 1] = 0
     return matrix
@@ -61,10 +52,6 @@ def changes(zeroed):
     return max(momentum) / min(momentum) - 1, max(energy) / min(energy) - 1
 
 
-for name, zeroed in (
-    ("expected  all of C_A", NONE),
-    ("got       MSS", MSS),
-    ("got       Python", PYTHON),
-):
+for name, zeroed in {"expected: all of C_A": (), "got: MSS": MSS, "got: Python": PYTHON}.items():
     print(f"{name:22} momentum {changes(zeroed)[0]:+.1e}, energy {changes(zeroed)[1]:+.1e}")
 sys.exit(1 if abs(changes(MSS)[0]) > 1e-3 else 0)

@@ -15,14 +15,13 @@ SCRIPTS = scripts(REPORTS)
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_script_is_a_report(script: Path) -> None:
-    """A script has title, versions, expectation, finding and evidence, and at most 40 lines of code."""
+    """A script has title, versions, expectation, finding and evidence, and at most 60 lines in all."""
     report = read(script)
     assert report.title
     assert set(report.parts) - {"To run"} == set(PARTS)
     assert re.search(r"\d+\.\d+", report.parts["Versions"])
     lines = script.read_text(encoding="utf-8").splitlines()
-    after = lines.index("import sys") if script.suffix == ".py" else lines.index("")
-    assert 5 <= len([line for line in lines[after:] if line.strip()]) <= 40
+    assert len(lines) <= 60
 
 
 def test_the_readme_has_a_row_for_every_script() -> None:

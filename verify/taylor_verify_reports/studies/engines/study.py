@@ -73,7 +73,7 @@ OPTIONS: Final = (
 STUDY: Final[Study[Board]] = Study(
     name="engines",
     title="physics engines on free motions: which setting is right to how many digits",
-    duration="about 40 minutes on two cores once the engines are installed",
+    duration="about 20 minutes on two cores once the engines are installed",
     measure=partial(_measure, "engines"),
     find=stored.find,
     page=page.page,
@@ -89,7 +89,7 @@ def _under_loads(name: str, title: str) -> Study[Board]:
     return Study(
         name=name,
         title=title,
-        duration="about 20 minutes on two cores once the engines are installed",
+        duration="about 4 minutes on two cores once the engines are installed",
         measure=partial(_measure, name),
         find=lambda folder: stored.find(folder, name),
         page=loaded_page.page,
