@@ -309,6 +309,10 @@ FAULTS: Mapping[str, tuple[str, str]] = {
         text(ATTITUDE_TYPE="SPIN", REF_FRAME_A="SC_BODY", REF_FRAME_B="ICRF"),
         "expected SC_BODY as REF_FRAME_B of SPIN, got SC_BODY as REF_FRAME_A",
     ),
+    "a huge spin": (
+        text("2024-061T00:00:00 1e999999 0 0 0", ATTITUDE_TYPE="SPIN"),
+        r"got '1e999999 \+ 90' @ .*row 1, column euler_zxz_1",
+    ),
     "a type of nobody": (
         text(ATTITUDE_TYPE="TUMBLE"),
         "expected an ATTITUDE_TYPE of QUATERNION, .*got TUMBLE .*write QUATERN",

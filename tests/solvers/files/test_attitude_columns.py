@@ -160,7 +160,7 @@ def test_a_rate_in_space_axes_is_turned_by_the_attitude_of_its_file() -> None:
     assert np.max(np.abs(file.groups["omega"].doubles() - TURNS.inv().apply(rates))) < 10 * ROUNDED
     alone = of_rows(rates, names)
     assert np.array_equal(alone.groups["omega"].doubles(), rates)
-    assert any("left in space axes" in note for note in alone.notes)
+    assert any("compared along space axes" in note for note in alone.notes)
 
 
 # Objects.

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from builders.trajectories import QUATERNION, columns_at, rows_of
 
+import taylor_verify
+from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -92,3 +94,16 @@ def test_a_clock_since_boot_counts_from_the_first_row() -> None:
     """Microseconds of ArduPilot since its start lie after the scene's end, and no lag is so long."""
     file = clocked("TimeUS", [int((87.25 + t) * 10**6) for t in SOUND["t"]])
     assert [float(t) for t in file.times] == SOUND["t"]
+
+
+@pytest.mark.parametrize("spoiled", [False, True])
+def test_rates_in_space_axes_are_judged_without_an_attitude(spoiled: bool) -> None:
+    """The exact attitude turns them; no cause is looked for in rows that are not in body axes."""
+    R = rotations(rows_of(SOUND, QUATERNION))
+    rates = np.einsum("nij,nj->ni", R, rows_of(SOUND, W)) * [1, -1 if spoiled else 1, 1]
+    names = [f"omega_world_{axis}" for axis in "xyz"]
+    log = {"t": SOUND["t"], **dict(zip(names, rates.T, strict=True))}
+    judged = taylor_verify.check(SCENE.name, log, partial=True)
+    assert judged.passed is not spoiled
+    assert not judged.causes
+    assert not judged.missing_load

@@ -144,9 +144,14 @@ def judge_file(
         judged = None if _is_far(answer) else _judged(answer, tolerances)
         if judged is None or not _fits(judged):
             compared, angles = with_angles(compared, scene, rung)
-            explained = causes_of_file(compared, rung, known, judged)
-            if scene.body.loads is None and (accept_conventions or not explained.is_motion):
-                known = conventions(compared, scene, rung)
+            # Causes and conventions are of rows in body axes.
+            in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
+            searched = replace(compared, groups=in_body)
+            if in_body:
+                explained = causes_of_file(searched, rung, known, judged)
+            is_open = accept_conventions or not explained.is_motion
+            if in_body and scene.body.loads is None and is_open:
+                known = conventions(searched, scene, rung)
                 known = replace(known, readings={**along_space, **known.readings})
             if angles:
                 known = replace(known, findings=(angles, *known.findings))
@@ -166,7 +171,7 @@ def judge_file(
         judged = _alone(answer, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         if known.findings:
-            explained = causes_of_file(compared, rung, known, judged)
+            explained = causes_of_file(searched, rung, known, judged)
         notes += explained.notes
         notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
         notes += () if scene.body.loads is None else (NO_CONVENTIONS,)

@@ -245,12 +245,12 @@ class _Clock:
         clock, factor = self._scene.clock, self._unit.factor
         first, last = (number * factor for number in (self._numbers[0], self._numbers[-1]))
         if self._habit is not None and self._habit.unit != "s":
-            lag = _ROWS_OF_A_LAG * (last - first) / (len(self._numbers) - 1)
+            lag = _ROWS_OF_A_LAG * abs(last - first) / (len(self._numbers) - 1)
             beyond = last > self._last + _NEAR * abs(clock.elapsed[-1])
-            return beyond and abs(first - clock.start) > lag
+            return bool(beyond and abs(first - clock.start) > lag)
         ends = sorted((clock.start, clock.instants[-1]))
         is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
-        return is_clock and (min(first, last) >= ends[1] or max(first, last) <= ends[0])
+        return is_clock and bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
 
     @cached_property
     def _last(self) -> Fraction:

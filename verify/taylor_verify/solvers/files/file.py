@@ -160,8 +160,8 @@ def from_columns(
         agreed += settled
         turned = groups.keys() & {"quaternion", "attitude"}
         in_space = () if turned else tuple(g for g in selection.in_space if g in groups)
-        about = {"columns": known, "form": form, "in_space": in_space}
-        files.append(TrajectoryFile(place, instants, groups, part.digits, **about))
+        whole_part = TrajectoryFile(place, instants, groups, part.digits, columns=known, form=form)
+        files.append(replace(whole_part, in_space=in_space))
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files

@@ -67,7 +67,8 @@ def matrix(q: Sequence[Any]) -> Floats:
     """Return the rotation of a quaternion of any length, scalar first; NaN for zero."""
     doubles = np.array([float(part) for part in q])
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.array(rotation(list(doubles))) / np.sum(doubles**2)
+        frame: Floats = np.array(rotation(list(doubles))) / np.sum(doubles**2)
+    return frame
 
 
 def angle(left: Floats, right: Floats) -> float:

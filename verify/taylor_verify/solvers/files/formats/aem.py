@@ -10,7 +10,7 @@ respect to A in degrees a second, resolved in ANGVEL_FRAME. The axis of a spin i
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from decimal import Decimal, InvalidOperation, localcontext
+from decimal import Decimal, Inexact, InvalidOperation, localcontext
 from fractions import Fraction
 from math import nan
 from pathlib import Path
@@ -52,8 +52,8 @@ _AXES: Final = str.maketrans("123", "xyz")
 # The scalar of ours comes first, that of a message last.
 _SCALAR_FIRST: Final = (3, 0, 1, 2)
 _UNIT_VECTORS: Final = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-# Digits of a sum of two decimals; an angle has no more.
-_DIGITS: Final = 5000
+# An angle has no more digits.
+_DIGITS: Final = 100
 
 Row = Sequence[Any]
 
@@ -66,7 +66,8 @@ def read(file: Content, path: Path, part: str) -> Table:
     if _is_of(read, "SPIN"):
         columns += _spin_columns(read, reverse, path)
     elif _is_of(read, "EULER_ANGLE"):
-        columns += _angle_columns(read, reverse, path)
+        axes, angles = _sequence(read, reverse, path), _in_turn(read, _ANGLES, reverse)
+        columns += _euler_columns(axes, angles)
     else:
         columns += _quaternion_columns(read, reverse)
     rates, note = _angular_velocities(read, reverse, path, faults)
@@ -94,7 +95,7 @@ def _names(read: Segment, width: int, place: str) -> Sequence[str]:
     if _kind(read) not in _STATES:
         expected = f"an ATTITUDE_TYPE of {', '.join(_STATES)}"
         raise refusal(expected, cut(_kind(read)), place, "write QUATERNION or QUATERNION/ANGVEL")
-    names = ("EPOCH", *_STATES[_kind(read)])
+    names: Sequence[str] = ("EPOCH", *_STATES[_kind(read)])
     is_of_1 = read.version.startswith("1")
     if _is_of(read, "EULER_ANGLE") and is_of_1 and read.metadata.get("EULER_ROT_SEQ") != "123":
         # It names the angles by their axes, and programs write them in turn.
@@ -164,10 +165,6 @@ def _in_turn(read: Segment, names: Sequence[str], reverse: bool) -> list[list[st
     return [[_negative(text) for text in each] for each in reversed(texts)]
 
 
-def _angle_columns(read: Segment, reverse: bool, path: Path) -> list[Column]:
-    return _euler_columns(_sequence(read, reverse, path), _in_turn(read, _ANGLES, reverse))
-
-
 def _euler_columns(axes: str, texts: Sequence[Sequence[str]]) -> list[Column]:
     return [Column(f"euler_{axes}_{k} [deg]", each) for k, each in enumerate(texts, start=1)]
 
@@ -184,12 +181,12 @@ def _spin_columns(read: Segment, reverse: bool, path: Path) -> list[Column]:
 
 
 def _plus_quarter(text: str) -> str:
-    """Return an angle and a quarter turn, in degrees; what is no decimal stays as it is."""
+    """Return an angle and a quarter turn, in degrees; what has no such sum becomes no number."""
     try:
-        with localcontext(prec=_DIGITS):
-            return f"{Decimal(text) + 90:f}"
-    except InvalidOperation:
-        return text
+        with localcontext(prec=_DIGITS, traps=[InvalidOperation, Inexact]):
+            return str(Decimal(text) + 90)
+    except (InvalidOperation, Inexact):
+        return f"{text} + 90"
 
 
 def _negative(text: str) -> str:

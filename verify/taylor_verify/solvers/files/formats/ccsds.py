@@ -19,7 +19,6 @@ from taylor_verify.records.markup import Markup
 from taylor_verify.solvers.files.formats.column import ELEMENTS, ROWS, alike, shown
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.epochs import seconds
-from taylor_verify.solvers.values import Value
 
 _LINE: Final = Limit(4096, "characters in a line", "the standard allows 254")
 _BEGINNING: Final = 1024
@@ -47,6 +46,13 @@ class Segment:
     version: str = ""
     metadata: dict[str, str] = field(default_factory=dict)
     columns: dict[str, list[str]] = field(default_factory=dict)
+    _orders: dict[int, Sequence[str]] = field(default_factory=dict)
+
+    def order(self, names: Names, width: int, place: str) -> Sequence[str]:
+        """Return the names of what a state of so many values holds, asked for once."""
+        if width not in self._orders:
+            self._orders[width] = names(self, width, place)
+        return self._orders[width]
 
     def require(self, names: Sequence[str], place: object) -> None:
         """Refuse metadata that lack a keyword."""
@@ -72,19 +78,14 @@ class Segment:
         except ValueError as error:
             zero = Fraction(0)
             faults.add(str(error), cut(start), f"{path}, START_TIME")
-        epochs = self.numbers("EPOCH", path, faults, lambda text: seconds(text, is_utc))
-        return [epoch - zero for epoch in epochs if isinstance(epoch, Fraction)]
-
-    def numbers(
-        self, name: str, path: Path, faults: Faults, value: Callable[[str], Value]
-    ) -> Iterator[Value]:
-        """Yield the numbers of a column; what is none is a fault."""
-        with alike(faults, f"{path}, {name}") as wrong:
-            for row, text in enumerate(self.columns.get(name, ()), start=1):
+        times: list[Fraction] = []
+        with alike(faults, f"{path}, EPOCH") as wrong:
+            for row, text in enumerate(self.columns["EPOCH"], start=1):
                 try:
-                    yield value(text)
+                    times.append(seconds(text, is_utc) - zero)
                 except ValueError as error:
-                    wrong(str(error), shown(text), f"{path}, state {row}, {name}")
+                    wrong(str(error), shown(text), f"{path}, state {row}, EPOCH")
+        return times
 
     def notes(self, space: str) -> tuple[str, str]:
         """Return sentences on the zero of times and on the space axes."""
@@ -152,7 +153,7 @@ def _in_text(file: Content, path: Path, root: str, names: Names) -> list[Segment
             version = value
         elif not equals and read and block == ("DATA" if root == "aem" else ""):
             cells = line.split()
-            read[-1].add(names(read[-1], len(cells), place), cells, place)
+            read[-1].add(read[-1].order(names, len(cells), place), cells, place)
         elif block != "COVARIANCE" and not (equals and not block):
             raise refusal("KEYWORD = value or a block of data", repr(cut(line)), place)
     if block:
@@ -210,7 +211,7 @@ class _Message(Markup):
     def _add(self, segment: Segment) -> None:
         row = len(segment.columns.get("EPOCH", ())) + 1
         place = f"{self.path}, segment {len(self.segments)}, state {row}"
-        names = self._names(segment, 0, place)
+        names = segment.order(self._names, 0, place)
         if missing := [name for name in names if name not in self._texts]:
             raise refusal(" ".join(names), f"no {cut(missing[0])}", place)
         segment.add(names, [self._texts[name] for name in names], place)
