@@ -167,6 +167,7 @@ def test_weight_points_downwards() -> None:
     assert np.min([np.linalg.norm(face["p"], axis=1).min() for face in shown["faces"]]) == 0
 
 
+@pytest.mark.slow
 def test_a_short_motion_is_animated_over_a_longer_span() -> None:
     """The span doubles until the body has turned twice; a motion with two turns stays as it is."""
     top = read(SAMPLED.replace("samples = 5", "samples = 2"), "sampled")
