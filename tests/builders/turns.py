@@ -9,7 +9,7 @@ import pytest
 
 
 def by_turns(
-    cases: Iterable[Any], of: int = 3, kind: Callable[..., Hashable] = lambda *case: None
+    cases: Iterable[Any], of: int = 4, kind: Callable[..., Hashable] = lambda *case: None
 ) -> list[Any]:
     """Return the cases as parameters of a test: one of every so many is quick, the others are slow.
 

@@ -18,7 +18,7 @@ from taylor_verify.cli import main
 from taylor_verify.draw import missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.components import series
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.course import lengthened, motion, turns
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import KINDS, pictures
@@ -138,6 +138,17 @@ def test_weight_points_downwards() -> None:
     assert weight["arrow"][:2] == [0, 0]
     assert np.cross(weight["at"], at) == pytest.approx([0, 0, 0], abs=1e-3)
     assert np.min([np.linalg.norm(face["p"], axis=1).min() for face in shown["faces"]]) == 0
+
+
+@pytest.mark.slow
+def test_a_short_motion_is_animated_over_a_longer_span() -> None:
+    """The span doubles until the body has turned twice; a motion with two turns stays as it is."""
+    top = read(SAMPLED.replace("samples = 5", "samples = 2"), "sampled")
+    short, whole = motion(top, 20), lengthened(top, motion(top, 20))
+    assert turns(np.array(short["course"]["attitude"]).reshape(-1, 3, 3)) < 2
+    assert whole["course"]["t"][-1] in [2.0 * 2**k for k in range(1, 5)]
+    racket = document("euler/tennis-racket")
+    assert lengthened(load("euler/tennis-racket"), racket) is racket
 
 
 def test_the_racket_flips_in_space() -> None:

@@ -94,6 +94,7 @@ def test_place_moves_with_the_path() -> None:
     assert flow.norms("centre", "linear_impulse")[0] == 0
 
 
+@pytest.mark.slow
 def test_flows_conserve_volume() -> None:
     """det D = 1 with and without loads, and not if a column is wrong by one part in a million."""
     flow = derivatives(LOADED_KIRCHHOFF, times(1, -1), 20, 50)

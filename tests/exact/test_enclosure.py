@@ -44,7 +44,7 @@ def test_motions_from_a_box_of_starts_stay_in_its_balls(name: str, size: Fractio
     assert is_contained(name, size=size)
 
 
-@pytest.mark.parametrize("name", by_turns(CASES, 2))
+@pytest.mark.parametrize("name", by_turns(CASES, 4))
 def test_the_balls_of_a_box_are_not_much_wider_than_its_motions(name: str) -> None:
     """The corners are apart by more than a thirtieth of the width that is given for them."""
     asked, end = CASES[name]

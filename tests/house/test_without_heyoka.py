@@ -161,6 +161,7 @@ def test_nothing_is_published_without_heyoka(tmp_path: Path) -> None:
     assert not (tmp_path / "reports").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", by_turns(["euler/with-attitude", "kirchhoff/constant-loads"], 2))
 def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
     """Equations, orbit, truth and bounds are those of the exact motion, and a warning names the mend."""

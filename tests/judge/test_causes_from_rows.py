@@ -263,7 +263,7 @@ def waving(size: float = 0.1, pace: float = 2.0, k: float = 1 / 30) -> Law:
             (waving(pace=2.1, k=0.04), []),
             (lambda t, w, q: waving(pace=2.1)(t, w, q) - 1e-3 * w**3, []),
         ],
-        2,
+        3,
     ),
 )
 def test_one_number_of_a_text_is_named(moment: Law, words: list[str], tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from taylor_verify.cli.inputs import known_rungs, read_scene, require_matplotlib
 from taylor_verify.cli.progress import working
 from taylor_verify.draw import file_errors, missing_load
 from taylor_verify.draw.caption import NotDrawn
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.course import lengthened, motion
 from taylor_verify.draw.moving import moving
 from taylor_verify.draw.page import page
 from taylor_verify.draw.pictures import pictures
@@ -48,7 +48,7 @@ def answer(options: argparse.Namespace) -> Answer:
     if options.animate and (names or files):
         raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
-        document = _document(scene)
+        document = _document(scene, options.animate)
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
@@ -88,10 +88,11 @@ def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
     return scene, files
 
 
-def _document(scene: Scene) -> dict[str, Any]:
-    """Return the motion to be drawn. Raises WrongCall without it."""
+def _document(scene: Scene, is_animated: bool) -> dict[str, Any]:
+    """Return the motion to be drawn, a short one longer to be animated. Raises WrongCall without it."""
     with wrong_calls(f" @ {scene.name}", Unsettled):
-        return motion(scene)
+        document = motion(scene)
+        return lengthened(scene, document) if is_animated else document
 
 
 def _pictures(

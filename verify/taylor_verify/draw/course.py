@@ -11,8 +11,10 @@ Each number is the exact one, by closed form or enclosure, rounded to the figure
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from math import ceil
 from typing import Any, Final
 
@@ -26,6 +28,7 @@ from taylor_verify.exact.printed import shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -41,6 +44,11 @@ INTERVALS: Final = 360
 PERIODS: Final = 3
 # Radians that a body may turn between two rows.
 _TURN: Final = 0.1
+# A motion with fewer turns is drawn over a longer span where it moves, at most so many times as long.
+_TURNS: Final = 2.0
+LONGEST: Final = 16
+# Seconds of processor time that the longer spans may take together.
+_SECONDS: Final = 8.0
 # The most parts of an interval.
 _MOST: Final = 8
 # Digits of a number in the course. The motion is computed to one digit more: a component that is smaller
@@ -83,6 +91,28 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
         "is_free": body.is_free,
         "damping": float(body.damping),
     }
+
+
+def lengthened(scene: Scene, document: Document) -> Document:
+    """Return the motion over a longer span, if loads turn the body less than twice in that of the scene.
+
+    It is at most ``LONGEST`` times as long, and ends where the motion cannot be computed soon.
+    """
+    factor, patience = 1 if scene.body.loads else LONGEST, Patience(_SECONDS)
+    while factor < LONGEST and turns(_attitudes(document["course"])) < _TURNS:
+        factor *= 2
+        longer = replace(scene.clock, instants=(scene.clock.start + factor * span(scene),))
+        after = patience.made(partial(_motion_if_known, replace(scene, clock=longer)), None)
+        if after is None:
+            break
+        document = after
+    return document
+
+
+def _motion_if_known(scene: Scene) -> Document | None:
+    with suppress(Unsettled):
+        return motion(scene)
+    return None
 
 
 def turns(attitudes: Numbers) -> float:
