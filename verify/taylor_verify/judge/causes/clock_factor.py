@@ -9,6 +9,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.fit import Family, Fitted, gauss_newton
+from taylor_verify.judge.causes.proof import CAPS
 
 _CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
 _FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
@@ -19,6 +20,8 @@ _MOST_STEPS: Final = 128
 
 def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:
     """Return the fit of a clock from the best factor of the grid, if that is better."""
+    if best.size < CAPS[1] * arcs.size:
+        return best
     tried = [
         (float(np.linalg.norm(defects)), factor)
         for factors, steps in ((_CLOCKS, max(arcs.steps, 4)), (_FRAMES, 32))

@@ -13,7 +13,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.arcs import Evidence, telling_arcs
+from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
@@ -24,7 +24,7 @@ from taylor_verify.judge.causes.fault import Fault, Sizes, both
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, across, gauss_newton, orthonormal
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
-from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, whole
+from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
@@ -167,6 +167,7 @@ class Search:
         faults = [fault.changes for fault in faults_of_terms(self.answer.right)]
         budget = self.answer.budget
         with budget.of_its_own(_BESIDE), suppress(Spent):
+            assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
@@ -253,7 +254,7 @@ class Search:
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
                 fit = gauss_newton(self.evidence, family)
-                if family.kind == "clock" and not fit.size < CAPS[1] * self.evidence.size:
+                if family.kind == "clock" and isinstance(self.evidence, Arcs):
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
                     candidate = self._fitted(family, fit.size, fit.numbers)

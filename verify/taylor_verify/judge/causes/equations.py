@@ -185,7 +185,8 @@ class Equations:
 
     def rates(self, time: Floats, z: Floats) -> Floats:
         """Return the rates of states with or without a quaternion, a centre, and the scene's own states."""
-        n, nu, R = self.size, self.velocities(time, z), None
+        n, nu = self.size, self.velocities(time, z)
+        R: Any = None
         has_centre = z.shape[1] > n + 4 + self.own
         if has_centre or self._reads_frame:
             R = rotations(z[:, n : n + 4])
@@ -299,18 +300,19 @@ class Equations:
         if np.any(self.ahead):
             acceleration = self.inverse @ moving if self.has_momenta else moving
             W = W + _number(self.ahead) * acceleration[:, -3:]
-        return self._turning @ outer(q, W)
+        return np.asarray(self._turning @ outer(q, W))
 
     @cached_property
     def _turning(self) -> Floats:
         """The factors of q_i W_j in the rates of q, (..., 4, 12)."""
         before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
-        return before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
+        both = before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
+        return np.asarray(both)
 
 
 def outer(p: Floats, q: Floats) -> Floats:
     """Return the products p_i q_j of the components, (parameters, products, arcs)."""
-    return np.repeat(p, q.shape[1], axis=1) * np.tile(q, (1, p.shape[1], 1))
+    return np.asarray(np.repeat(p, q.shape[1], axis=1) * np.tile(q, (1, p.shape[1], 1)))
 
 
 def _turning_factors(unit: Floats, axes: Floats) -> Floats:

@@ -10,7 +10,7 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous
 from taylor_verify.scenes.loads.vocabulary import Entry
 
-_HANGING: Final = ("weight", "buoyancy")
+HANGING: Final = ("weight", "buoyancy")
 # The names of fields and the places in tuples that lead to an entry.
 _Path = tuple[Any, ...]
 
@@ -30,7 +30,8 @@ class Place:
         node: Any = self.loads
         for step in self.path:
             node = getattr(node, step) if isinstance(step, str) else node[step]
-        return node  # type: ignore[no-any-return] (loads have entries there)
+        entry: Entry = node
+        return entry
 
     def put(self, entry: Entry) -> Loads:
         """Return the loads with another entry at this place."""
@@ -43,14 +44,19 @@ def places(loads: Loads) -> Iterator[Place]:
     return (Place(loads, *each) for each in _paths(loads))
 
 
+def with_entry(entries: tuple[Any, ...], k: int, entry: Any) -> tuple[Any, ...]:
+    """Return a tuple with another entry at one place."""
+    return (*entries[:k], entry, *entries[k + 1 :])
+
+
 def _with(node: Any, path: _Path, entry: Entry) -> Any:
     if not path:
         return entry
     step, *rest = path
     if not isinstance(step, str):
-        return (*node[:step], _with(node[step], tuple(rest), entry), *node[step + 1 :])
+        return with_entry(node, step, _with(node[step], tuple(rest), entry))
     changed = {step: _with(getattr(node, step), tuple(rest), entry)}
-    return node._replace(**changed) if isinstance(node, tuple) else replace(node, **changed)
+    return node._replace(**changed) if hasattr(node, "_replace") else replace(node, **changed)
 
 
 def _paths(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
@@ -88,8 +94,8 @@ def _of_hung(loads: Loads) -> Iterator[tuple[_Path, str, str]]:
     for k, hung in enumerate(loads.hung):
         listed = f"({', '.join(f'{float(f):g}' for f in hung.force)})"
         for i in range(3):
-            key = f"{_HANGING[k]}.force[{i}]"
+            key = f"{HANGING[k]}.force[{i}]"
             yield ("hung", k, "force", i), key, f"force {i + 1} fixed in space"
         for i in range(3):
             name = f"component {i + 1} of its point, of the force {listed}"
-            yield ("hung", k, "at", i), f"{_HANGING[k]}.at[{i}]", name
+            yield ("hung", k, "at", i), f"{HANGING[k]}.at[{i}]", name

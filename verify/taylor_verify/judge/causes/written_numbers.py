@@ -17,7 +17,8 @@ from taylor_verify.judge.causes.equations import Changes, Equations
 from taylor_verify.judge.causes.fault import Fault
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.texts import Place, places
+from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
+from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.tables import Kind
 
@@ -61,7 +62,7 @@ def numbers(loads: Loads) -> list[Number]:
 
 
 def faults_of_texts(right: Equations) -> Iterator[Fault]:
-    """Yield numbers of sines and cosines with degrees and radians exchanged, and tables of another kind."""
+    """Yield degrees and radians exchanged, weight or buoyancy left out, and tables of another kind."""
     loads, acting = right.loads, right.acting
     if loads is None or acting is None:
         return
@@ -69,10 +70,15 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+    for k, hung in enumerate(loads.hung):
+        if not any(hung.force):
+            continue
+        left = with_entry(loads.hung, k, hung._replace(force=ZERO_VECTOR))
+        changes = {"acting": acting.of(replace(loads, hung=left))}
+        yield Fault(f"{HANGING[k]} left out", KIND, changes)
     for k, (name, table) in enumerate(loads.tables):
         for kind in (kind for kind in Kind if kind is not table.kind):
-            other = (name, replace(table, kind=kind))
-            tables = (*loads.tables[:k], other, *loads.tables[k + 1 :])
+            tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
             yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
 
