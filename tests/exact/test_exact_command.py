@@ -288,11 +288,16 @@ def test_a_person_sees_the_numbers_that_a_program_reads(
 
 
 def test_the_separatrix_is_printed_at_any_time(capsys: pytest.CaptureFixture[str]) -> None:
-    """At t = 10^9 two components are e^(-3 10^8): their digits are printed, not their rational."""
-    assert main(["exact", "euler/separatrix", "--at", "1e9", "--digits", "20", "--json"]) == 0
+    """At t = 10^9 two components are e^(-3 10^8): digits in mpmath, and a bound in balls."""
+    asked = ["exact", "euler/separatrix", "--at", "1e9", "--digits", "20", "--json"]
+    assert main([*asked, "--route", "mpmath"]) == 0
     (row,) = json.loads(capsys.readouterr().out)["rows"]
     assert row["omega"][0].endswith("e-132974985")
     assert len(row["omega"][0].split("e")[0].replace(".", "")) == 20
+    assert main(asked) == 0
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert row["omega"][0] == "0"
+    assert float(row["absolute"]["omega"]) < 1e-25
 
 
 @pytest.mark.parametrize(("digits", "lines"), [(12, 6), (30, 12)])
