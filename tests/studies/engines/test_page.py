@@ -237,9 +237,9 @@ def test_no_colour_stands_for_two_engines() -> None:
     published = stored.find(REPORTS)
     assert published is not None
     drawn = work.panels(published, entry_list(), SCENE, published.pace, 1e6)
-    looks = [line.look for panel in drawn for line in panel.lines if not line.look.dashes]
-    coloured = [look.colour for look in looks if look.width > work._OTHERS.width]
-    assert len(coloured) == len(set(coloured)) == 3 * len(drawn) < len(looks)
+    styles = [line.look for panel in drawn for line in panel.lines if not line.look.dashes]
+    coloured = [look.colour for look in styles if look.width > work._OTHERS.width]
+    assert len(coloured) == len(set(coloured)) == 3 * len(drawn) < len(styles)
 
 
 def test_energy_stands_beside_the_motion() -> None:

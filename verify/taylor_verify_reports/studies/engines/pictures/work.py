@@ -109,13 +109,13 @@ def _with_looks(
 ) -> Iterator[Line]:
     """Yield the lines: plain solvers dashed, the best engines and the worst in colour, others grey."""
     engines = sorted((line for line in lines if line.name not in plain_titles), key=_least)
-    looks = {line.name: look_of_line(next(numbers)) for line in (*engines[:_BEST], *engines[-1:])}
+    styles = {line.name: look_of_line(next(numbers)) for line in (*engines[:_BEST], *engines[-1:])}
     markers = iter(_PLAIN_MARKERS)
     for line in lines:
         if line.name in plain_titles:
             yield replace(line, look=Look(INK, next(markers), DASHED))
         else:
-            yield replace(line, look=looks.get(line.name, _OTHERS))
+            yield replace(line, look=styles.get(line.name, _OTHERS))
 
 
 def _least(line: Line) -> float:
@@ -155,11 +155,11 @@ def _short(names: Collection[str]) -> list[str]:
 
 
 def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
-    looks = {line.name: line.look for panel in drawn for line in panel.lines}
-    named = {name: look.line for name, look in looks.items() if look != _OTHERS}
+    styles = {line.name: line.look for panel in drawn for line in panel.lines}
+    named = {name: look.line for name, look in styles.items() if look != _OTHERS}
     entries: list[Entry] = [*zip(named.values(), _short(named), strict=True)]
-    if len(named) < len(looks):
-        entries.append((_OTHERS.line, f"{len(looks) - len(named)} others, in the table"))
+    if len(named) < len(styles):
+        entries.append((_OTHERS.line, f"{len(styles) - len(named)} others, in the table"))
     note = "Best settings; in colour the best two and the worst; dashed: plain solvers, in float64."
     figure, places = sheet(len(drawn), entries, note, _HEIGHT)
     spots = [point for panel in drawn for line in panel.lines for point in line.points]
