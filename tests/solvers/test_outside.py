@@ -316,3 +316,36 @@ def test_a_script_that_is_wrong_is_refused(blocks: list[str], fault: str, tmp_pa
         read_script(file)
     with pytest.raises(Refused, match=re.escape(fault)):
         read_scripts(tmp_path)
+
+
+@pytest.mark.parametrize("script", sorted(SCRIPTS.glob("*.py")), ids=lambda file: file.stem)
+def test_a_call_of_another_script_has_its_arguments(script: Path) -> None:
+    """Scripts import each other from their folder, where no type checker follows."""
+    tree = ast.parse(script.read_text(encoding="utf-8"))
+    modules = {
+        alias.name: SCRIPTS / f"{node.module}.py"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    calls = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)]
+    wrong = [
+        (call.func.id, call.lineno)
+        for call in calls
+        if isinstance(call.func, ast.Name)
+        and (file := modules.get(call.func.id)) is not None
+        and not any(isinstance(given, ast.Starred) for given in call.args)
+        and (asked := functions(file).get(call.func.id)) is not None
+        and not asked[0] <= len(call.args) + len(call.keywords) <= asked[1]
+    ]
+    assert wrong == []
+
+
+def functions(file: Path) -> dict[str, tuple[int, int]]:
+    """The least and the largest number of arguments of each function of a script; none without one."""
+    tree = ast.parse(file.read_text(encoding="utf-8") if file.exists() else "")
+    return {
+        node.name: (len(node.args.args) - len(node.args.defaults), len(node.args.args))
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef) and not node.args.kwonlyargs and not node.args.vararg
+    }

@@ -12,7 +12,7 @@ Came: remus100.m leaves out the couple of Munk in yaw and terms in pitch, as it 
 forces (2, 6) and (6, 2): in ten seconds the momentum changes by 35 %, the energy by nothing. remus100.py
 zeroes four entries, of couples alone: the momentum stays, and the energy changes by 77 %.
 
-Evidence: C_A of Fossen (2011), equation 6.43, keeps both to rounding in the same integration. remus100.m,
+Evidence: C_A of Fossen (2011), equation 6.43, keeps both to 2e-12 in the same integration. remus100.m,
 `CA(5,3) = 0; CA(3,5) = 0; ...`: https://github.com/cybergalactic/MSS; remus100.py, `CA[4][0] = 0`.
 """
 
@@ -35,14 +35,14 @@ def coriolis(mass, v, zeroed=()):
 
 
 def changes(zeroed):
-    """The largest changes of momentum and energy in ten seconds, by RK4 with steps of a millisecond."""
+    """The largest changes of momentum and energy in ten seconds, by RK4 with steps of two milliseconds."""
 
     def rates(v):
         return -(coriolis(rigid, v) + coriolis(added, v, zeroed)) @ v / (rigid + added)
 
-    v, h = np.array([1.5, 0.2, -0.1, 0.1, 0.05, 0.2]), 0.001
+    v, h = np.array([1.5, 0.2, -0.1, 0.1, 0.05, 0.2]), 0.002
     momentum, energy = [], []
-    for _ in range(10_000):
+    for _ in range(5_000):
         a = rates(v)
         b = rates(v + h / 2 * a)
         c = rates(v + h / 2 * b)
@@ -52,6 +52,8 @@ def changes(zeroed):
     return max(momentum) / min(momentum) - 1, max(energy) / min(energy) - 1
 
 
-for name, zeroed in {"expected: all of C_A": (), "got: MSS": MSS, "got: Python": PYTHON}.items():
-    print(f"{name:22} momentum {changes(zeroed)[0]:+.1e}, energy {changes(zeroed)[1]:+.1e}")
-sys.exit(1 if abs(changes(MSS)[0]) > 1e-3 else 0)
+names = {"expected: all of C_A": (), "got: MSS": MSS, "got: Python": PYTHON}
+answers = {name: changes(zeroed) for name, zeroed in names.items()}
+for name, (momentum, energy) in answers.items():
+    print(f"{name:22} momentum {momentum:+.1e}, energy {energy:+.1e}")
+sys.exit(1 if answers["got: MSS"][0] > 1e-3 else 0)

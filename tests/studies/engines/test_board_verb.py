@@ -100,7 +100,7 @@ def test_what_is_stored_is_not_run_again(folder: Path, monkeypatch: pytest.Monke
 
 
 def test_files_take_the_place_of_an_engine(folder: Path) -> None:
-    """A file for a scene is judged with its conventions, and a folder is a step."""
+    """A file for a scene is judged with its conventions and copied beside its row; a folder is a step."""
     row = rows_of(folder)[0]
     place = folder / "results" / "0.5"
     place.mkdir(parents=True)
@@ -110,6 +110,10 @@ def test_files_take_the_place_of_an_engine(folder: Path) -> None:
     (filed,) = answer.document["rows"]
     assert filed["errors"]["omega"] == row["errors"]["omega"]
     assert "the file oblique.json" in filed["detail"]
+    stored = next(row for row in rows_of(folder) if row["engine"] == "filed")
+    assert (folder / stored["file"]).read_bytes() == (place / "oblique.json").read_bytes()
+    with pytest.raises(WrongCall, match="expected a row that an engine makes, got the file"):
+        called(folder, "--board", "engines", "--row", str(stored["row"]))
 
 
 def test_all_faults_of_a_call_are_named() -> None:

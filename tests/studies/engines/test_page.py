@@ -24,9 +24,11 @@ from taylor_verify_reports.studies.engines import page, stored
 from taylor_verify_reports.studies.engines.advice import advice
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.engine_page import pages
-from taylor_verify_reports.studies.engines.entry import Entry, EntryList
+from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
 from taylor_verify_reports.studies.engines.study import STUDY
+
+REPORTS = Path(__file__).resolve().parents[3] / "reports"
 
 
 @pytest.fixture(autouse=True)
@@ -228,6 +230,16 @@ def test_a_picture_has_a_line_for_each_engine() -> None:
     (steps,) = work.panels(document, ENTRIES, SCENE, work._step, 1.0)
     assert [x for x, _ in steps.lines[0].points] == [0.1, 0.05, 0.025]
     assert [line.name for line in steps.lines] == ["Spinner", "Wobbler"]
+
+
+def test_no_colour_stands_for_two_engines() -> None:
+    """The best two and the worst of each precision have a colour of their own, all others are grey."""
+    published = stored.find(REPORTS)
+    assert published is not None
+    drawn = work.panels(published, entry_list(), SCENE, published.pace, 1e6)
+    styles = [line.look for panel in drawn for line in panel.lines if not line.look.dashes]
+    coloured = [look.colour for look in styles if look.width > work._OTHERS.width]
+    assert len(coloured) == len(set(coloured)) == 3 * len(drawn) < len(styles)
 
 
 def test_energy_stands_beside_the_motion() -> None:

@@ -175,6 +175,12 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
     if not text.isdecimal() or int(text) >= len(answers):
         raise WrongCall(f"expected a row from 0 to {len(answers) - 1}, got {text!r:.40} @ --row")
     answer = answers[int(text)]
+    copy = own.file_of(folder, options.board, answer)
+    if answer.states is None and copy.exists() and answer.row.is_judged:
+        raise WrongCall(
+            f"expected a row that an engine makes, got the file {copy} (`check {copy} --scene "
+            f"{answer.row.scene}`) @ --row"
+        )
     if answer.states is None:
         answer = _made_again(answer, options.board)
     columns = answer.columns()

@@ -109,7 +109,7 @@ def derivatives(body: FreeBody, epoch: Any) -> Any:
 
         @JOverride
         def init(self, start: Any, target: Any) -> None:
-            """Nothing is prepared."""
+            """Prepare nothing."""
 
         @JOverride
         def yields(self, state: Any) -> bool:

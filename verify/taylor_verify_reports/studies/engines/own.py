@@ -38,6 +38,8 @@ from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 LOCAL: Final = "local/boards"
 OWN: Final = f"{LOCAL}/own"
+# The folder of copied files, beside the rows of an engine that is known by its files.
+_FILES: Final = "files"
 _NAME: Final = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
 _LINKS: Final = {"](../": "](../../", "](engines": "](../../tables/engines"}
 
@@ -115,19 +117,29 @@ def add(
         measure(entries, {}, store, say)
     else:
         for run in entries.runs():
-            if answer := _judged_file(run, Path(engine.files)):
+            if file := _file_for(run, Path(engine.files)):
+                answer = _judged_file(run, file)
                 store.keep(answer)
+                _copy(file, store, answer)
                 say(f"{run}: {answer.row.standing}")
     return own_answers(folder, name, engine.name)
 
 
-def _judged_file(run: Asked, folder: Path) -> Answer | None:
-    """Return the row of a file, SCENE.* or STEP/SCENE.* in the folder; None where there is none."""
+def _file_for(run: Asked, folder: Path) -> Path | None:
+    """Return the file of a run, SCENE.* or STEP/SCENE.* in the folder; None where there is none."""
     place = folder / run.value if run.value else folder
     stems = (run.scene.rpartition("/")[2], of_scene(run.scene))
-    file = next((file for stem in stems for file in sorted(place.glob(f"{stem}.*"))), None)
-    if file is None:
-        return None
+    return next((file for stem in stems for file in sorted(place.glob(f"{stem}.*"))), None)
+
+
+def _copy(file: Path, store: Unfinished, answer: Answer) -> None:
+    """Store a file of results beside its row, so that whoever gets the folder can judge it."""
+    name = f"{store.file_of(answer.row.key).stem}.{file.name.partition('.')[2]}"
+    replace_files(store.folder, {f"{_FILES}/{name}": file.read_bytes()})
+
+
+def _judged_file(run: Asked, file: Path) -> Answer:
+    """Return the row of a file."""
     try:
         result = check(run.scene, file, run.rung, accept_conventions=True)
     except ValueError as fault:
@@ -153,8 +165,10 @@ def _order(row: EngineRow, scenes: Sequence[str]) -> tuple[str, str, int, float]
 
 
 def file_of(folder: Path, board: str, answer: Answer) -> Path:
-    """Return the file of an own answer, which `check` reads."""
-    return Unfinished(folder / OWN / answer.row.engine / board).file_of(answer.row.key)
+    """Return the file of an own answer, which `check` reads: the copy of a file, or the stored answer."""
+    store = Unfinished(folder / OWN / answer.row.engine / board)
+    place = store.file_of(answer.row.key)
+    return next((store.folder / _FILES).glob(f"{place.stem}.*"), place)
 
 
 def copied(folder: Path, name: str) -> Path:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby
+from itertools import count, groupby
 from math import inf
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
+from taylor_verify.plotting.palette import INK, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import DASHED, Look, look_of_line
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 _HEIGHT: Final = 3.9
 _ERROR: Final = "largest error of omega and attitude"
 _DOUBLE, _SINGLE = "float64", "float32"
+# There are as many colours as engines with a name in the legend: these and the worst, in two panels.
+_BEST: Final = 2
+_OTHERS: Final = Look(QUIET, "o", width=0.6, size=2.0)
+_PLAIN_MARKERS: Final = ("o", "s", "^", "D", "v")
 
 
 @dataclass(frozen=True)
@@ -32,8 +37,8 @@ class Line:
     """An engine in a picture: the points (work, error) that are above zero, from coarse to fine."""
 
     name: str
-    look: Look
     points: tuple[tuple[float, float], ...]
+    look: Look = _OTHERS
 
 
 @dataclass(frozen=True)
@@ -76,17 +81,13 @@ def panels(
     titles = entries.titles
     plain_solvers = {row.name for row in entries.entry if row.plain}
     lines: dict[str, list[Line]] = {_DOUBLE: [], _SINGLE: []}
-    for number, (engine, group) in enumerate(
-        groupby(newest(settings(board.study)), key=lambda setting: setting.engine)
-    ):
+    for engine, group in groupby(newest(settings(board.study)), key=lambda each: each.engine):
         best = _best([*group], scene)
         if best is None:
             continue
-        dashes = DASHED if engine in plain_solvers else ()
-        look = look_of_line(number)
         costs = [(work(row), row.worst) for row in best.on(scene)]
         points = tuple((unit * x, y) for x, y in costs if x and 0 < y < inf)
-        line = Line(titles.get(engine, engine), Look(look.colour, look.marker, dashes), points)
+        line = Line(titles.get(engine, engine), points)
         if points and engine in plain_solvers:
             lines[_DOUBLE].append(line)
             lines[_SINGLE].append(line)
@@ -95,7 +96,31 @@ def panels(
     plain_titles = {titles.get(name, name) for name in plain_solvers}
     if all(line.name in plain_titles for line in lines[_SINGLE]):
         lines[_SINGLE] = []
-    return [Panel(heading, tuple(own)) for heading, own in lines.items() if own]
+    numbers = count()
+    return [
+        Panel(heading, tuple(_with_looks(own, plain_titles, numbers)))
+        for heading, own in lines.items()
+        if own
+    ]
+
+
+def _with_looks(
+    lines: Sequence[Line], plain_titles: Collection[str], numbers: Iterator[int]
+) -> Iterator[Line]:
+    """Yield the lines: plain solvers dashed, the best engines and the worst in colour, others grey."""
+    engines = sorted((line for line in lines if line.name not in plain_titles), key=_least)
+    styles = {line.name: look_of_line(next(numbers)) for line in (*engines[:_BEST], *engines[-1:])}
+    markers = iter(_PLAIN_MARKERS)
+    for line in lines:
+        if line.name in plain_titles:
+            yield replace(line, look=Look(INK, next(markers), DASHED))
+        else:
+            yield replace(line, look=styles.get(line.name, _OTHERS))
+
+
+def _least(line: Line) -> float:
+    """Return the smallest error of a line."""
+    return min(y for _, y in line.points)
 
 
 def _best(group: Sequence[EngineSetting], scene: str) -> EngineSetting | None:
@@ -130,9 +155,12 @@ def _short(names: Collection[str]) -> list[str]:
 
 
 def _figure(axis: str, drawn: Sequence[Panel]) -> Figure:
-    styles = {line.name: line.look.line for panel in drawn for line in panel.lines}
-    entries: list[Entry] = [*zip(styles.values(), _short(styles), strict=True)]
-    note = "Each engine by its best setting; dashed: a plain solver, in float64."
+    styles = {line.name: line.look for panel in drawn for line in panel.lines}
+    named = {name: look.line for name, look in styles.items() if look != _OTHERS}
+    entries: list[Entry] = [*zip(named.values(), _short(named), strict=True)]
+    if len(named) < len(styles):
+        entries.append((_OTHERS.line, f"{len(styles) - len(named)} others, in the table"))
+    note = "Best settings; in colour the best two and the worst; dashed: plain solvers, in float64."
     figure, places = sheet(len(drawn), entries, note, _HEIGHT)
     spots = [point for panel in drawn for line in panel.lines for point in line.points]
     limits = {
