@@ -72,11 +72,9 @@ def finite_number(value: Any, place: str) -> Fraction:
 
 
 def _runge_kutta(dense: Any) -> Polynomials:
-    h = Fraction(float(dense.h))
-    return [
-        polynomial([Fraction(y), *(h * Fraction(q) for q in row)], h)
-        for y, row in zip(dense.y_old.tolist(), dense.Q.tolist(), strict=True)
-    ]
+    pairs = zip(dense.y_old.tolist(), dense.Q.tolist(), strict=True)
+    t, h = fmpq_poly([0, 1]), Fraction(float(dense.h))
+    return [t * polynomial(row, h) + rational(y) for y, row in pairs]
 
 
 def _radau(dense: Any) -> Polynomials:

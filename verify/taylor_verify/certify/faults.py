@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.certify.motion import QUATERNION, Errors, Interval, Measured
-from taylor_verify.certify.pieces import Piece, Pieces, fraction
+from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.records.certificate import Fault, InterpolantFinding
 from taylor_verify.scenes.scene import Scene
 
@@ -67,10 +67,9 @@ def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Nod
         left, right = ends.near(time), starts.near(time)
         if before.end != after.begin or left is None or right is None:
             continue
-        values = [(before.value(c, after.begin), after.value(c, after.begin)) for c in group]
-        jump = hypot(*(float(q - p) for p, q in values))
+        jump = hypot(*(nearest(after.polynomials[c][0] - before.last(c)) for c in group))
         size = sum(sum(piece.sizes[c]) for piece in (before, after) for c in group)
-        slope = np.array([_slope(after, c) for c in group])
+        slope = np.array([nearest(after.polynomials[c][1]) for c in group])
         error, derived = _ends(right, -1)
         yield Node(
             time, jump, _ROUNDINGS * size, error, _ends(left, 1)[0],
@@ -93,10 +92,6 @@ class _Ends:
         close = min(places, key=lambda place: abs(self._times[place] - time))
         interval = self._intervals[close]
         return interval if abs(self._times[close] - time) <= interval.half / 2 else None
-
-
-def _slope(piece: Piece, column: str) -> float:
-    return float(fraction(piece.polynomials[column][1]))
 
 
 def _ends(interval: Interval, v: int) -> tuple[Floats, Floats]:

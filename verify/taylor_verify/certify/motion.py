@@ -14,11 +14,10 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, arb_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces
+from taylor_verify.certify.pieces import Piece, Pieces, nearest, rational
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.event_times import parts_of, system
 from taylor_verify.exact.written import as_written
-from taylor_verify.numbers.irrational import ball
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
 from taylor_verify.scenes.scene import Scene
@@ -105,6 +104,7 @@ class _Part:
     def __init__(self, part: Part, origin: Fraction, columns: Sequence[str]) -> None:
         self._begin, self._length = origin + part.begin, part.length
         self._functions = dict(zip(columns, part.functions, strict=True))
+        self._polynomials = {c: arb_poly(list(f.polynomial)) for c, f in self._functions.items()}
 
     def add(
         self,
@@ -148,10 +148,11 @@ class _Part:
         b: Fraction,
         so_far: Errors,
     ) -> Interval:
-        middle, half = (a + b) / 2, (b - a) / 2
-        ours = arb_poly([ball((middle - self._begin) / self._length), ball(half / self._length)])
-        theirs = arb_poly([ball(middle - piece.begin), ball(half)])
-        truth = [arb_poly(list(self._functions[c].polynomial))(ours) for c in group]
+        middle, half = rational(a + b) / 2, rational(b - a) / 2
+        begin, length = rational(self._begin), rational(self._length)
+        ours = arb_poly([arb((middle - begin) / length), arb(half / length)])
+        theirs = arb_poly([arb(middle - rational(piece.begin)), arb(half)])
+        truth = [self._polynomials[c](ours) for c in group]
         answer = [arb_poly(piece.polynomials[c])(theirs) for c in group]
         beside = [self._functions[c].beside for c in group]
         scale = 1.0
@@ -162,7 +163,7 @@ class _Part:
         if of.quantity.measure is Measure.SO_FAR:
             scale = so_far.largest or 1.0
         rows, bounds = _rounded(differences, beside)
-        return Interval(float(middle), float(half), rows, bounds, scale)
+        return Interval(nearest(middle), nearest(half), rows, bounds, scale)
 
 
 def _turned(
@@ -208,8 +209,8 @@ def _rounded(polynomials: Sequence[arb_poly], beside: Sequence[arb]) -> tuple[Fl
 
 def _counting(sizes: Sequence[float]) -> int:
     """The number of coefficients that count."""
-    left, rest = len(sizes), 0.0
-    while left > 1 and rest + sizes[left - 1] <= _NEGLIGIBLE * sum(sizes):
+    left, rest, least = len(sizes), 0.0, _NEGLIGIBLE * sum(sizes)
+    while left > 1 and rest + sizes[left - 1] <= least:
         left -= 1
         rest += sizes[left]
     return left

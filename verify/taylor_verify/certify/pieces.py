@@ -15,9 +15,7 @@ from flint import fmpq, fmpq_poly
 from taylor_verify.records.faults import Faults, Refused
 
 MOST_DEGREE: Final = 60
-# 2^332 is 1e100.
-_HUGE: Final = "1e100"
-_HUGE_BITS: Final = 332
+_HUGE: Final = 1e100
 
 
 @dataclass(frozen=True)
@@ -31,6 +29,10 @@ class Piece:
     def value(self, column: str, time: Fraction) -> Fraction:
         return fraction(self.polynomials[column](rational(time - self.begin)))
 
+    def last(self, column: str) -> fmpq:
+        """The value of a column at the end of the piece."""
+        return sum(self._terms[column], fmpq(0))
+
     @cached_property
     def _terms(self) -> Mapping[str, list[fmpq]]:
         """The terms of each polynomial at the end of the piece."""
@@ -40,13 +42,15 @@ class Piece:
     @cached_property
     def sizes(self) -> Mapping[str, list[float]]:
         """The sizes of the terms of each column at the end of the piece."""
-        return {name: [abs(int(c.p) / int(c.q)) for c in row] for name, row in self._terms.items()}
+        return {name: [abs(nearest(c)) for c in row] for name, row in self._terms.items()}
 
     @property
     def is_huge(self) -> bool:
         """True for a term whose square no double would have."""
-        terms = (c for row in self._terms.values() for c in row)
-        return any(int(c.p).bit_length() - int(c.q).bit_length() > _HUGE_BITS for c in terms)
+        try:
+            return any(size > _HUGE for row in self.sizes.values() for size in row)
+        except OverflowError:
+            return True
 
     def shifted(self, begin: Fraction, end: Fraction) -> Piece:
         """The polynomials on a part of the piece."""
@@ -56,6 +60,10 @@ class Piece:
 
 def rational(value: Fraction | float) -> fmpq:
     return fmpq(*value.as_integer_ratio())
+
+
+def nearest(value: fmpq) -> float:
+    return int(value.p) / int(value.q)
 
 
 def fraction(value: fmpq) -> Fraction:
@@ -91,7 +99,7 @@ class Pieces:
             if degree > MOST_DEGREE:
                 faults.add(f"degrees of at most {MOST_DEGREE}", str(degree), f"piece {k}")
             elif piece.begin < piece.end and piece.is_huge:
-                faults.add(f"terms below {_HUGE}", "a larger one", f"piece {k}")
+                faults.add("terms below 1e100", "a larger one", f"piece {k}")
         for k, (before, after) in enumerate(pairwise(every)):
             if after.begin < before.end:
                 got = f"two at t = {float(after.begin):g}"

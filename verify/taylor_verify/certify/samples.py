@@ -11,7 +11,7 @@ import numpy as np
 from flint import fmpq_poly
 
 from taylor_verify.certify.dense import columns_of, finite_number, named, of_scipy
-from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, fraction, polynomial, rational
+from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, nearest, polynomial, rational
 from taylor_verify.certify.slopes import slopes_of
 from taylor_verify.records.faults import brief, refusal
 from taylor_verify.records.quantities import COLUMNS
@@ -147,8 +147,8 @@ def _check(
     for share in _CHECKED:
         time = Fraction(float(begin + (end - begin) * share))
         for value, p in zip(_called(answer, time, piece), row, strict=True):
-            ours = float(fraction(p(rational(time - begin))))
-            if not abs(value - ours) <= _ROUNDING * max(abs(value), abs(float(fraction(p[0])))):
+            ours = nearest(p(rational(time - begin)))
+            if not abs(value - ours) <= _ROUNDING * max(abs(value), abs(nearest(p[0]))):
                 expected = f"a polynomial of degree {degree} in t on piece {piece}"
                 got = (
                     f"values that differ from one by {abs(value - ours):.1e} at t = {float(time):g}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from taylor_verify.certify.pieces import Pieces
+from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.certificate import Certified
 from taylor_verify.records.faults import Refused
@@ -25,7 +25,7 @@ def check_conventions(scene: Scene, pieces: Pieces, certificate: Certified) -> N
     every = pieces.each[:: max(1, len(pieces.each) // _MOST_ROWS)]
     table = {"t": [float(piece.begin) for piece in every]}
     for column in pieces.columns:
-        table[column] = [float(piece.value(column, piece.begin)) for piece in every]
+        table[column] = [nearest(piece.polynomials[column][0]) for piece in every]
     if len(every) < 2:
         return
     judgement = judge_file(trajectory(table, scene), scene, rung("f64"), partial=True)

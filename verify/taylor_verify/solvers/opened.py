@@ -29,8 +29,8 @@ def opened(problem: Problem) -> Problem:
     if problem.rung.bits > _DOUBLE_BITS:
         return problem
     given = problem.given
-    parts = {"body": given.body, "initial": given.initial, "clock": given.clock}
-    return replace(problem, given=replace(given, **{k: _opened(p) for k, p in parts.items()}))
+    parts = {name: _opened(getattr(given, name)) for name in ("body", "initial", "clock")}
+    return replace(problem, given=replace(given, **parts))
 
 
 def _opened(part: Body | State | Clock) -> Any:
