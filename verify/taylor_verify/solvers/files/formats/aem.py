@@ -286,7 +286,7 @@ def _of_quaternion(q: Row, derivative: Row, reverse: bool) -> Row:
 
 
 def _of_angles(axes: str, angles: Row, rates: Row) -> Row:
-    """Return the sum of the rates about their axes, each seen from behind the turns that follow it."""
+    """Return the sum of the rates about their axes, each turned back by the turns that follow it."""
     numbers = [*angles, *rates]
     if not all(isinstance(number, Fraction) for number in numbers):
         return [nan] * 3
@@ -295,6 +295,6 @@ def _of_angles(axes: str, angles: Row, rates: Row) -> Row:
         later = [Fraction(0)] * (k + 1) + [angle * DEGREE for angle in angles[k + 1 :]]
         q = FORMS[axes].quaternion(later)
         square = sum(part * part for part in q)
-        seen = apply(transpose(rotation(q)), _UNIT_VECTORS["xyz".index(axis)])
-        omega = [w + rate * DEGREE * s / square for w, s in zip(omega, seen, strict=True)]
+        in_body = apply(transpose(rotation(q)), _UNIT_VECTORS["xyz".index(axis)])
+        omega = [w + rate * DEGREE * s / square for w, s in zip(omega, in_body, strict=True)]
     return omega
