@@ -91,7 +91,10 @@ def test_quarter_turns_and_parameters_are_exact() -> None:
         ("axis_angle = { axis = [0, 0, 0], degrees = 1 }", "an axis that is not zero"),
         ("axis_angle = { axis = [0, 0, 1], degrees = 1e30 }", "angles of at most"),
         ("roll = 3", "turns about axes that move along"),
-        ("euler = [10, 5, 0]", 'yaw, pitch and roll are `euler = { sequence = "zyx", degrees = [10, 5, 0]'),
+        (
+            "euler = [10, 5, 0]",
+            'yaw, pitch and roll are `euler = { sequence = "zyx", degrees = [10, 5, 0]',
+        ),
     ],
 )
 def test_a_faulty_form_is_refused(attitude: str, expected: str) -> None:

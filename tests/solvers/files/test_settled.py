@@ -107,3 +107,10 @@ def test_rates_in_space_axes_are_judged_without_an_attitude(spoiled: bool) -> No
     assert judged.passed is not spoiled
     assert not judged.causes
     assert not judged.missing_load
+
+
+def test_the_request_of_a_bare_matrix_has_whole_groups() -> None:
+    """Seven columns may be times, rates and three angles; no quaternion is cut off."""
+    columns = [Column(str(k), [0.0, 1.0]) for k in range(1, 8)]
+    with pytest.raises(Refused, match=r"t=1,w1=2,w2=3,w3=4,zyx_deg=5:7 for yaw pitch roll"):
+        from_columns(columns, "matrix", scene=SCENE)

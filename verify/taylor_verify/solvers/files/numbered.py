@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from taylor_verify.records.faults import refusal
+from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import is_fraction
 from taylor_verify.solvers.files.columns.readings import Name
@@ -15,6 +16,7 @@ from taylor_verify.solvers.values import Value, exact
 
 # The columns of a trajectory of the TUM benchmark, t x y z qx qy qz qw, which has no header.
 _TUM: Final = ("t", "c1", "c2", "c3", "q1", "q2", "q3", "q0")
+_ANGLES: Final = ("yaw", "pitch", "roll")
 _UNIT: Final = 0.01
 
 
@@ -62,8 +64,16 @@ def _elements(names: Sequence[str]) -> list[str]:
 
 
 def _example(names: Sequence[str], scene: Scene | None) -> str:
+    """Return a request of whole groups; three columns in place of a quaternion may be angles."""
     groups = [group.columns for group in scene.groups] if scene else [("w1", "w2", "w3")]
-    return _asked(["t", *(name for group in groups for name in group)], names)
+    asked, angles = ["t"], ""
+    for group in groups:
+        left = len(names) - len(asked)
+        if len(group) <= left:
+            asked += group
+        elif group == COLUMNS["quaternion"] and left == len(_ANGLES):
+            angles = f",zyx_deg={names[-3]}:{names[-1]} for {' '.join(_ANGLES)}"
+    return _asked(asked, names) + angles
 
 
 def _asked(ours: Sequence[str], names: Sequence[str]) -> str:

@@ -10,7 +10,7 @@ respect to A in degrees a second, resolved in ANGVEL_FRAME. The axis of a spin i
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from decimal import Decimal, Inexact, InvalidOperation, localcontext
+from decimal import Context, Decimal, Inexact, InvalidOperation
 from fractions import Fraction
 from math import nan
 from pathlib import Path
@@ -52,8 +52,8 @@ _AXES: Final = str.maketrans("123", "xyz")
 # The scalar of ours comes first, that of a message last.
 _SCALAR_FIRST: Final = (3, 0, 1, 2)
 _UNIT_VECTORS: Final = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-# An angle has no more digits.
-_DIGITS: Final = 100
+# An angle has no more than a hundred digits.
+_EXACTLY: Final = Context(prec=100, traps=[InvalidOperation, Inexact])
 
 Row = Sequence[Any]
 
@@ -183,8 +183,7 @@ def _spin_columns(read: Segment, reverse: bool, path: Path) -> list[Column]:
 def _plus_quarter(text: str) -> str:
     """Return an angle and a quarter turn, in degrees; what has no such sum becomes no number."""
     try:
-        with localcontext(prec=_DIGITS, traps=[InvalidOperation, Inexact]):
-            return str(Decimal(text) + 90)
+        return str(_EXACTLY.add(Decimal(text), 90))
     except (InvalidOperation, Inexact):
         return f"{text} + 90"
 
@@ -287,7 +286,7 @@ def _of_quaternion(q: Row, derivative: Row, reverse: bool) -> Row:
 
 
 def _of_angles(axes: str, angles: Row, rates: Row) -> Row:
-    """Return the sum of the rates about their axes, each seen from behind the turns that follow it."""
+    """Return the sum of the rates about their axes, each turned back by the turns that follow it."""
     numbers = [*angles, *rates]
     if not all(isinstance(number, Fraction) for number in numbers):
         return [nan] * 3
@@ -296,6 +295,6 @@ def _of_angles(axes: str, angles: Row, rates: Row) -> Row:
         later = [Fraction(0)] * (k + 1) + [angle * DEGREE for angle in angles[k + 1 :]]
         q = FORMS[axes].quaternion(later)
         square = sum(part * part for part in q)
-        seen = apply(transpose(rotation(q)), _UNIT_VECTORS["xyz".index(axis)])
-        omega = [w + rate * DEGREE * s / square for w, s in zip(omega, seen, strict=True)]
+        in_body = apply(transpose(rotation(q)), _UNIT_VECTORS["xyz".index(axis)])
+        omega = [w + rate * DEGREE * s / square for w, s in zip(omega, in_body, strict=True)]
     return omega
