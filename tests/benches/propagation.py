@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import product
 from typing import Final
+from unittest import mock
 
 from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
 from benches.scenes import sampled
@@ -12,7 +16,10 @@ from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.taylor import driver
+from taylor_verify.solvers.taylor.cache import CACHE_VARIABLE, heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
+from taylor_verify.solvers.taylor.equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
@@ -22,6 +29,15 @@ _SHORT: Final = tuple(name for name in SCENES if UNTIL not in name)
 _LONG: Final = tuple(name for name in SCENES if UNTIL in name)
 # Bodies with nothing but moments and a spin.
 _PLAIN: Final = ("euler/generic", "euler/with-attitude")
+
+# Loads without kinks, in one piece, and bodies without loads.
+_WRITTEN: Final = (
+    "loads/heavy-top",
+    "loads/pd-wheels",
+    "loads/magnetic-torquing",
+    "extremes/euler-long-heavy-top",
+    "euler/with-attitude",
+)
 
 _ADDED: Final = 0.3
 _SHORT_SOLVE: Final = Target(
@@ -50,6 +66,55 @@ def plain(problem: Problem) -> Callable[[], object]:
         return integrator.propagate_grid(grid)
 
     return propagate
+
+
+def users(problem: Problem) -> Callable[[], Callable[[], object]]:
+    """Return what compiles heyoka as its user writes it: its own tolerance, mode and optimisation.
+
+    Numbers are literals. What is returned goes the whole way. The problem has no kinks, and one piece.
+    """
+    numbers = [float(value) for value in problem.parameters]
+    start = [float(value) for value in problem.initial_momenta]
+    grid = arithmetic(problem.rung).times(problem.times)
+
+    def compile_anew() -> Callable[[], object]:
+        import heyoka as hy
+
+        heyoka_cache_off()
+        hy.llvm_state.clear_memcache()
+        system = equations(problem.form, [hy.expression(number) for number in numbers])
+        integrator = hy.taylor_adaptive(system, start)
+
+        def propagate() -> object:
+            integrator.time = 0.0
+            integrator.state[:] = start
+            return integrator.propagate_grid(grid)
+
+        return propagate
+
+    return compile_anew
+
+
+def _user_over(name: str, solver: Taylor) -> tuple[Side, Side]:
+    problem = pose(load(name), _RUNG)
+    solver.solve(problem)
+    return _call(partial(solver.solve, problem)), _call(users(problem)())
+
+
+def _cold_over_user(name: str) -> tuple[Side, Side]:
+    problem = pose(load(name), _RUNG)
+
+    def cold(folder: str) -> object:
+        import heyoka as hy
+
+        hy.llvm_state.clear_memcache()
+        for kept in (compiled, driver.prepared_once):
+            kept.cache_clear()
+        with mock.patch.dict(os.environ, {CACHE_VARIABLE: folder}):
+            return Taylor().solve(problem)
+
+    with_empty_cache = Action(cold, partial(tempfile.mkdtemp, prefix="taylor-verify-"))
+    return with_empty_cache, _call(lambda: users(problem)()())
 
 
 def _call(work: Callable[[], object]) -> Action:
@@ -113,6 +178,22 @@ def ratios() -> Iterator[Ratio]:
             "the first solve of a body whose equations are compiled, over a further one",
             partial(_first_over_second, name),
             _FIRST,
+            unit="solve",
+        )
+    for name, code in product(_WRITTEN, ("quick", "optimised")):
+        yield Ratio(
+            f"user-{code}/{name}",
+            f"a solve with {code} code, over heyoka's call as its user writes it",
+            partial(_user_over, name, Taylor(is_optimised=code == "optimised")),
+            _SHORT_SOLVE,
+            unit="solve",
+        )
+    for name in _WRITTEN:
+        yield Ratio(
+            f"user-first/{name}",
+            "a first solve, code compiled, over heyoka's as its user writes it",
+            partial(_cold_over_user, name),
+            _SHORT_SOLVE,
             unit="solve",
         )
     for name in _SHORT:

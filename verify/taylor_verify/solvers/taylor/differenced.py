@@ -5,7 +5,6 @@ It answers what `rates.Linearised` answers, for equations that are not polynomia
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf, isfinite
 from typing import Any, Final
 
@@ -32,7 +31,7 @@ class Differenced:
         begin, end = float(problem.begin), float(problem.times[-1])
         self._looks = [begin + part * (end - begin) for part in _LOOKS]
 
-    def fastest(self, states: Any, times: Sequence[Any] = ()) -> float:
+    def fastest(self, states: Any, times: Any = ()) -> float:
         """Return the fastest rate at all rows of an array, each at its time; infinite where not finite.
 
         A state without a time is looked at in several. The unit is radians per unit of time.

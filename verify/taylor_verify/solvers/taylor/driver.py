@@ -78,7 +78,7 @@ class Taylor(Solver):
         began = perf_counter()
         tolerance = None if self.tolerance is None else self.tolerance.as_integer_ratio()
         # What follows from a question is made once, for whoever asks it many times to time a solver.
-        prepared = _kept if len(problem.times) <= _MOST_INSTANTS else _prepared
+        prepared = prepared_once if len(problem.times) <= _MOST_INSTANTS else _prepared
         way, form, turned, kinks, vectors, has_roots = prepared(
             problem, tolerance, self.is_optimised
         )
@@ -229,4 +229,4 @@ def _prepared(problem: Problem, tolerance: tuple[int, int] | None, is_optimised:
     )
 
 
-_kept = lru_cache(maxsize=_MOST_WAYS)(_prepared)
+prepared_once = lru_cache(maxsize=_MOST_WAYS)(_prepared)
