@@ -101,10 +101,12 @@ def test_what_is_shipped_is_warned_of() -> None:
     entries = replace(ENTRIES, entry=(row,))
     usual = with_errors(SPINNER, 1e-3, 1e-4, 1e-5)
     bare = [replace(one, shipped=True, variant=f"{one.variant}, shipped") for one in usual]
-    assert not any("without" in sentences for sentences in advised(*usual, *bare, entries=entries))
+    assert not any("shipped" in sentences for sentences in advised(*usual, *bare, entries=entries))
     bare[1] = replace(bare[1], errors={"omega": 0.2, "attitude": 0.05})
     sentences = advised(*usual, *bare, entries=entries)
-    assert ("Never **Spinner** without its damping switched off (0.200, not 1.00e-4).") in sentences
+    assert (
+        "Not as shipped: **Spinner** needs its damping switched off (0.200 becomes 1.00e-4)."
+    ) in sentences
 
 
 def test_steps_that_make_it_worse_are_warned_of() -> None:

@@ -252,12 +252,12 @@ def _as_shipped(
         if row is None or usual is None or ratio < FAR_WORSE:
             continue
         warning = next((e.warning for e in entries.entry if e.name == engine and e.warning), "")
-        without = f" without {warning}" if warning else " as it is shipped"
+        needs = f" needs {warning}" if warning else ""
         warnings.append(
-            f"{bold(prose(names[engine]))}{without} ({error(row.worst)}, not {figure(usual.worst)})"
+            f"{bold(prose(names[engine]))}{needs} ({error(row.worst)} becomes {figure(usual.worst)})"
         )
     if warnings:
-        yield f"Never {'; '.join(warnings)}."
+        yield f"Not as shipped: {'; '.join(warnings)}."
 
 
 def like(row: EngineRow, engines: Sequence[EngineSetting], entries: EntryList) -> EngineRow | None:

@@ -134,7 +134,7 @@ def _reading_order(page: str) -> tuple[int, str]:
 
 def _scenes(report: Report) -> str:
     rungs = (f"{rung}:" for rung in report.rungs)
-    columns = ["scene", "what it is", "regime", *rungs, "over attainable:", "verdict"]
+    columns = ["scene", "verdict", "what it is", "regime", *rungs, "over attainable:"]
     rows = [_scene_row(report, scene) for scene in report.scenes]
     return f"# Scenes\n\n{_SCENES}\n\n{table(columns, rows)}\n"
 
@@ -146,10 +146,10 @@ def _scene_row(report: Report, scene: str) -> list[str]:
     most = worst(verdict for run in runs.values() for verdict in run.state)
     return [
         code(scene),
+        judged(gravest(v for run in runs.values() for v in run.verdicts)),
         *(prose(str(about.get(key, ""))) for key in ("title", "regime")),
         *(main_error(runs.get(rung)) for rung in report.rungs),
         ratio(most) if most else NOTHING,
-        judged(gravest(v for run in runs.values() for v in run.verdicts)),
     ]
 
 

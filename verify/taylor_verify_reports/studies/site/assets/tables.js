@@ -7,8 +7,8 @@
   const NOTHING = /^(?:–|-|—|)$/;
   // Tables with fewer rows need no sorting. Tables with more rows than the second number get a filter.
   const SORTABLE = 6, FILTERABLE = 40;
-  // A cell with more letters is a sentence, and needs a wide column.
-  const SENTENCE = 40;
+  // A cell with more letters is a sentence, or a phrase, and needs a wide column, or a less narrow one.
+  const SENTENCE = 40, PHRASE = 18;
 
   function value(cell) {
     const text = cell.textContent.trim();
@@ -112,7 +112,20 @@
 
   function markSentences(table) {
     table.querySelectorAll("td:not(.text-right)").forEach(function (cell) {
-      cell.classList.toggle("sentence", cell.textContent.length > SENTENCE);
+      const letters = cell.textContent.length;
+      cell.classList.toggle("sentence", letters > SENTENCE);
+      cell.classList.toggle("phrase", letters > PHRASE && letters <= SENTENCE);
+    });
+  }
+
+  // A column of words in which no row has any takes the room of the others.
+  function hideEmptyColumns(table) {
+    const rows = Array.from(table.tBodies[0].rows);
+    Array.from(table.tHead.rows[0].cells).forEach(function (heading, index) {
+      const column = rows.map(function (row) { return row.cells[index]; });
+      const isEmpty = column.every(function (cell) { return cell && NOTHING.test(cell.textContent.trim()); });
+      if (!isEmpty || heading.classList.contains("text-right")) return;
+      [heading, ...column].forEach(function (cell) { cell.hidden = true; });
     });
   }
 
@@ -121,6 +134,7 @@
       const rows = table.tHead && table.tBodies.length ? table.tBodies[0].rows.length : 0;
       table.id = table.id || "table-" + (number + 1);
       markSentences(table);
+      if (rows > 1) hideEmptyColumns(table);
       if (rows >= SORTABLE && !hasGroups(table)) addSorting(table);
       if (rows >= FILTERABLE) addFilter(table, number + 1);
     });
