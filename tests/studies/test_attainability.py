@@ -12,8 +12,8 @@ from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.tradeoff.attainability import least_error, left_out
-from taylor_verify.tradeoff.recommendation import OutOfReach, recommend
+from taylor_verify.tradeoff.attainability import least_error, left_out, narrowest
+from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend
 from taylor_verify.tradeoff.setting import setting
 
 F32, F64, F80 = rung("f32"), rung("f64"), rung("f80")
@@ -53,6 +53,23 @@ def test_a_rung_is_left_out_by_its_own_floor(generic: Scene) -> None:
     assert left_out(generic, [F64], 0.99 * least / GATE_FACTOR).keys() == {F64}
     assert left_out(generic, [F64], 1.01 * least / GATE_FACTOR) == {}
     assert recommend(generic, 1e-3, [setting("taylor", F32)]).left_out == ()
+
+
+def test_the_narrowest_precision_is_named(generic: Scene) -> None:
+    """The text of the error names the narrowest rung whose floor reaches the target."""
+    target = 1e-30
+    with pytest.raises(OutOfReach) as caught:
+        recommend(generic, target, [setting("taylor", F64)])
+    precision = narrowest(generic, target / MARGIN)
+    assert precision is not None
+    wide, least = precision
+    assert least <= target / MARGIN
+    assert (
+        f"the narrowest precision on which rounding alone leaves so little is {wide.name}"
+        in str(caught.value)
+    )
+    assert narrowest(generic, 1e-5)[0] in (F32, F64)
+    assert least_error(generic, F80) > target / MARGIN
 
 
 def test_what_computes_elsewhere_is_measured_anyway(generic: Scene) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
+from math import ceil, inf, log2
 from typing import Any, Final
 
 import numpy as np
@@ -20,6 +21,8 @@ from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.attainable import floor
 from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.precisions import FORMATS
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.scenes.scene import Scene
 
@@ -27,6 +30,11 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Digits of a truth that only shows how large the motion is.
 _DIGITS: Final = 15
+_MOST_BITS: Final = 1000
+# A floor is not quite proportional to the roundoff: near an unstable motion the rounding of the data
+# changes the orbit too. Each attempt has at least so many bits more than the one before.
+_MORE_BITS: Final = 8
+_ATTEMPTS: Final = 8
 
 
 @lru_cache(maxsize=64)
@@ -67,3 +75,25 @@ def left_out(scene: Scene, rungs: Iterable[Rung], error: float) -> dict[Rung, st
             beyond = "" if least < 1 else ", more than the motion's own size"
             reasons[rung] = f"on {rung.name} rounding alone leaves {least:.2g}{beyond}"
     return reasons
+
+
+def narrowest(scene: Scene, error: float) -> tuple[Rung, float] | None:
+    """Return the narrowest rung on which rounding alone leaves at most an error, and its floor.
+
+    It is one of the formats f32 to f128 if one suffices, else mpN. The result is None if no rung suffices,
+    or if the floor is unknown.
+    """
+    names = [*FORMATS]
+    for attempt in range(len(FORMATS) + _ATTEMPTS):
+        rung = rung_named(names[attempt])
+        least = least_error(scene, rung)
+        if least is not None and least <= error:
+            return rung, least
+        if attempt >= len(FORMATS) - 1:
+            if least is None or not least < inf:
+                return None
+            bits = rung.bits + max(ceil(log2(least / error)), _MORE_BITS)
+            if not bits <= _MOST_BITS:
+                return None
+            names.append(f"mp{bits}")
+    return None

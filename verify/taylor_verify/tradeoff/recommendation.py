@@ -17,7 +17,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import PROCESS
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.tradeoff.accuracy import Truths
-from taylor_verify.tradeoff.attainability import left_out
+from taylor_verify.tradeoff.attainability import left_out, narrowest
 from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.point import Point
 from taylor_verify.tradeoff.setting import Setting, settings
@@ -180,5 +180,14 @@ def _largest(p: Point, scenes: Sequence[Scene], truths: Truths, target: float) -
 
 
 def _out_of_reach(scene: Scene, error: float, reason: str) -> str:
-    """Return the sentence that no setting reaches an error, with the reason."""
-    return f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}{reason}"
+    """Return the reason why no setting reaches an error, with the narrowest rung that could."""
+    narrowest_rung = narrowest(scene, error / MARGIN)
+    wider = "no precision is known on which rounding alone leaves so little"
+    if narrowest_rung is not None:
+        rung, least = narrowest_rung
+        wider = (
+            "the narrowest precision on which rounding alone leaves so little is "
+            f"{rung.name} ({least:.2g})"
+        )
+    nothing = f"no setting stays below {error:.3g} with a margin of {MARGIN:g} @ {scene.name}"
+    return f"{nothing}{reason}; {wider}"
