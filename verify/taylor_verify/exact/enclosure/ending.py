@@ -10,27 +10,27 @@ from flint import arb
 
 from taylor_verify.exact.enclosure.functions import Angle
 from taylor_verify.exact.enclosure.kinks import Kink
-from taylor_verify.exact.enclosure.operations import Domain, Operation
+from taylor_verify.exact.enclosure.operations import ONE, Domain, Operation
 from taylor_verify.exact.enclosure.powers import Logarithm, Power, Quotient, Root
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.tape import Tape
 
-# Steps before an end are a seventh of the way to it, or somewhat less.
-_NEAR: Final = 256
+# What is zero within this part of the longest step is at its end; an orbit comes near to a divisor often.
+_NEAR: Final = Fraction(1, 1024)
 
 
-def ending(tape: Tape, point: Sequence[arb], now: Fraction, step: Fraction) -> int | None:
+def ending(tape: Tape, point: Sequence[arb], now: Fraction, longest: Fraction) -> int | None:
     """Return the step of the loads whose argument, as it goes, is zero first; None of none so near.
 
-    ``step`` is the length of the last step of a motion whose steps become ever shorter.
+    ``longest`` is the longest step of the motion so far, in its direction.
     """
     try:
-        series = Series(tape, point, now, step, 2)
+        series = Series(tape, point, now, longest * _NEAR, 2)
     except Kink:
         return None
     except Domain as end:
         return None if end.node is None else tape.written.get(end.node)
-    nearest, first = arb(_NEAR), None
+    nearest, first = ONE, None
     for i, operation in enumerate(tape.operations):
         if i in tape.written and (a := _argument(operation, series)) is not None:
             here, change = series.forward[a][:2]

@@ -346,9 +346,9 @@ class Walk:
     def _ending(self) -> str:
         """The function at which the motion ends here, and where it is written; empty of none."""
         system, now, is_later = self._system, self._course.origin + self._now, self._last >= 0
-        last = self._lengths[-1] if self._lengths else abs(self._guess)
+        longest = max(self._lengths, default=abs(self._guess))
         tape = system.pieces(now, is_later).tape
-        place = ending(tape, self._box.point, now, last if is_later else -last)
+        place = ending(tape, self._box.point, now, longest if is_later else -longest)
         return "" if place is None or system.told is None else system.told(now, is_later, place)
 
 
