@@ -119,7 +119,7 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
             continue
         piece = (answer.begun_at(begin) if begin or is_off else answer).at(np.s_[: end - begin])
         piece = replace(piece, file=Motion(piece.file.v, None, None))
-        motion = whole(piece, piece.right, has_frame=False)
+        motion = whole(piece, piece.right)
         if motion is None:
             return None
         for name in leaves:
