@@ -107,7 +107,7 @@ def parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """What changed scenes leave of an answer, by which candidates are compared."""
+    """The defects of changed scenes beside an answer, by which candidates are compared."""
 
     answer: Answer
 

@@ -17,11 +17,17 @@ from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
-from taylor_verify.judge.causes.clock_factor import by_factor
 from taylor_verify.judge.causes.course import Courses
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.fault import Fault, Sizes, both
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family, across, gauss_newton, orthonormal
+from taylor_verify.judge.causes.fit import (
+    DIFFERENCE,
+    Family,
+    across,
+    by_factor,
+    gauss_newton,
+    orthonormal,
+)
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole

@@ -226,7 +226,7 @@ class Equations:
     def price(self, components: int, states: int) -> float:
         """Return the work of the rates of so many states: about one for each microsecond."""
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
-        each = 0.012 * components
+        each = (0.016 if self._reads_frame else 0.008) * components
         if self.acting is not None:
             once, each = once + _TEXTS * (1 + bool(self.own)), each + _TEXTS_OF_ONE
         return once + each * states

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Evidence
+from taylor_verify.judge.causes.arcs import Arcs, Evidence
 from taylor_verify.judge.causes.equations import Changes
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.proof import CAPS
 
 # Part of each number's scale for a central difference.
 DIFFERENCE: Final = 1e-4
@@ -26,6 +27,12 @@ _GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
 # Defects above this are measured with the steps of derivatives.
 _COARSE: Final = 1e-3
+# Factors of a clock that is not nearly right.
+_CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
+_FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
+# Beyond this factor arcs are so long that they take more steps, up to a limit.
+_LONG: Final = 3
+_MOST_STEPS: Final = 128
 
 
 @dataclass(frozen=True)
@@ -98,6 +105,26 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
     if steps != evidence.steps:
         size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
     return Fitted(numbers, size)
+
+
+def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:
+    """Return the fit of a clock from the best factor of the grid, if that is better."""
+    if best.size < CAPS[1] * arcs.size:
+        return best
+    tried = [
+        (float(np.linalg.norm(defects)), factor)
+        for factors, steps in ((_CLOCKS, max(arcs.steps, 4)), (_FRAMES, 32))
+        for defects, factor in zip(
+            arcs.defects([{"clock": f} for f in factors], steps), factors, strict=True
+        )
+    ]
+    size, factor = min((each for each in tried if np.isfinite(each[0])), default=(np.inf, 1.0))
+    if not size < best.size:
+        return best
+    if factor > _LONG:
+        arcs = replace(arcs, steps_given=min(_MOST_STEPS, int(arcs.steps * np.ceil(factor))))
+    fit = gauss_newton(arcs, family, np.array([factor]))
+    return fit if fit.size < best.size else best
 
 
 def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> list[Floats]:

@@ -41,12 +41,7 @@ def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
     return min(max(LEAVES, ROUNDINGS * answer.floor(groups)), CAPS[min(count, 1)])
 
 
-def whole(
-    answer: Answer,
-    equations: Equations,
-    stepper: Stepper | None = None,
-    has_frame: bool = True,
-) -> Motion | None:
+def whole(answer: Answer, equations: Equations, stepper: Stepper | None = None) -> Motion | None:
     """Return the motion of the equations from the start of the answer; None if it is not reached.
 
     A ``stepper`` takes the place of the flow for the moving part.
@@ -67,7 +62,7 @@ def whole(
     if not _shoot(rows, go, scale):
         return None
     q, c = (rows[:, n : n + 4] if count > n else None), None
-    if q is None and has_frame and (answer.file.q is not None or n == 6) and stepper is None:
+    if q is None and (answer.file.q is not None or n == 6) and stepper is None:
         q = _attitudes(answer, equations, rows, since, spans, steps)
     if count > n + 4:
         c = rows[:, n + 4 :]

@@ -168,12 +168,12 @@ class _Replays:
         parts, most = list[tuple[float, float]](), _MOST_IMPLICIT if method.is_implicit else _MOST
         defects, error = own
         for basis in self._beside(place):
-            seen = across(basis, error)
-            size = float(seen @ seen)
+            beyond = across(basis, error)
+            size = float(beyond @ beyond)
             if not 0 < size < np.inf:
                 continue
-            part = float(seen @ defects) / size
-            left = float(np.linalg.norm(across(basis, defects) - part * seen)) / self.arcs.size
+            part = float(beyond @ defects) / size
+            left = float(np.linalg.norm(across(basis, defects) - part * beyond)) / self.arcs.size
             if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.arcs.size:
                 parts.append((left, part))
         some = [round(_FINE / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]

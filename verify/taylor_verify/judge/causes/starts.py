@@ -119,7 +119,7 @@ def _leaves(answer: Answer, begins: list[int], is_off: bool) -> dict[str, float]
             continue
         piece = (answer.begun_at(begin) if begin or is_off else answer).at(np.s_[: end - begin])
         piece = replace(piece, file=Motion(piece.file.v, None, None))
-        motion = whole(piece, piece.right, has_frame=False)
+        motion = whole(piece, piece.right)
         if motion is None:
             return None
         for name in leaves:
@@ -149,13 +149,13 @@ def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
     is_inside = np.zeros(len(defects), dtype=bool)
     for begin, end in spans:
         is_inside[begin:end] = True
-    if np.count_nonzero(~is_inside) < right or len(spans) > _MOST_SPANS:
+    is_short = any(end - begin < _FEWEST for begin, end in spans)
+    if is_short or np.count_nonzero(~is_inside) < right or len(spans) > _MOST_SPANS:
         return []
     # The row at which a fault begins may have a little of it.
     after = min(float(np.median(defects[begin + 1 : end])) for begin, end in spans)
     is_clear = after > _STANDS_OUT * float(np.max(defects[~is_inside]))
-    is_long = all(end - begin >= _FEWEST for begin, end in spans)
-    return spans if is_clear and is_long else []
+    return spans if is_clear else []
 
 
 def piece(answer: Answer, first: int, last: int) -> Answer:

@@ -24,7 +24,6 @@ from taylor_verify.scenes.loads.tables import Kind
 
 KIND: Final = "number"
 _LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_VELOCITY: Final = re.compile(r"\b[uw][123]\b")
 _NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
 # A number below a fraction line makes the one of the other.
