@@ -70,7 +70,7 @@ def scene_page(
         else [],
         "Accuracy": [verdict_table(_ACCURACY, verdicts)],
         "Other solvers": _solvers(report.trade(scene)),
-        "Pictures": [*([_turning(scene)] if has_motion else []), *_drawings(report, pictures)],
+        "Pictures": [*([_turning(scene)] if has_motion else []), *_drawings(pictures)],
         "The arithmetic of the gates": [
             prose(condition.get("sentence", "")),
             _folded("Every bound with its terms", _gates(verdicts)),
@@ -106,11 +106,6 @@ def _turning(scene: str) -> str:
     )
 
 
-def shown(report: Report, picture: Picture, top: str) -> str:
-    """Return Markdown that shows a picture; ``top`` is the path from the page to the report's folder."""
-    return f"![{prose(picture.alt)}]({top}/scenes/{picture.stem}.svg)"
-
-
 def made_with(report: Report) -> str:
     """Return the versions and machines behind the numbers, in a sentence."""
     machines = "; ".join(
@@ -121,10 +116,10 @@ def made_with(report: Report) -> str:
     return f"Made with {'; '.join(filter(None, parts))}."
 
 
-def _drawings(report: Report, pictures: Sequence[Picture]) -> Iterator[str]:
+def _drawings(pictures: Sequence[Picture]) -> Iterator[str]:
     """Yield the static pictures of a scene; a sentence on gates follows the errors."""
     for picture in pictures:
-        yield shown(report, picture, "..")
+        yield f"![{prose(picture.alt)}](../scenes/{picture.stem}.svg)"
         if picture.stem.endswith("-errors"):
             yield _ALLOWED
 

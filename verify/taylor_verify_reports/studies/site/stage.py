@@ -29,7 +29,7 @@ PACKED: Final = ".tar.xz"
 # Parts of a drawing that its page does not need.
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
-_FOLDERS: Final = ("figures", "tables", "reference", "upstream", "upstream/engines")
+_FOLDERS: Final = ("tables", "reference", "upstream", "upstream/engines")
 # The name of a sheet, which the site has and a clone makes.
 _SHEET: Final = re.compile(r"`([\w/-]+\.csv)`")
 _INCLUDED: Final = re.compile(r"^```\{include\} (\S+)\n```$", re.MULTILINE)
