@@ -149,6 +149,11 @@ def test_attitudes_alone_name_the_cause(
     assert "of omega" not in cause.sentence
 
 
+KNOTS = """moment = ["tab", "0", "0"]
+[tables]
+tab = { times = [0, 2, 4, 6], values = [0.1, -0.05, 0.08, 0.02] }"""
+
+
 @pytest.mark.parametrize(
     ("load", "moment", "edges", "words"),
     [
@@ -166,6 +171,12 @@ def test_attitudes_alone_name_the_cause(
             lambda t, w, q: DAMPED(t, w, q) * (3 <= t < 6) + np.array([0.04, 0, 0.03]) * (t >= 6),
             (3, 6),
             ["from t = 3 to 6: damping = 0.07", "from t = 6 on: moment in body axes"],
+        ),
+        (
+            KNOTS,
+            lambda t, w, q: np.array([[0.1, -0.05, 0.08, 0.02][min(int(t / 2), 3)], 0, 0]),
+            (2, 4, 6),
+            ["up to t = 6: table tab is hold, where the scene has linear"],
         ),
     ],
 )
