@@ -31,7 +31,7 @@ JUMPS: Final[Mapping[str, Callable[[Fraction], Fraction]]] = {
     "floor": lambda a: Fraction(a // 1),
 }
 _STRENGTH: Final = {"+": 1, "-": 1, "*": 2, "/": 2, "power": 3}
-_LONGEST_TEXT: Final = 80
+_STRONGEST, _LONGEST_TEXT = 9, 80
 _ARITHMETIC: Final[Mapping[str, Callable[[Fraction, Fraction], Fraction]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
@@ -75,26 +75,34 @@ def needed(steps: Sequence[Step], places: Sequence[int]) -> list[int]:
 
 
 def text_of(steps: Sequence[Step], place: int) -> str:
-    """Return a step as text in the grammar of the scene; a long one by its function alone."""
-    step = steps[place]
+    """Return a step as text in the grammar of the scene; of long parts, dots."""
+    texts: dict[int, tuple[str, int]] = {}
+    for k in needed(steps, [place]):
+        text, strength = _text(steps[k], [texts[operand] for operand in steps[k].operands])
+        is_short = len(text) <= _LONGEST_TEXT
+        texts[k] = (text, strength) if is_short else (f"{steps[k].operation}(...)", _STRONGEST)
+    return texts[place][0]
+
+
+def _text(step: Step, operands: Sequence[tuple[str, int]]) -> tuple[str, int]:
+    """Return the text of a step from those of its operands, and how strongly it binds."""
     if step.operation in ("number", "input", "pi"):
-        return step.name or str(step.operation if step.number is None else step.number)
+        number = step.operation if step.number is None else str(step.number)
+        return step.name or number, _STRONGEST
+    strength = _STRENGTH.get(step.operation)
+    if strength is None:
+        return f"{step.operation}({', '.join(text for text, _ in operands)})", _STRONGEST
+    parts = [
+        f"({text})" if own < strength + place else text
+        for place, (text, own) in enumerate(operands)
+    ]
     if step.operation == "power":
-        return f"{_within(steps, step.operands[0], 3)}^({step.number})"
-    if step.operation not in _STRENGTH:
-        text = f"{step.operation}({', '.join(text_of(steps, k) for k in step.operands)})"
-        return text if len(text) <= _LONGEST_TEXT else f"{step.operation}(...)"
-    strength = _STRENGTH[step.operation]
-    parts = [_within(steps, k, strength + n) for n, k in enumerate(step.operands)]
+        return f"{parts[0]}^({step.number})", strength
     if step.operation == "+":
         # 4 - t, and not -t + 4.
         parts.sort(key=lambda part: part.startswith("-"))
-    return f" {step.operation} ".join(parts).replace("-1 * ", "-").replace("+ -", "- ")
-
-
-def _within(steps: Sequence[Step], place: int, strength: int) -> str:
-    text = text_of(steps, place)
-    return f"({text})" if _STRENGTH.get(steps[place].operation, 9) < strength else text
+    text = f" {step.operation} ".join(parts)
+    return text.replace("-1 * ", "-").replace("+ -", "- "), strength
 
 
 class Steps:
