@@ -108,8 +108,8 @@ def _cold_over_user(name: str) -> tuple[Side, Side]:
         import heyoka as hy
 
         hy.llvm_state.clear_memcache()
-        for kept in (compiled, driver.prepared_once):
-            kept.cache_clear()
+        for cached in (compiled, driver.prepared_once):
+            cached.cache_clear()
         with mock.patch.dict(os.environ, {CACHE_VARIABLE: folder}):
             return Taylor().solve(problem)
 

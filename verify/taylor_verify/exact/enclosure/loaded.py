@@ -69,7 +69,7 @@ class LoadedBody:
             own=self._layout.own,
             instants=loads.instants if loads.held_values else None,
             taken=self._taken,
-            told=self._told,
+            step_text=self._step_text,
         )
 
     @cached_property
@@ -128,7 +128,7 @@ class LoadedBody:
             self._tapes_from[piece.begin] = self._tapes[steps]
         return self._tapes_from[piece.begin]
 
-    def _told(self, elapsed: Fraction, is_later: bool, place: int) -> str:
+    def _step_text(self, elapsed: Fraction, is_later: bool, place: int) -> str:
         """A step of the loads as text, with the first place of the scene that needs it."""
         piece = self._loads.piece(elapsed, is_later)
         addresses = [f"body.{v}[{i}]" for v in VECTORS[self._loads.model] for i in range(3)]

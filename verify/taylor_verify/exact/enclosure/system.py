@@ -53,8 +53,8 @@ class System:
     ``begin`` makes balls of the start at a time, where that is no exact one. If values are taken there,
     ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's
     own states, behind all others. ``instants`` up to an elapsed time are those at which values are
-    ``taken``; None where no value is held. ``told`` writes a step of the loads of an elapsed time as text,
-    with its place in the scene.
+    ``taken``; None where no value is held. ``step_text`` writes a step of the loads of an elapsed time
+    as text, with its place in the scene.
     """
 
     pieces: Callable[[Fraction, bool], Piece]
@@ -66,7 +66,7 @@ class System:
     own: Mapping[str, range] = field(default_factory=dict)
     instants: Callable[[Fraction], Sequence[Instant]] | None = None
     taken: Callable[[Instant], Taken] | None = None
-    told: Callable[[Fraction, bool, int], str] | None = None
+    step_text: Callable[[Fraction, bool, int], str] | None = None
 
     def start_balls(self, time: Fraction = Fraction(0)) -> list[arb]:
         """The start in balls at the ambient precision, for a motion that begins at an elapsed time."""

@@ -349,7 +349,11 @@ class Walk:
         longest = max(self._lengths, default=abs(self._guess))
         tape = system.pieces(now, is_later).tape
         place = ending(tape, self._box.point, now, longest if is_later else -longest)
-        return "" if place is None or system.told is None else system.told(now, is_later, place)
+        return (
+            ""
+            if place is None or system.step_text is None
+            else system.step_text(now, is_later, place)
+        )
 
 
 def _larger(first: Sequence[float], second: Sequence[float]) -> tuple[float, ...]:

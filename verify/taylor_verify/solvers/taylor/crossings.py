@@ -194,8 +194,8 @@ class Lengths:
         times = self._times[: len(states)]
         with np.errstate(all="ignore"):
             values = self._values(times, list(states.T))
-        found = (np.nan_to_num(value + 0 * times) for value in values)
-        steps = dict(zip(self._places, found, strict=True))
+        numbers = (np.nan_to_num(value + 0 * times) for value in values)
+        steps = dict(zip(self._places, numbers, strict=True))
         zeros = frozenset(place for place, step in steps.items() if not step.any())
         return zeros, any(self._is_on_a_line(steps, places) for places in self._parts)
 

@@ -29,14 +29,14 @@ class Differenced:
         parameters = [float(value) for value in problem.parameters]
         self._rates = straight_line(problem.form, parameters, functions_of(np.empty(0)))
         begin, end = float(problem.begin), float(problem.times[-1])
-        self._looks = [begin + part * (end - begin) for part in _LOOKS]
+        self._early = [begin + part * (end - begin) for part in _LOOKS]
 
     def fastest(self, states: Any, times: Any = ()) -> float:
         """Return the fastest rate at all rows of an array, each at its time; infinite where not finite.
 
         A state without a time is looked at in several. The unit is radians per unit of time.
         """
-        at = times if len(times) else self._looks
+        at = times if len(times) else self._early
         rows = np.atleast_2d(np.asarray(states, dtype=float))
         rows = np.broadcast_to(rows, (len(at), rows.shape[1]))
         with np.errstate(all="ignore"):

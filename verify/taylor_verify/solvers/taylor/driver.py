@@ -191,7 +191,7 @@ def _foreseen(problem: Problem) -> float:
 
 
 class _Prepared(NamedTuple):
-    """What follows from a question: the way of the problem ``turned``, which has no kinks.
+    """The way of the problem ``turned``, which has no kinks, and all else that a question needs.
 
     ``form`` has kinks in place of lengths that have one part alone; ``vectors`` are those of its lengths.
     """
