@@ -177,7 +177,7 @@ def _write_measured(place: Path) -> None:
     HARD.write(place, hard_study())
     errors = {"omega": 1e-5, "attitude": 1e-4, "T": 1e-9}
     board = [made_up(one, errors) for one in entry_list().entry if one.name in ("cannon", "havok")]
-    write_board(place, board_with(*chain.from_iterable(board)), b"")
+    write_board(place, board_with(*chain.from_iterable(board)))
 
 
 @cache

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from taylor_verify.exact.carried import carried
+from taylor_verify.exact.euler import jacobi as tops
+from taylor_verify.exact.euler.regime import FreeSpin
+from taylor_verify.exact.gyrostat.sigma import top_rotation
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
 from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
@@ -22,6 +25,7 @@ from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, nutation_of, regime
 from taylor_verify.exact.kirchhoff.solid import is_steady, solid
+from taylor_verify.exact.kirchhoff.top import top, with_impulses
 from taylor_verify.exact.kirchhoff.turning import Turning, TurningBody
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve, curve
@@ -30,15 +34,15 @@ from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
-Subject = Nutation | Plane | Impulse | Curve
-"""The exact numbers of a case: of a body of revolution, a plane, a steady motion, Weber's curve."""
+Subject = Nutation | Plane | Impulse | FreeSpin | Curve
+"""The exact numbers of a case: of a body of revolution, a plane, a steady motion, a top, Weber's curve."""
 
 
 @dataclass(frozen=True)
 class Case:
     """A motion that has a closed form: what is left after the reductions, and its routes.
 
-    ``floats`` is that of 49 (12) to (17). Where it is None, the second is Taylor.
+    ``floats`` is that of 49 (12) to (17), or of Euler's top. Where it is None, the second is Taylor.
     """
 
     regime: str
@@ -133,6 +137,23 @@ def steady(whole: Reduced) -> Case | None:
     return Case(kind, whole, start, lambda: TurningBody(turn))
 
 
+def turning(whole: Reduced) -> Case | None:
+    """Euler's top: a body with A = p 1 and B = b 1 about some origin, or without linear impulse."""
+    reduced_top = top(whole)
+    if reduced_top is None:
+        return None
+    reduced, spin = reduced_top
+    _, start = solid(reduced.scene)
+    back = with_impulses(start, reduced.scene.track)
+    return Case(
+        spin.regime.value,
+        reduced,
+        spin,
+        lambda: carried(top_rotation(spin, start.attitude), back),
+        lambda: carried(tops.free_rotation(spin, start.attitude), back),
+    )
+
+
 def weber(whole: Reduced) -> Case | None:
     """The impulses of Weber's motion, less the common b.
 
@@ -153,4 +174,4 @@ def weber(whole: Reduced) -> Case | None:
 
 
 # Bodies of revolution and planes have words of their own for their steady motions.
-CASES: Final = (revolution, flat, steady, weber)
+CASES: Final = (revolution, flat, steady, turning, weber)

@@ -7,18 +7,24 @@ numbers of the case that the motion is, such as a period, two rates or a pitch.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, described, settled
+from taylor_verify.exact.euler import elements as tops
+from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.kirchhoff.closed import Case
+from taylor_verify.exact.kirchhoff.displaced import centred, symmetric_origin
 from taylor_verify.exact.kirchhoff.integrable import family_of
 from taylor_verify.exact.kirchhoff.plane import Plane, swing
+from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME as WEBER
 from taylor_verify.exact.kirchhoff.weber.curve import Curve
 from taylor_verify.exact.kirchhoff.weber.quotients import rates
+from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
@@ -48,6 +54,11 @@ _BALANCED: Final = (
     "The loads balance the gyroscopic terms. Not conserved: the linear impulse in space axes and the "
     "moment of the impulses turn with the body."
 )
+_TOP: Final = (
+    "What is left is Euler's top of the inertia C^-1: {y} moves as its angular momentum H, {Cy} as its "
+    "omega, and x stands still in the space of the top."
+)
+_TURNED: Final = "x turns in the body as the space of the top does: {named} need not recur."
 _STRAIGHT: Final = "speed :: length/time :: of the origin, along a straight line :: |U|"
 _SCREW: Final = """
     turn_period :: time :: one turn about the axis of the screw :: 2 pi/|Omega|
@@ -95,7 +106,8 @@ def elements(scene: Scene, solved: Case | None, kind: str, digits: int) -> Eleme
 
     unsolved = _UNSOLVED if family is None else _UNBUILT
     known = kind if solved is None else solved.regime
-    sentences = [_STORY.get(known, unsolved), _THREE if body.is_free else _BALANCED]
+    sentences = [*(_top_story(scene, solved, kind) or [_STORY.get(known, unsolved)])]
+    sentences.append(_THREE if body.is_free else _BALANCED)
     if family is not None:
         name, _ = family
         sentences.append(f"Conserved too: {name}, the fourth integral of {_FAMILIES[name]}.")
@@ -109,6 +121,8 @@ def own_elements(solved: Case, working: int) -> list[Element]:
             return [*recurring(swing(place), _SWING, "x and y recur in body axes", _PENDULUM)]
         case Curve() as curve:
             return _weber_rates(curve, working)
+        case FreeSpin() as spin:
+            return [*map(_of_top, tops.orbit(spin))]
         case Impulse() as start:
             body, _ = solid(solved.reduced.scene)
             return _screw(*velocities(body, start))
@@ -123,6 +137,28 @@ def _screw(U: Vector, Omega: Vector) -> list[Element]:
     rate = mp.sqrt(mp.convert(tensors.dot(Omega, Omega)))
     advance, period = mp.convert(tensors.dot(U, Omega)) / rate, 2 * mp.pi / rate
     return described(_SCREW, (period, advance, advance * period))
+
+
+def _of_top(element: Element) -> Element:
+    """Return an element of the top in words that leave Omega and the space axes of the solid alone."""
+    meaning = element.meaning.replace("in space axes", "in its space")
+    return replace(element, meaning=f"of the top: {meaning}")
+
+
+def _top_story(scene: Scene, solved: Case | None, kind: str) -> list[str]:
+    """Sentences on a motion in which y is that of Euler's top; none on another."""
+    if solved is None or not isinstance(solved.subject, FreeSpin):
+        return []
+    body, start = solid(scene)
+    has_x = any(start.linear)
+    y = "y about that origin" if has_x and any(symmetric_origin(body)) else "y"
+    # B is b 1 about that origin, and Omega = b x + C y.
+    has_b = any(map(any, solid(centred(Reduced(scene)).scene)[0].coupling))
+    Cy, named = ("C y", "x and Omega = b x + C y") if has_x and has_b else ("Omega = C y", "x")
+    sentences = [_TOP.format(y=y, Cy=Cy)]
+    sentences += [_TURNED.format(named=named)] if has_x else []
+    pathless = [] if kind != NO_CLOSED_FORM else ["The path of the origin has no closed form."]
+    return [*sentences, f"Of the top: {tops.story(solved.subject)}", *pathless]
 
 
 def recurring(

@@ -1,9 +1,10 @@
-"""A multiple of 1 in B, which turns the space axes and leaves x and y as they are.
+"""Multiples of 1 in B and in A, which move the space axes and leave x and y as they are.
 
 Legend: X0 = R x and Y0 = R y at the start, F = |x|; a prime marks the motion of the free body without the
 multiple, from centre' = 0.
 
-    B = B' + b 1:   R = Q R',   Q = Rot(X0, b F t),   centre = c0 + Q centre' + b int_0^t Q Y0 dt.
+    B = B' + b 1:   R = Q R',   Q = Rot(X0, b F t),   centre = c0 + Q centre' + b int_0^t Q Y0 dt,
+    A = A' + p 1:   R = R',     centre = c0 + centre' + p X0 t.
 
 Q turns space, and stands on the left. It is 1 where F = 0.
 """
@@ -49,6 +50,16 @@ def less_coupling(reduced: Reduced, b: Fraction) -> Reduced:
     return reduced.then(
         _from_zero(scene, coupling=less(body.coupling, b)), _turned(b, start), words
     )
+
+
+def less_linear(reduced: Reduced, p: Fraction) -> Reduced:
+    """Return the motion of the body with p 1 less in A."""
+    if not p:
+        return reduced
+    scene = reduced.scene
+    body, start = solid(scene)
+    words = f"less p = {float_text(p)} in A, which only drifts along the impulse"
+    return reduced.then(_from_zero(scene, linear=less(body.linear, p)), _drifted(p, start), words)
 
 
 def less(matrix: Matrix, b: Fraction) -> Matrix:
@@ -107,6 +118,21 @@ def _circle(rate_squared: Fraction, number: Number) -> Callable[[Any], tuple[Any
     root, sin = (arb.sqrt, arb.sin) if isinstance(number(Fraction(0)), arb) else (mp.sqrt, mp.sin)
     n = root(number(rate_squared))
     return lambda t: (sin(n * t) / n, 2 * (sin(n * t / 2) / n) ** 2)
+
+
+def _drifted(p: Fraction, start: Impulse) -> Back:
+    """Return the way back to a body with p 1 more in A."""
+    drift = tensors.scaled(p, tensors.apply(rotation_matrix(start.attitude), start.linear))
+
+    def back(rows: dict[str, Any], elapsed: Sequence[Time], number: Number) -> None:
+        if "centre" not in rows:
+            return
+        first, rate = _numbers(start.centre, number), _numbers(drift, number)
+        for row, t in enumerate(elapsed):
+            rows["centre"][row] = first + rows["centre"][row] + number(t) * rate
+        as_given(rows["centre"], start.centre, elapsed, number)
+
+    return back
 
 
 def _numbers(exact: Any, number: Number) -> Any:
