@@ -193,7 +193,8 @@ def test_matrices_that_are_no_rotations_are_said() -> None:
     facts = [note for note in judged.notes if "no rotation" in note or "moment acts" in note]
     assert facts[0].startswith("r11 ... r33 are no rotation: R^T R is off by 0.12 at t = 20")
     assert facts[1].startswith(
-        "no cause is proven; the rows of omega follow if from t = 0 to 20 a moment acts"
+        "no cause is proven; each row of omega follows from the row before if from "
+        "t = 0 to 20 a moment acts"
     )
     assert judged.causes == ()
 

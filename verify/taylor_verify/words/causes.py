@@ -114,8 +114,9 @@ def missing_load_line(loads: Sequence[MissingLoad]) -> str:
     some = list(dict.fromkeys(few))
     listed = "; ".join(f"t = {each.t:.6g}: {_vector(each.load)}" for each in some)
     return (
-        f"no cause is proven; the rows of {what} follow if from t = {loads[0].t:.6g} to "
-        f"{loads[-1].until:.6g} a {noun} acts (body axes) that the scene does not have: {listed}"
+        f"no cause is proven; each row of {what} follows from the row before if from "
+        f"t = {loads[0].t:.6g} to {loads[-1].until:.6g} a {noun} acts (body axes) that the scene "
+        f"does not have: {listed}"
     )
 
 

@@ -25,31 +25,30 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     """Return the keys of [body] as TOML; empty where no scene is such a motion."""
     if not changes or _NO_SCENE & set(changes):
         return ""
-    other, lines, n = right.changed(changes), list[str](), right.size
+    other, lines, n = right.changed(changes), dict[str, str](), right.size
     if "acting" in changes:
-        lines += _changed_texts(right.loads, other.loads)
+        lines |= _changed_texts(right.loads, other.loads)
     if not _is_written(other, changes):
         return ""
     if "mass" in changes:
-        key = "inertia" if n == 3 else "mass_matrix"
-        lines.append(
-            f"{key} = {_list([_list(map(number, row)) for row in _symmetric(other.mass)])}"
-        )
+        rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
+        lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
     if "rotor" in changes and np.any([right.rotor, other.rotor]):
-        lines.append(f"rotor = {_list(map(number, other.rotor))}")
+        lines["rotor"] = _list(map(number, other.rotor))
     if "damping" in changes:
-        lines.append(f"damping = {number(float(other.damping))}")
+        lines["damping"] = number(float(other.damping))
     if "extra" in changes:
+        # These have the changed texts too.
         texts = [text if _is_number(text) else f'"{text}"' for text in load_texts(other)]
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
-            lines.append(f"{key} = {_list(texts[first : first + 3])}")
-    return "; ".join(lines)
+            lines[key] = _list(texts[first : first + 3])
+    return "; ".join(f"{key} = {words}" for key, words in lines.items())
 
 
-def _changed_texts(right: Loads | None, other: Loads | None) -> list[str]:
+def _changed_texts(right: Loads | None, other: Loads | None) -> dict[str, str]:
     """Return the keys of a scene whose numbers or texts are others, each with all of its entries."""
     before, after = _entries_by_key(right), _entries_by_key(other)
-    return [f"{key} = {words}" for key, words in after.items() if before.get(key) != words]
+    return {key: words for key, words in after.items() if before.get(key) != words}
 
 
 def _entries_by_key(loads: Loads | None) -> dict[str, str]:
