@@ -43,7 +43,7 @@ from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.words.causes import with_numbers
+from taylor_verify.words.causes import sentence, with_numbers
 
 FREE, FULL, WHEELS = "euler/with-attitude", "euler/full-tensor", "euler/gyrostat"
 FORCED, FLUID, LOADED = "euler/moment-oblique", "kirchhoff/general-body", "kirchhoff/constant-loads"
@@ -225,6 +225,12 @@ def test_the_entries_that_agree_are_said_together() -> None:
     labels, right, fitted = ("M_11", "M_22", "M_33"), (1.0, 2.0, 4.0), (1.01, 2.0, 4.0 + 4e-9)
     words = "mass matrix: M_11 = 1.01 for 1 (+1 %), the other entries agree to 1e-09"
     assert with_numbers("mass matrix", labels, right, fitted) == words
+
+
+def test_an_error_that_a_cause_leaves_is_not_explained() -> None:
+    """A quantity of which the cause leaves more than half is named without a number."""
+    said = sentence("Euler", {"omega": 1e-9, "centre": 2.1}, {"omega": 1.0, "centre": 0.003})
+    assert said == "Euler; leaves 1e-09 of 1 of omega; does not explain the error of centre"
 
 
 def heavier(n: Numbers) -> None:

@@ -18,6 +18,8 @@ _MOST_DIGITS: Final = 15
 _TIMES: Final = 5
 # An entry below this part of the largest one is 0, rounded.
 _ROUNDED: Final = 1e-13
+# A larger part of an error that is left is not explained.
+_UNEXPLAINED: Final = 0.5
 # A factor so near to a whole number is one.
 _WHOLE: Final = 1e-6
 
@@ -33,10 +35,12 @@ def sentence(
 
     ``leaves`` are parts of the largest ``errors``, by quantity; ``changed`` are keys of a scene's [body].
     """
-    parts = [title]
-    if leaves:
-        left = (_left(left, errors.get(name, 1.0), name) for name, left in leaves.items())
+    parts, open_ones = [title], [name for name, left in leaves.items() if left > _UNEXPLAINED]
+    explained = {name: left for name, left in leaves.items() if name not in open_ones}
+    if explained:
+        left = (_left(left, errors.get(name, 1.0), name) for name, left in explained.items())
         parts.append(f"leaves {', '.join(left)}")
+    parts += [f"does not explain the error of {', '.join(open_ones)}"] * bool(open_ones)
     others = " | ".join(alike)
     parts += [f"not told apart from: {others}"] * bool(others)
     parts += [f"as a scene: {changed}"] * bool(changed)
