@@ -229,8 +229,8 @@ def test_the_entries_that_agree_are_said_together() -> None:
 
 def test_an_error_that_a_cause_leaves_is_not_explained() -> None:
     """A quantity of which the cause leaves more than half is named without a number."""
-    said = sentence("Euler", {"omega": 1e-9, "centre": 2.1}, {"omega": 1.0, "centre": 0.003})
-    assert said == "Euler; leaves 1e-09 of 1 of omega; does not explain the error of centre"
+    words = sentence("Euler", {"omega": 1e-9, "centre": 2.1}, {"omega": 1.0, "centre": 0.003})
+    assert words == "Euler; leaves 1e-09 of 1 of omega; does not explain the error of centre"
 
 
 def heavier(n: Numbers) -> None:

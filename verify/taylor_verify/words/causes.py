@@ -35,12 +35,13 @@ def sentence(
 
     ``leaves`` are parts of the largest ``errors``, by quantity; ``changed`` are keys of a scene's [body].
     """
-    parts, open_ones = [title], [name for name, left in leaves.items() if left > _UNEXPLAINED]
-    explained = {name: left for name, left in leaves.items() if name not in open_ones}
+    parts = [title]
+    unexplained = [name for name, left in leaves.items() if left > _UNEXPLAINED]
+    explained = {name: left for name, left in leaves.items() if left <= _UNEXPLAINED}
     if explained:
         left = (_left(left, errors.get(name, 1.0), name) for name, left in explained.items())
         parts.append(f"leaves {', '.join(left)}")
-    parts += [f"does not explain the error of {', '.join(open_ones)}"] * bool(open_ones)
+    parts += [f"does not explain the error of {', '.join(unexplained)}"] * bool(unexplained)
     others = " | ".join(alike)
     parts += [f"not told apart from: {others}"] * bool(others)
     parts += [f"as a scene: {changed}"] * bool(changed)
