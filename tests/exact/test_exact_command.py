@@ -288,7 +288,7 @@ def test_a_person_sees_the_numbers_that_a_program_reads(
 
 
 def test_the_separatrix_is_printed_at_any_time(capsys: pytest.CaptureFixture[str]) -> None:
-    """At t = 10^9 two components are e^(-3 10^8): digits in mpmath, and a bound in balls."""
+    """Two components that are e^(-3 10^8) at t = 10^9 have digits in mpmath, and a bound in balls."""
     asked = ["exact", "euler/separatrix", "--at", "1e9", "--digits", "20", "--json"]
     assert main([*asked, "--route", "mpmath"]) == 0
     (row,) = json.loads(capsys.readouterr().out)["rows"]

@@ -38,7 +38,7 @@ def rounded(value: Any) -> Any:
 
 
 def by_dlpack(value: Any) -> Any:
-    """What PyTorch makes of an object that is no tensor and no array, by its own import."""
+    """Return what PyTorch makes of an object that is no tensor and no array, by its own import."""
     assert value.__dlpack_device__() == (1, 0)
     return np.from_dlpack(value)
 
@@ -115,5 +115,5 @@ def test_exact_numbers_come_back_exact(rung: str) -> None:
 
 
 def test_more_than_a_double_stays_rational() -> None:
-    """On a precision beyond a double no number converts without a type."""
+    """No number converts without a type on a precision beyond a double."""
     assert np.asarray(problem("euler/generic", "mp237").given.initial.omega).dtype == object

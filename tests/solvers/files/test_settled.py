@@ -1,4 +1,4 @@
-"""What a file leaves open, settled by the scene's start: the place of a scalar, the zero of a clock."""
+"""The scene's start settles what a file leaves open: the place of a scalar, the zero of a clock."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def _settled(
             with ctx.workprec(bits):
                 errors = errors_of(scene, pieces, measured, until, bits)
                 worst = {m.quantity.name: _largest(m, errors) for m in measured}
-                nodes = nodes_of(scene, pieces, measured, errors)
+                nodes = nodes_of(pieces, measured, errors)
         except Coarse as reason:
             if bits > _MOST_BITS or (stuck and reason.stuck is not None):
                 raise Unsettled(reason.because or "the motion is lost before its end") from None

@@ -12,7 +12,6 @@ import numpy as np
 from taylor_verify.certify.motion import QUATERNION, Errors, Interval, Measured
 from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.records.certificate import Fault, InterpolantFinding
-from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -47,7 +46,6 @@ Nodes = Mapping[tuple[str, int], Sequence[Node]]
 
 
 def nodes_of(
-    scene: Scene,
     pieces: Pieces,
     measured: Sequence[Measured],
     errors: Mapping[tuple[str, int], Errors],

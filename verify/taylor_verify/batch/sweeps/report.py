@@ -39,8 +39,7 @@ def write_summary(
     files = {case.point: _file(rank, case) for rank, case in enumerate(summary.worst, 1)}
     summary = with_files(summary, files)
     texts = {
-        case.file: _reason(summary, case, questions) + questions.text(case.point)
-        for case in summary.worst
+        case.file: _reason(summary, case) + questions.text(case.point) for case in summary.worst
     }
     texts |= {
         "summary.md": page(summary),
@@ -124,7 +123,7 @@ def _file(rank: int, case: WorstCase) -> str:
     return f"{WORST}/{rank:02d}-{stem}.toml"
 
 
-def _reason(summary: SweepSummary, case: WorstCase, questions: Questions) -> str:
+def _reason(summary: SweepSummary, case: WorstCase) -> str:
     """Return the comment that begins the scene of a worst case."""
     size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
     drawn = f", seed {summary.seed}, {summary.points} points" if summary.seed is not None else ""

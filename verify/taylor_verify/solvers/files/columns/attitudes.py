@@ -19,7 +19,7 @@ from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.solvers.files.columns.choice import Choice
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.scalar import Start
+from taylor_verify.solvers.files.columns.scalar import Start, angles, rotations
 from taylor_verify.solvers.files.columns.selection import ATTITUDES, Selection
 from taylor_verify.solvers.files.columns.spelling import Turn
 from taylor_verify.solvers.files.made import MadeRows
@@ -51,9 +51,7 @@ class _Description(NamedTuple):
         doubles = self.rows.doubles(evenly(len(self.rows), _COMPARED))
         if self.group == "attitude":
             return doubles.reshape(-1, 3, 3)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            squares = np.sum(doubles**2, axis=1)
-            return np.moveaxis(np.array(rotation(list(doubles.T))) / squares, -1, 0)
+        return rotations(doubles)
 
 
 def one_attitude(
@@ -139,9 +137,9 @@ def _settled(
     return first, [f"{first.choice.shown} taken, with which {beside} agree{scalar}"]
 
 
-def _apart(matrices: Floats, right: Floats) -> float:
+def _apart(left: Floats, right: Floats) -> float:
     """Return the largest angle between rotations, in radians; infinite where none can be compared."""
-    sizes = np.linalg.norm((matrices - right).reshape(len(right), -1), axis=1) / np.sqrt(2)
+    sizes = angles(left, right)
     finite = sizes[np.isfinite(sizes)]
     return float(np.max(finite)) if len(finite) else inf
 

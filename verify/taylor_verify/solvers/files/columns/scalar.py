@@ -46,11 +46,11 @@ class Start(NamedTuple):
     def fitting(self, readings: Sequence[Rows], near: float) -> list[int]:
         """Return the numbers of the readings that fit, best one where the turn tells them apart."""
         places = [self.row, self.row + 1] if self.turn is not None else [self.row]
-        frames = [[matrix(row) for row in reading.doubles(places)] for reading in readings]
-        fit = [k for k, each in enumerate(frames) if angle(each[0], self.attitude) <= near]
+        frames = [rotations(reading.doubles(places)) for reading in readings]
+        fit = [k for k, each in enumerate(frames) if angles(each[0], self.attitude) <= near]
         if len(fit) < len(readings) or self.turn is None:
             return fit
-        errors = [angle(first.T @ second, self.turn) for first, second in frames]
+        errors = [angles(first.T @ second, self.turn) for first, second in frames]
         best = int(np.argmin(errors))
         is_clear = all(_NEARER * errors[best] <= errors[k] for k in fit if k != best)
         return [best] if is_clear else fit
@@ -63,14 +63,20 @@ def _turn(vector: Sequence[Any]) -> Floats | None:
     return matrix(FORMS["rotvec"].quaternion(vector))
 
 
-def matrix(q: Sequence[Any]) -> Floats:
-    """Return the rotation of a quaternion of any length, scalar first; NaN for zero."""
-    doubles = np.array([float(part) for part in q])
+def rotations(quaternions: Floats) -> Floats:
+    """Return the rotations (n, 3, 3) of quaternions (n, 4) of any length, scalar first; NaN for zero."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        frame: Floats = np.array(rotation(list(doubles))) / np.sum(doubles**2)
-    return frame
+        squares = np.sum(quaternions**2, axis=1)
+        return np.moveaxis(np.array(rotation(list(quaternions.T))) / squares, -1, 0)
 
 
-def angle(left: Floats, right: Floats) -> float:
-    """Return the angle between two rotations that are near to each other, in radians."""
-    return float(np.linalg.norm(left - right) / np.sqrt(2))
+def matrix(q: Sequence[Any]) -> Floats:
+    """Return the rotation of one quaternion, as `rotations` does."""
+    one: Floats = rotations(np.array([[float(part) for part in q]]))[0]
+    return one
+
+
+def angles(left: Floats, right: Floats) -> Floats:
+    """Return the angle between each two rotations that are near to each other, in radians."""
+    sizes: Floats = np.linalg.norm(left - right, axis=(-2, -1)) / np.sqrt(2)
+    return sizes
