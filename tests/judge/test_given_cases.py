@@ -17,7 +17,10 @@ from builders.wrong_dynamics import failure
 import taylor_verify
 from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.basis import coriolis_of
+from taylor_verify.judge.causes.changed_scene import changed_scene
 from taylor_verify.judge.causes.material import material_of_file
+from taylor_verify.judge.causes.written_numbers import numbers
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.numbers.precision import rung
@@ -174,6 +177,19 @@ def test_the_changed_scene_moves_as_the_file(name: str, scene: str) -> None:
     text = changed(sentence, (CASES / f"{scene}.toml").read_text())
     answer = compared(name, read_scene(text, scene), STATES)
     assert max(answer.worst.values()) < 1e-6
+
+
+def test_a_key_that_two_faults_change_is_printed_once() -> None:
+    """One force and one couple have the faults of a load's text and of the Coriolis terms."""
+    text = (CASES / "bluerov.toml").read_text()
+    dragged = text.replace("[body]\n", '[body]\nforce = ["-4*u1", 0, 0]\n')
+    right = compared("br_linear_drag", read_scene(dragged, "dragged"), STATES).right
+    assert right.loads is not None
+    first = numbers(right.loads)[0]
+    changes = first.changes(right, np.array([2 * first.value]))
+    changes["extra"] = right.basis.factors(products=coriolis_of(right.mass))
+    keys = [line.partition(" = ")[0] for line in changed_scene(right, changes).split("; ")]
+    assert sorted(keys) == ["couple", "force"]
 
 
 def test_the_changed_scene_passes(tmp_path: Path) -> None:
