@@ -19,9 +19,9 @@ from taylor_verify.models.kirchhoff import (
     kirchhoff_equations,
 )
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
+from taylor_verify.models.units import Units, binary, largest, root, size
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import Rung, power_of_two
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -77,16 +77,7 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
 
 def _spun_up(energy: Matrix, state: Vector, angular: Fraction) -> Fraction:
     """Return a power of two near |y| for a motion with all its energy in the largest entry of C."""
-    terms = [
-        (a, entry, b)
-        for a, row in zip(state, energy, strict=True)
-        for b, entry in zip(state, row, strict=True)
-    ]
-    exponent = exponent_of_sum([term for term in terms if all(term)], angular)
-    if exponent is not None:
-        return power_of_two(exponent // 2)
-    doubled = sum((a * entry * b for a, entry, b in terms), Fraction(0))
-    return root(doubled / angular) if doubled else Fraction(0)
+    return root(tensors.dot(state, tensors.apply(energy, state)) / angular)
 
 
 def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:

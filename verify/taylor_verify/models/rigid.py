@@ -13,7 +13,7 @@ from taylor_verify.models.choice import Choice, Numbers
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equations
 from taylor_verify.models.form import Equations
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, exponent_of_sum, largest, root, size
+from taylor_verify.models.units import Units, binary, largest, root, size
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung, floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -75,22 +75,13 @@ def _nutation(K: Matrix, H: Vector) -> Fraction:
     The trace of J = [H]x K - [K H]x vanishes, so that its eigenvalues are the roots of
     z^3 + s z - d with s = -tr(J^2)/2, d = det J: not above twice the larger of |s|^(1/2), |d|^(1/3).
     """
-    if tensors.is_diagonal(K):
-        # Row 1 of J is (0, D1 H3, D1 H2), and so on: s = -sum D2 D3 H1^2, d = 2 D1 D2 D3 H1 H2 H3.
-        D1, D2, D3 = K[2][2] - K[1][1], K[0][0] - K[2][2], K[1][1] - K[0][0]
-        H1, H2, H3 = H
-        squared = exponent_of_sum([(D2, D3, H1, H1), (D3, D1, H2, H2), (D1, D2, H3, H3)])
-        cubed = exponent_of_sum([(Fraction(2), D1, D2, D3, H1, H2, H3)])
-        if squared is not None and cubed is not None:
-            return power_of_two(max(squared // 2, cubed // 3))
     swept, turned = (
         tensors.product(tensors.cross_matrix(H), K),
         tensors.cross_matrix(tensors.apply(K, H)),
     )
     d, s, *_ = tensors.characteristic(tuple(map(tensors.minus, swept, turned)))
-    by_s = root(abs(s)) if s else Fraction(0)
     by_d = power_of_two(floor_log2(abs(d)) // 3) if d else Fraction(0)
-    return max(by_s, by_d)
+    return max(root(abs(s)), by_d)
 
 
 def chosen_equations(numbers: Numbers, rung: Rung) -> Choice:

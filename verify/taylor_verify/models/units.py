@@ -10,20 +10,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import frexp, prod
-from typing import Final
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
-
-# Relative error bound of sums of some products of doubles that were rounded once each.
-_DOUBTFUL: Final = 2.0**-40
-# A sum smaller than this part of its terms is too uncertain, because of rounding and underflow.
-_LEFT: Final = 2.0**-20
-_TINY, _HUGE = 1e-200, 1e200
-_ONE: Final = Fraction(1)
 
 
 @dataclass(frozen=True)
@@ -93,43 +84,17 @@ def _exponent(power: Fraction) -> int:
 
 def largest(matrix: Iterable[Vector]) -> Fraction:
     """Return the largest entry."""
-    entries = [entry for row in matrix for entry in row]
-    try:
-        sizes = [abs(float(entry)) for entry in entries]
-    except OverflowError:
-        return max(map(abs, entries))
-    least = max(sizes) * (1 - _DOUBTFUL)
-    return max(abs(entry) for entry, size in zip(entries, sizes, strict=True) if size >= least)
+    return max(abs(entry) for row in matrix for entry in row)
 
 
 def size(vector: Vector) -> Fraction:
     """Return a power of two within a factor of two of the norm; 0 for the zero vector."""
-    exponent = exponent_of_sum((entry, entry) for entry in vector)
-    if exponent is not None:
-        return power_of_two(exponent // 2)
-    squared = tensors.dot(vector, vector)
-    return root(squared) if squared else Fraction(0)
-
-
-def exponent_of_sum(products: Iterable[Vector], over: Fraction = _ONE) -> int | None:
-    """Return the exponent of a sum of products over a number: the largest e with 2^e <= |sum / number|.
-
-    None if doubles cannot decide; doubles are tried first, because rationals are expensive.
-    """
-    try:
-        terms = [prod(map(float, factors)) / float(over) for factors in products]
-    except (OverflowError, ZeroDivisionError):
-        return None
-    total, beyond = abs(sum(terms)), sum(map(abs, terms)) * _DOUBTFUL
-    if not _TINY < beyond <= total * _DOUBTFUL / _LEFT < _HUGE:
-        return None
-    exponent = frexp(total - beyond)[1] - 1
-    return exponent if frexp(total + beyond)[1] - 1 == exponent else None
+    return root(tensors.dot(vector, vector))
 
 
 def root(squared: Fraction) -> Fraction:
-    """Return a power of two within a factor of two of the square root."""
-    return power_of_two(floor_log2(squared) // 2)
+    """Return a power of two within a factor of two of the square root; 0 for 0."""
+    return power_of_two(floor_log2(squared) // 2) if squared else Fraction(0)
 
 
 def binary(value: Fraction) -> Fraction:

@@ -16,7 +16,6 @@ Vector = tuple[Fraction, ...]
 Matrix = tuple[Vector, ...]
 
 _ZERO = Fraction(0)
-_TINY, _HUGE, _FAR_ABOVE_ROUNDING = 1e-200, 1e200, 2.0**-40
 ZERO_VECTOR: Vector = (_ZERO,) * 3
 ZERO_MATRIX: Matrix = (ZERO_VECTOR,) * 3
 
@@ -106,38 +105,8 @@ def is_positive_definite(matrix: Matrix) -> bool:
     """
     if is_diagonal(matrix):
         return all(row[i] > 0 for i, row in enumerate(matrix))
-    if _has_factor(matrix):
-        return True
     coefficients = characteristic(matrix)
     return all(a * b < 0 for a, b in pairwise(coefficients))
-
-
-def _has_factor(matrix: Matrix) -> bool:
-    """Return True if Cholesky's method in doubles ends for A - c: A is then positive definite.
-
-    The rounding of the method, and that of the entries to doubles, changes A by less than 2 n^2 u trace A
-    (S. M. Rump, Verification of positive definiteness, BIT 46, 2006), and c is far above that.
-    """
-    try:
-        left = [[float(entry) for entry in row] for row in matrix]
-    except OverflowError:
-        return False
-    size = len(left)
-    trace = sum(left[i][i] for i in range(size))
-    # Between these limits a product that underflows is far below c.
-    if not _TINY < trace < _HUGE:
-        return False
-    for i in range(size):
-        left[i][i] -= trace * _FAR_ABOVE_ROUNDING
-    for k in range(size):
-        pivot = left[k][k]
-        if not pivot > 0:
-            return False
-        for i in range(k + 1, size):
-            factor = left[i][k] / pivot
-            for j in range(k + 1, i + 1):
-                left[i][j] -= factor * left[j][k]
-    return True
 
 
 def inverse(matrix: Matrix) -> Matrix:
