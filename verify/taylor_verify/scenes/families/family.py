@@ -10,7 +10,8 @@ from math import prod
 
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.families.distributions import Draw, Grid, number_text, with_decimals
-from taylor_verify.scenes.families.formula import Formula, NoValue
+from taylor_verify.scenes.families.formula import Formula
+from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
@@ -80,7 +81,7 @@ class Family:
             else:
                 try:
                     values[variable.path] = rule.value(values)
-                except NoValue as error:
+                except NoStep as error:
                     raise Refused([f"{error} @ {variable.path}"]) from None
         return values
 

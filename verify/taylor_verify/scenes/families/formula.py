@@ -1,40 +1,25 @@
-"""Formulas in the numbers of a family: + - * / and whole powers, exactly, and three functions.
+"""Formulas in the numbers of a family: the expressions that loads are written in, made of numbers.
 
-The functions `sqrt`, `log` (natural) and `exp` are irrational: their values are correctly rounded to 20
-significant digits, and all that is made of these is exact again.
+All is exact but what is irrational, such as sqrt(2): that is rounded to 20 significant digits, and what is
+made of it is exact again.
 """
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from decimal import Context, Decimal, InvalidOperation, Overflow
 from fractions import Fraction
-from functools import lru_cache
 from typing import Final
 
-_DIGITS: Final = Context(prec=20)
-_GUARDED: Final = Context(prec=60)
-_LONGEST: Final = 200
-_LARGEST_POWER: Final = 20
-_MOST_BITS: Final = 13_280  # 4000 digits
-_ALLOWED: Final = "a formula in numbers defined above, + - * / ** and sqrt log exp"
-_FUNCTIONS: Final[Mapping[str, Callable[[Decimal], Decimal]]] = {
-    "sqrt": _DIGITS.sqrt,
-    "log": _DIGITS.ln,
-    "exp": _DIGITS.exp,
-}
-_OPERATIONS: Final[Mapping[type[ast.operator], Callable[[Fraction, Fraction], Fraction]]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-}
+from mpmath import mp
 
+from taylor_verify.scenes.loads.grammar import Grammar, Unread
+from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
 
-class NoValue(ValueError):
-    """A formula without a value at this point; the text says what was expected and what came instead."""
+_DIGITS: Final = 20
+_WORKING: Final = 40
+_MOST_BITS: Final = 13_280
+_TOO_LONG: Final = ("numbers of at most 4000 digits", "more")
 
 
 @dataclass(frozen=True)
@@ -45,79 +30,55 @@ class Formula:
     names: frozenset[str]
 
     def value(self, numbers: Mapping[str, Fraction]) -> Fraction:
-        """Return the value for these numbers. Raises NoValue where it has none."""
-        try:
-            return _value(_parsed(self.text), self.text, numbers)
-        except ZeroDivisionError:
-            raise NoValue(f"expected a divisor that is not zero, got 0 in {self.text!r}") from None
-        except (InvalidOperation, Overflow):
-            expected = "an argument for which the function is a real number"
-            raise NoValue(f"expected {expected}, got another one in {self.text!r}") from None
+        """Return the value for these numbers. Raises NoStep where it has none."""
+        steps = _Numbers()
+        value = steps.value(_read(self.text, steps, lambda name: steps.number(numbers[name])))
+        assert value is not None
+        return value
 
 
 def formula(text: object) -> Formula:
-    """Return the formula that a text writes. Raises ValueError, whose text is what was expected."""
-    if not isinstance(text, str) or len(text) > _LONGEST:
-        raise ValueError(_ALLOWED)
+    """Return the formula that a text writes. Raises NoStep for another text."""
+    if not isinstance(text, str):
+        raise NoStep("a formula, in quotation marks", "none")
+    names: set[str] = set()
+    steps = Steps()
+
+    def named(name: str) -> int:
+        names.add(name)
+        return steps.input(name)
+
+    _read(text, steps, named)
+    return Formula(text, frozenset(names))
+
+
+def _read(text: str, steps: Steps, named: Callable[[str], int]) -> int:
+    """Return the place of a text among the steps. Raises NoStep with its first fault."""
+    # Nothing here depends on the time, on which the last two decide.
+    grammar = Grammar(steps, named, lambda *_: True, lambda *_: 0)
+    grammar.may_jump = True
     try:
-        tree = _parsed(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise ValueError(_ALLOWED) from None
-    return Formula(text, frozenset(_names(tree)))
+        return grammar.read(text)
+    except Unread:
+        fault = grammar.faults[0]
+        raise NoStep(fault.expected, f"{fault.got} in {text!r}") from None
 
 
-@lru_cache
-def _parsed(text: str) -> ast.expr:
-    return ast.parse(text, mode="eval").body
+class _Numbers(Steps):
+    """Steps of which each is a number."""
 
+    def number(self, value: Fraction) -> int:
+        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
+            raise NoStep(*_TOO_LONG)
+        return super().number(value)
 
-def _names(node: ast.expr) -> set[str]:
-    """Return the names in a node. Raises ValueError for a part that no formula may have."""
-    match node:
-        case ast.Name(id=name):
-            return {name}
-        case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
-            return set()
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
-            return _names(operand)
-        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(power))):
-            if not 0 <= power <= _LARGEST_POWER:
-                raise ValueError(f"a whole power from 0 to {_LARGEST_POWER}")
-            return _names(base)
-        case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div(), right=right):
-            return _names(left) | _names(right)
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
-            return _names(argument)
-    raise ValueError(_ALLOWED)
-
-
-def _value(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fraction:
-    """Return the value of a node. Raises NoValue for a number that no scene file could hold."""
-    value = _computed(node, text, numbers)
-    if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_BITS:
-        raise NoValue(f"expected numbers of at most 4000 digits, got more in {text!r}")
-    return value
-
-
-def _computed(node: ast.expr, text: str, numbers: Mapping[str, Fraction]) -> Fraction:
-    match node:
-        case ast.Name(id=name):
-            return numbers[name]
-        case ast.Constant():
-            # The literal as it is written: 0.1 is one tenth.
-            return Fraction((ast.get_source_segment(text, node) or "").replace("_", ""))
-        case ast.UnaryOp(op=op, operand=operand):
-            value = _value(operand, text, numbers)
-            return -value if isinstance(op, ast.USub) else value
-        case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(power))):
-            return _value(base, text, numbers) ** power
-        case ast.BinOp(left=left, op=op, right=right):
-            return _OPERATIONS[type(op)](_value(left, text, numbers), _value(right, text, numbers))
-        case ast.Call(func=ast.Name(id=name), args=[argument]):
-            exact = _value(argument, text, numbers)
-            near = _GUARDED.divide(Decimal(exact.numerator), Decimal(exact.denominator))
-            irrational = _FUNCTIONS[name](near)
-            if not irrational.is_finite():
-                raise InvalidOperation
-            return Fraction(irrational)
-    raise ValueError(_ALLOWED)
+    def _place(self, step: Step, line: tuple[Fraction, Fraction] | None = None) -> int:
+        if step.operation == "number":
+            return super()._place(step, line)
+        with mp.workdps(_WORKING):
+            operands = [mp.convert(self.value(place)) for place in step.operands]
+            exponent = [] if step.number is None else [mp.convert(step.number)]
+            value = getattr(mp, step.operation)(*operands, *exponent)
+            if value and abs(mp.mag(value)) > _MOST_BITS:
+                raise NoStep(*_TOO_LONG)
+            return self.number(Fraction(mp.nstr(value, _DIGITS)))

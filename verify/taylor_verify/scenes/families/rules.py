@@ -18,6 +18,7 @@ from taylor_verify.scenes.families.distributions import (
     rounded,
 )
 from taylor_verify.scenes.families.formula import Formula, formula
+from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.reading.table import exact_number
 
 UNIT: Final = "unit"
@@ -68,8 +69,8 @@ class _Parameters:
         """Return the formula; a name that is not among the known ones is a fault."""
         try:
             made = formula(self._value)
-        except ValueError as error:
-            self._fault(str(error))
+        except NoStep as fault:
+            self._fault(fault.expected)
             return None
         unknown = sorted(made.names.difference(known))
         for name in unknown:
