@@ -10,12 +10,12 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import Final, NamedTuple
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq_poly
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import Undecidable, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.real_roots import real_roots
+from taylor_verify.exact.real_roots import polynomial, rational, real_roots
 from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers import tensors
@@ -53,18 +53,18 @@ def _spins(free: FreeGyrostat, precision: int) -> list[tuple[arb, arb]]:
     Their mu are roots of rational polynomials: how many there are is decided exactly, and which of them are
     at the border of stability, since d|G|^2/d mu = -2 s^2/det(K - mu).
     """
-    n, determinant = free.n, _polynomial(*_determinant(free))
-    images = [_polynomial(*row) for row in zip(*_adjugate(free), strict=True)]
+    n, determinant = free.n, polynomial(*_determinant(free))
+    images = [polynomial(*row) for row in zip(*_adjugate(free), strict=True)]
     squares = sum((image * image for image in images), fmpq_poly())
-    condition = determinant * determinant * fmpq(n.numerator, n.denominator) - squares
+    condition = determinant * determinant * rational(n) - squares
     # Where K - mu is singular, but has g among its images, G is free along the axis.
     axial = determinant
     for image in images:
         axial = axial.gcd(image)
     if not free.spin.discriminant:
         double = 1 / free.spin.double_moment
-        while axial.degree() > 0 and not axial(fmpq(double.numerator, double.denominator)):
-            axial //= _polynomial(-double, Fraction(1))
+        while axial.degree() > 0 and not axial(rational(double)):
+            axial //= polynomial(-double, Fraction(1))
     tangent = axial.gcd(condition // (axial * axial))
     regular = condition
     while (common := regular.gcd(determinant)).degree() > 0:
@@ -148,8 +148,3 @@ def _value(coefficients: list[arb], mu: arb) -> arb:
     for coefficient in reversed(coefficients):
         total = total * mu + coefficient
     return total
-
-
-def _polynomial(*coefficients: Fraction) -> fmpq_poly:
-    """The polynomial of these coefficients, the constant one first."""
-    return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])

@@ -8,13 +8,13 @@ from itertools import pairwise
 from math import ceil, log2
 from typing import Any, Final
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx
 
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.kirchhoff.axes import clebsch_about
 from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.real_roots import real_roots
+from taylor_verify.exact.real_roots import polynomial, real_roots
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
@@ -121,7 +121,7 @@ def turning_points(nutation: Nutation, digits: int) -> TurningPoints:
 def _arranged(nutation: Nutation, start: Fraction, poles: tuple[bool, bool]) -> TurningPoints:
     """The roots in the order of the formulas, in balls; a start at a turning point is exactly that."""
     f, z = nutation.f, ball(nutation.z)
-    roots: list[Any] = real_roots(fmpq_poly([fmpq(*c.as_integer_ratio()) for c in reversed(f)]))
+    roots: list[Any] = real_roots(polynomial(*reversed(f)))
     lower = sum(root.mid() <= z.mid() for root in roots) - 1
     if nutation.speed == 0:
         lower = min(range(len(roots)), key=lambda k: abs(roots[k] - z).mid())

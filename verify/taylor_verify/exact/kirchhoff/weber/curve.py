@@ -25,12 +25,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, cmp_to_key
+from functools import cached_property
 from typing import Any, Final
 
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC, diagonal_family
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.kirchhoff.weber.surd import Surd, compare, roots
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
@@ -49,18 +48,6 @@ _DEGENERATE: Final = (
 )
 
 Quadratic = tuple[Fraction, Fraction, Fraction]
-
-
-@dataclass(frozen=True)
-class Point:
-    """The point u1 or u2 at the start: ``sheet`` is the sign of its w.
-
-    ``branch`` counts e1 ... e5 from 0 where the point is one of them, and w = 0.
-    """
-
-    u: Surd
-    sheet: int
-    branch: int | None
 
 
 @dataclass(frozen=True)
@@ -109,6 +96,7 @@ class Curve:
 
     @cached_property
     def B(self) -> Quadratic:
+        """B, whose first coefficient is 1."""
         return self._over(self.uhlenbeck)
 
     @cached_property
@@ -122,28 +110,15 @@ class Curve:
         return self._over(tuple(2 * x * rate / self.F2 for x, rate in pairs))
 
     @cached_property
-    def branches(self) -> tuple[Surd, ...]:
-        """e1 < ... < e5."""
-        points = [*(Surd(entry) for entry in self.a), *roots(*self.B)]
-        return tuple(sorted(points, key=cmp_to_key(compare)))
-
-    @cached_property
     def places(self) -> tuple[int, ...]:
         """The places of a_1, a_2 and a_3 among the e, counted from 0."""
-        return tuple(self.branches.index(Surd(entry)) for entry in self.a)
-
-    @cached_property
-    def points(self) -> tuple[Point, ...]:
-        """u1 and u2 at the start."""
-        _, slope, offset = self.U_rate
-        return tuple(
-            Point(
-                u,
-                -u.sign(slope, offset),
-                self.branches.index(u) if u in self.branches else None,
-            )
-            for u in roots(*self.U)
-        )
+        _, linear, constant = self.B
+        places = []
+        for z in self.a:
+            is_between = z * z + linear * z + constant < 0
+            roots = 1 if is_between else 2 * (2 * z > -linear)
+            places.append(roots + sum(other < z for other in self.a))
+        return tuple(places)
 
     @property
     def is_degenerate(self) -> bool:

@@ -12,14 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import pairwise
+from typing import NamedTuple
 
 from flint import acb, acb_mat, arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import Undecidable
+from taylor_verify.exact.balls import Undecidable, balls, sign
 from taylor_verify.exact.integral import Integrand, integral
-from taylor_verify.exact.kirchhoff.weber.curve import Curve, Point
-from taylor_verify.exact.kirchhoff.weber.surd import Surd
+from taylor_verify.exact.kirchhoff.weber.curve import Curve
+from taylor_verify.exact.real_roots import polynomial, real_roots
 from taylor_verify.numbers.irrational import ball
 
 # u1 is on the second stretch between neighbouring branch points, u2 on the fourth.
@@ -36,12 +38,31 @@ class Jacobian:
     neumann: tuple[arb, arb]
 
 
+class Point(NamedTuple):
+    """The point u1 or u2 at the start: ``sheet`` is the sign of its w, 0 at one of e1 ... e5."""
+
+    u: arb
+    sheet: int
+
+
 def branch_points(curve: Curve) -> list[arb]:
     """e1 ... e5; raises Undecidable where the balls do not come apart."""
-    e = [_ball(surd) for surd in curve.branches]
+    e = sorted([*balls(curve.a), *real_roots(polynomial(*reversed(curve.B)))], key=arb.mid)
     if not all(a < b for a, b in pairwise(e)):
         raise Undecidable("two branch points of Weber's curve share a ball")
     return e
+
+
+def points(curve: Curve) -> list[Point]:
+    """u1 and u2 at the start; raises Undecidable where a sign is open."""
+    U, both = polynomial(*reversed(curve.U)), polynomial(*reversed(curve.B))
+    for entry in curve.a:
+        both *= polynomial(-entry, Fraction(1))
+    shared = U.gcd(both)
+    _, slope, offset = map(ball, curve.U_rate)
+    begins = [Point(u, 0) for u in real_roots(shared)]
+    begins += [Point(u, -sign(slope * u + offset)) for u in real_roots(U // shared)]
+    return sorted(begins, key=lambda point: point.u.mid())
 
 
 def jacobian(curve: Curve) -> Jacobian:
@@ -57,7 +78,7 @@ def jacobian(curve: Curve) -> Jacobian:
     across = Y[0, 1].intersection(Y[1, 0])
     tau = acb_mat([[acb(0, Y[0, 0]), acb(0, across)], [acb(0, across), acb(0, Y[1, 1])]])
     phase = [arb(0), arb(0)]
-    for k, point in enumerate(curve.points):
+    for k, point in enumerate(points(curve)):
         for n, share in enumerate(_share(e, k, point, to_turns)):
             phase[n] += share
     return Jacobian(
@@ -98,11 +119,13 @@ def _integral(integrand: Integrand, angle: arb) -> arb:
 
 def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[arb, arb]:
     """The share of the point in Z; exactly nothing, or half a turn, where it is a branch point."""
-    s = OVALS[k]
-    if point.branch is not None:
-        half = arb(1) / 2 if point.branch == s + 1 else arb(0)
+    s, u = OVALS[k], point.u
+    if not point.sheet:
+        is_last = u.overlaps(e[s + 1])
+        if is_last and u.overlaps(e[s]):
+            raise Undecidable("two branch points of Weber's curve share a ball")
+        half = arb(1) / 2 if is_last else arb(0)
         return (half, arb(0)) if k == 0 else (arb(0), half)
-    u = _ball(point.u)
     if not e[s] < u < e[s + 1]:
         raise Undecidable("a point and a branch point of Weber's curve share a ball")
     angle = arb.atan2((u - e[s]).sqrt(), (e[s + 1] - u).sqrt())
@@ -112,8 +135,3 @@ def _share(e: Sequence[arb], k: int, point: Point, to_turns: arb_mat) -> tuple[a
 def _turned(matrix: arb_mat, vector: Sequence[arb]) -> tuple[arb, arb]:
     product = matrix * arb_mat([[entry] for entry in vector])
     return product[0, 0], product[1, 0]
-
-
-def _ball(surd: Surd) -> arb:
-    value: arb = surd.form(ball, arb.sqrt)
-    return value
