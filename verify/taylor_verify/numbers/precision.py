@@ -182,6 +182,15 @@ def shortest_decimal(value: Fraction, bits: int) -> str:
     return decimal_text(decimal)
 
 
+def as_decimal(value: Fraction) -> Decimal | None:
+    """Return the decimal that equals the value, without zeros at its end; None if it has no end."""
+    # A denominator of twos and fives alone has no more digits than bits behind the point.
+    digits = len(str(value.numerator)) + value.denominator.bit_length()
+    context = Context(prec=digits + 1, Emin=MIN_EMIN, Emax=MAX_EMAX)
+    exact = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return exact.normalize(context) if Fraction(exact) == value else None
+
+
 def decimal_text(number: Decimal) -> str:
     """Return a decimal as it is; a number of usual size is written without an exponent."""
     is_usual = -_USUAL_DIGITS <= number.adjusted() <= _USUAL_DIGITS

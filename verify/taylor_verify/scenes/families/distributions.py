@@ -13,6 +13,8 @@ from fractions import Fraction
 from statistics import NormalDist
 from typing import Final
 
+from taylor_verify.numbers.precision import as_decimal
+
 # Digits of what is computed before it is rounded to those that were asked for.
 _WORKING: Final = Context(prec=50)
 # Shares of 0 and 1, whose normal numbers are infinite, are moved by this and by twice this.
@@ -108,17 +110,8 @@ def number_text(value: Fraction) -> str:
     """Return a rational as a scene file writes it: a decimal where it has one, else ``"a/b"``."""
     if value.denominator == 1 and abs(value) < _WRITTEN_OUT:
         return str(value.numerator)
-    twos, fives, rest = 0, 0, value.denominator
-    while rest % 2 == 0:
-        twos, rest = twos + 1, rest // 2
-    while rest % 5 == 0:
-        fives, rest = fives + 1, rest // 5
-    if rest != 1:
-        return f'"{value}"'
-    places = max(twos, fives)
-    digits = value.numerator * 10**places // value.denominator
-    exact = Context(prec=len(str(abs(digits))) + 1)
-    return str(Decimal(digits).scaleb(-places, exact).normalize(exact)).replace("E+", "e")
+    exact = as_decimal(value)
+    return f'"{value}"' if exact is None else str(exact).replace("E+", "e")
 
 
 def with_decimals(text: str) -> str:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Collection, Mapping
-from decimal import Context, Decimal
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
 
+from taylor_verify.numbers.precision import as_decimal
 from taylor_verify.records.faults import Faults, cut, near, shown
 from taylor_verify.scenes.families.distributions import (
     DISTRIBUTIONS,
@@ -25,7 +26,7 @@ UNIT: Final = "unit"
 _GRIDS: Final[Mapping[str, Callable[..., Grid]]] = {"linspace": linspace, "logspace": logspace}
 KINDS: Final = (*DISTRIBUTIONS, "grid", *_GRIDS, "formula")
 _MOST_VALUES: Final = 100_000
-_EXACT: Final = Context(prec=60)
+_MOST_DIGITS: Final = 60
 
 Rule = Draw | Grid | Formula
 
@@ -84,7 +85,7 @@ class _Parameters:
             values = self._numbers(least=1, most=_MOST_VALUES)
             if values is None:
                 return None
-            return Grid(values) if kind == "grid" else Draw(kind, values, _EXACT.prec)
+            return Grid(values) if kind == "grid" else Draw(kind, values, _MOST_DIGITS)
         numbers = self._numbers(least=3, most=3) if kind in _GRIDS else self._numbers(2, 2)
         if numbers is None or not self._is_sound(kind, *numbers[:2]):
             return None
@@ -134,7 +135,7 @@ class _Parameters:
 
 def _decimal(value: Fraction) -> Decimal:
     """Return a rational as the decimal that it is. Raises ValueError for one that is none."""
-    near = _EXACT.divide(Decimal(value.numerator), Decimal(value.denominator))
-    if Fraction(near) != value:
-        raise ValueError(f"a decimal of at most {_EXACT.prec} digits")
-    return near
+    exact = as_decimal(value)
+    if exact is None or len(exact.as_tuple().digits) > _MOST_DIGITS:
+        raise ValueError(f"a decimal of at most {_MOST_DIGITS} digits")
+    return exact

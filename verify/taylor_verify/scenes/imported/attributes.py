@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from typing import Final
 
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import decimal_text
+from taylor_verify.numbers.precision import as_decimal, decimal_text
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Faults, shown
 from taylor_verify.scenes.imported.tree import Node
@@ -102,8 +101,5 @@ def is_true(text: str | None) -> bool:
 
 def decimal(value: Fraction) -> str | None:
     """Return the decimal that equals the number; None if it has no end."""
-    digits = len(str(value.numerator)) + value.denominator.bit_length()
-    # A denominator of twos and fives alone has no more digits than bits behind the point.
-    context = Context(prec=digits + 1, Emin=MIN_EMIN, Emax=MAX_EMAX)
-    exact = context.divide(Decimal(value.numerator), Decimal(value.denominator))
-    return decimal_text(exact.normalize(context)) if Fraction(exact) == value else None
+    exact = as_decimal(value)
+    return None if exact is None else decimal_text(exact)
