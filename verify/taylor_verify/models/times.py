@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.numbers.precision import Rung, exact_value, floor_log2, nearest, power_of_two
+from taylor_verify.numbers.precision import Rung, exact_value, floor_log2
 from taylor_verify.records.precisions import FORMATS
 from taylor_verify.scenes.instants import EquallySpaced, Instants
 from taylor_verify.scenes.motion import Clock
@@ -40,18 +40,6 @@ class TypedTimes(Instants):
         return bool((self.typed[1:] != self.typed[:-1]).all())
 
 
-class BinaryTimes(Instants):
-    """Numbers of any rung: time k is significand times 2^exponent by ``pairs[k]``, both whole."""
-
-    def __init__(self, pairs: Sequence[tuple[int, int]]) -> None:
-        super().__init__(len(pairs), lambda k: pairs[k][0] * power_of_two(pairs[k][1]))
-        self.pairs = pairs
-
-    @property
-    def are_distinct(self) -> bool:
-        return all(time != following for time, following in pairwise(self.pairs))
-
-
 def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction]:
     """Return the time since the initial state over ``unit``, a power of two, each rounded once to the rung.
 
@@ -61,19 +49,16 @@ def rounded_times(clock: Clock, unit: Fraction, rung: Rung) -> Sequence[Fraction
         a, b, d = clock.instants.over_common_denominator(clock.start)
         count, shift = len(clock.instants), -floor_log2(unit)
         largest = max(abs(a), abs(a + (count - 1) * b))
-        if _is_in_range(largest, d, shift, rung):
-            if _is_held(largest, d, rung):
-                kind = _HARDWARE[rung.name]
-                numerators = (a + b * np.arange(count, dtype=np.int64)).astype(kind)
-                return TypedTimes(np.ldexp(numerators / kind(d), shift))
-            rounded = (nearest(n, d, rung.bits) for n in range(a, a + count * b, b))
-            return BinaryTimes([(significand, e + shift) for significand, e in rounded])
+        if _is_held(largest, d, rung) and _is_in_range(largest, d, shift, rung):
+            kind = _HARDWARE[rung.name]
+            numerators = (a + b * np.arange(count, dtype=np.int64)).astype(kind)
+            return TypedTimes(np.ldexp(numerators / kind(d), shift))
     return tuple(rung.round(t / unit) for t in clock.elapsed)
 
 
 def are_distinct(times: Sequence[Fraction]) -> bool:
     """Return True if no two times are equal; they are monotonic, because rounding preserves the order."""
-    if isinstance(times, TypedTimes | BinaryTimes):
+    if isinstance(times, TypedTimes):
         return times.are_distinct
     return all(time != following for time, following in pairwise(times))
 

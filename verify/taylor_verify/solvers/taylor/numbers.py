@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import libmp
 
-from taylor_verify.models.times import BinaryTimes, TypedTimes
+from taylor_verify.models.times import TypedTimes
 from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung, exact_value, power_of_two
 from taylor_verify.solvers.solver import Lack
@@ -60,8 +60,6 @@ class Arithmetic:
         """Return the array of sample times, by the form in which they were rounded."""
         if isinstance(times, TypedTimes):
             return times.typed
-        if isinstance(times, BinaryTimes):
-            return np.array([self.scaled(m, e) for m, e in times.pairs], dtype=self.fp_type)
         return self.array(times)
 
 
