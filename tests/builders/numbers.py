@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from mpmath import libmp, mp, mpf
+from mpmath import mp, mpf
 
 from taylor_verify.exact.solution import Motion
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Matrix, Vector
 
 Array = np.ndarray[Any, Any]
@@ -29,14 +29,9 @@ def cross(a: Array, b: Array) -> Array:
     )
 
 
-def rational(value: mpf) -> Fraction:
-    """Return the exact value of an mpf; its tuple has the sign, which man_exp has not."""
-    return Fraction(*(int(part) for part in libmp.to_rational(value._mpf_)))
-
-
 def rationals(values: Array) -> Vector:
     """Return the exact values of an array of mpf, flat."""
-    return tuple(rational(value) for value in values.flat)
+    return tuple(map(exact_value, values.flat))
 
 
 def largest(values: Any) -> mpf:
@@ -56,3 +51,18 @@ def apart(one: Motion, other: Motion) -> mpf:
             size = mp.norm(list(p.flat))
             distances.append(mp.norm(list((p - q).flat)) / (size if size else 1))
     return mp.nan if any(map(mp.isnan, distances)) else max(distances)
+
+
+def overlap(one: Motion, other: Motion) -> bool:
+    """Return True if no vector or matrix differs by more than both radii, times its norm, allow."""
+    with mp.workdps(400):
+        return set(one.quantities) == set(other.quantities) and all(
+            mp.norm(list((p - q).flat)) <= _room(p, r) + _room(q, s)
+            for name, rows in one.quantities.items()
+            for p, q, r, s in zip(rows, other[name], one.radius, other.radius, strict=True)
+        )
+
+
+def _room(values: Array, radius: mpf) -> mpf:
+    """Return the radius times the largest norm that the truth can have."""
+    return radius * (mp.norm(list(values.flat)) / (1 - radius) or 1)

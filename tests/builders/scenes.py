@@ -60,6 +60,17 @@ def asked_at(name: str, *instants: Fraction | int) -> Scene:
     return replace(load(name), clock=Clock(Fraction(0), tuple(map(Fraction, instants))))
 
 
+# An attitude that is no unit quaternion, and a centre.
+FRAME: Quaternion = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
+PLACE = vector(1, -2, "1/3")
+
+
+def everything(scene: Scene) -> Scene:
+    """A scene that tracks all that its model has, from another attitude and centre."""
+    place = {} if isinstance(scene.initial, Spin) else {"centre": PLACE}
+    return replace(tracking_all(scene), initial=replace(scene.initial, attitude=FRAME, **place))
+
+
 def tracking_all(scene: Scene) -> Scene:
     """A scene with its attitude and, in a fluid, its centre."""
     track = {"attitude"} if scene.model == "euler" else {"attitude", "centre"}

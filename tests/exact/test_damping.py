@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.routes import closed_routes
+from builders.scenes import everything
 from builders.turns import by_turns
 from mpmath import mp
 
@@ -18,13 +19,11 @@ from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
-from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
-FRAME = (Fraction(1), Fraction(-2), Fraction(1, 3), Fraction(2))
-PLACE = (Fraction(1), Fraction(-2), Fraction(1, 3))
 # A scene of every regime of a rigid body and of a solid in a fluid.
 RIGID = (
     *("euler/rest", "euler/spherical", "euler/steady-middle-axis", "euler/axisymmetric"),
@@ -52,11 +51,7 @@ def damped(name: str, damping: Fraction, start: Fraction = Fraction(0)) -> Scene
     scene = replace(scene, clock=replace(scene.clock, start=start))
     if name == "kirchhoff/weber":
         return scene
-    if isinstance(scene.initial, Spin):
-        turned = replace(scene.initial, attitude=FRAME)
-        return replace(scene, track=frozenset({"attitude"}), initial=turned)
-    moved = replace(scene.initial, attitude=FRAME, centre=PLACE)
-    return replace(scene, track=frozenset({"attitude", "centre"}), initial=moved)
+    return everything(scene)
 
 
 def apart(one: Motion, other: Motion) -> Any:

@@ -18,10 +18,10 @@ from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import column
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Spin

@@ -17,9 +17,9 @@ from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import System
-from taylor_verify.exact.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import conjugate, product, rotation_matrix, rotation_rows
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from taylor_verify.cli import main
 from taylor_verify.exact.printed import decimal_text
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 

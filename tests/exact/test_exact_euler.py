@@ -9,7 +9,15 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import pytest
-from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, rotation, spinning, turned
+from builders.free_spins import (
+    OBLIQUE,
+    ON_SEPARATRIX,
+    SPINS,
+    near_separatrix,
+    rotation,
+    spinning,
+    turned,
+)
 from builders.scenes import vector
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -29,33 +37,6 @@ def as_doubles(matrix: Matrix) -> Matrix:
     """A tensor as it comes out of double precision: every entry rounded, symmetry kept."""
     return tuple(tuple(Fraction(float(entry)) for entry in row) for row in matrix)
 
-
-# J = 2, 2, 9 about an axis along (1, 2, 3), whose length is irrational.
-IRRATIONAL_AXIS: Matrix = tuple(
-    tuple(Fraction(2 * (i == j)) + Fraction((i + 1) * (j + 1), 2) for j in range(3))
-    for i in range(3)
-)
-
-ORBITS = {
-    "max-axis": spinning(vector(1, 2, 3), vector("0.3", "0.2", -1)),
-    "max-axis, w_a < 0": spinning(vector(3, 2, 1), vector("-1.3", "0.2", "-0.4")),
-    "min-axis": spinning(vector(1, 3, 2), vector("0.9", "0.1", "-0.5")),
-    "min-axis, oblique": turned(OBLIQUE, spinning(vector(5, 3, 2), vector("0.2", "-0.3", "-0.9"))),
-    "max-axis, full tensor": FreeSpin(
-        (vector(3, "0.1", "0.2"), vector("0.1", 2, "-1/3"), vector("0.2", "-1/3", 4)),
-        vector("0.3", "0.1", "-0.7"),
-    ),
-    "separatrix": ON_SEPARATRIX,
-    "separatrix, oblique": turned(OBLIQUE, ON_SEPARATRIX),
-    "axisymmetric, oblate": spinning(vector(2, 5, 2), vector(1, "-0.4", "0.2")),
-    "axisymmetric, prolate oblique": turned(
-        OBLIQUE, spinning(vector(1, 4, 4), vector(1, "0.3", "0.2"))
-    ),
-    "axisymmetric, irrational axis": FreeSpin(IRRATIONAL_AXIS, vector("0.1", "0.7", "-0.4")),
-    "spherical": spinning(vector(2, 2, 2), vector(1, 2, 3)),
-    "steady": spinning(vector(1, 2, 3), vector(0, 1, 0)),
-    "rest": spinning(vector(1, 2, 3), vector(0, 0, 0)),
-}
 
 LONG = Fraction(10) ** 12
 EXTREMES = {
@@ -91,7 +72,7 @@ EXTREMES = {
         LONG,
     ),
     # One each for what costs guard digits, so far out that no other guard could cover for it.
-    "time 1e60": (ORBITS["max-axis"], Fraction(10**60)),
+    "time 1e60": (SPINS["max-axis"], Fraction(10**60)),
     "inertia ratio 1e40": (
         turned(OBLIQUE, spinning(vector("1e40", 3, 1), vector("1e-20", 2, "0.3"))),
         Fraction(1),
@@ -108,8 +89,8 @@ EXTREMES = {
         turned(OBLIQUE, spinning(vector(3, 2, 1), vector("1e-60", 1, "1e-60"))),
         Fraction(300),
     ),
-    "axisymmetric, long": (ORBITS["axisymmetric, irrational axis"], LONG),
-    "max-axis, long": (ORBITS["max-axis, full tensor"], -LONG),
+    "axisymmetric, long": (SPINS["axisymmetric, irrational axis"], LONG),
+    "max-axis, long": (SPINS["max-axis, full tensor"], -LONG),
 }
 
 
@@ -151,18 +132,18 @@ def one_ulp(digits: int) -> mpf:
 # The regime
 
 
-@pytest.mark.parametrize("name", ORBITS)
+@pytest.mark.parametrize("name", SPINS)
 def test_regime_is_decided_exactly(name):
     """Each orbit is of the kind it was built to be, whatever axes it is described in."""
     word = name.split(",")[0]
-    assert ORBITS[name].regime == word
-    assert turned(OBLIQUE, ORBITS[name]).regime == word
+    assert SPINS[name].regime == word
+    assert turned(OBLIQUE, SPINS[name]).regime == word
 
 
 @pytest.mark.parametrize("word", [kind.value for kind in Regime])
 def test_every_regime_is_among_the_orbits_tested(word):
     """No word of the documented list is without an orbit."""
-    assert word in {spin.regime for spin in ORBITS.values()}
+    assert word in {spin.regime for spin in SPINS.values()}
 
 
 @pytest.mark.parametrize(

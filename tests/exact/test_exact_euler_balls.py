@@ -6,12 +6,14 @@ Bodies drawn at random are compared in test_two_routes.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
-from builders.free_spins import OBLIQUE, ON_SEPARATRIX, near_separatrix, spinning, turned
+from builders.free_spins import OBLIQUE, SPINS, near_separatrix, spinning, turned
+from builders.numbers import overlap
 from builders.scenes import vector
 from builders.turns import by_turns
 from flint import arb
@@ -27,10 +29,9 @@ from taylor_verify.exact.gyrostat import sigma
 from taylor_verify.exact.gyrostat.sigma import top_rotation
 from taylor_verify.exact.lattice import Lattice
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import IDENTITY, Clock, Motion, Quaternion, Spin
+from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 50
@@ -42,31 +43,6 @@ TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
 
 # Bodies, exactly
 
-
-# Every regime, about every axis and in either sense, and the borders between them.
-SPINS = {
-    "max-axis": spinning(vector(1, 2, 3), vector("0.3", "0.2", 1)),
-    "max-axis, backward": spinning(vector(3, 2, 1), vector("-1.3", "0.2", "-0.4")),
-    "max-axis, w_c < 0 at the start": spinning(vector(2, 1, 3), vector("0.2", "-0.5", -1)),
-    "max-axis, oblique": turned(OBLIQUE, spinning(vector(2, 3, 5), vector("0.2", "-0.3", "-0.9"))),
-    "min-axis": spinning(vector(1, 3, 2), vector("0.9", "0.1", "-0.5")),
-    "min-axis, backward": spinning(vector(3, 1, 2), vector("0.3", "-1", "0.4")),
-    "min-axis, oblique": turned(OBLIQUE, spinning(vector(5, 3, 2), vector("0.2", "-0.3", "-0.9"))),
-    "max-axis, w_b = 0": spinning(vector(3, 2, 1), vector(-1, 0, "-0.5")),
-    "max-axis, w_c = 0": spinning(vector(3, 2, 1), vector(1, "-0.7", 0)),
-    "min-axis, w_c = 0": spinning(vector(3, 2, 1), vector(0, "0.7", -1)),
-    "min-axis, w_c = 0, oblique": turned(OBLIQUE, spinning(vector(3, 2, 1), vector(0, "-0.7", -1))),
-    "separatrix": ON_SEPARATRIX,
-    "separatrix, backward": FreeSpin(
-        ON_SEPARATRIX.inertia, tensors.scaled(Fraction(-1), ON_SEPARATRIX.omega)
-    ),
-    "separatrix, oblique": turned(OBLIQUE, ON_SEPARATRIX),
-    "axisymmetric, oblate": spinning(vector(2, 5, 2), vector(1, "-0.4", "0.2")),
-    "axisymmetric, oblique": turned(OBLIQUE, spinning(vector(1, 4, 4), vector(1, "0.3", "0.2"))),
-    "spherical": spinning(vector(2, 2, 2), vector(1, 2, -3)),
-    "steady": spinning(vector(1, 2, 3), vector(0, "-0.8", 0)),
-    "rest": spinning(vector(1, 2, 3), vector(0, 0, 0)),
-}
 
 EXTREMES = {
     "m' ~ 1e-60": near_separatrix(Fraction(-1, 10**60)),
@@ -112,25 +88,6 @@ def scene(spin: FreeSpin, attitude: Quaternion = TILTED) -> Scene:
 
 def times(*entries: int | str | Fraction) -> list[Fraction]:
     return [Fraction(entry) for entry in entries]
-
-
-def overlap(p: Motion, q: Motion) -> bool:
-    """Whether no vector or matrix of the two differs by more than both radii allow."""
-    with mp.workdps(2 * DIGITS + 20):
-        return all(
-            _norm(x - y) <= r * _scale(x) + s * _scale(y)
-            for name in p.quantities
-            for x, y, r, s in zip(p[name], q[name], p.radius, q.radius, strict=True)
-        )
-
-
-def _norm(entries: np.ndarray[Any, Any]) -> mpf:
-    return mp.norm(list(entries.flat))
-
-
-def _scale(entries: np.ndarray[Any, Any]) -> mpf:
-    """What a radius is relative to."""
-    return _norm(entries) or mpf(1)
 
 
 def flat(rows: Any) -> list[arb]:
@@ -192,9 +149,7 @@ def radius_covers_the_error(spin: FreeSpin) -> None:
         motion = Coarse(rotation, name, spread).motion(at, 20)
         for moved in (spread, -spread):
             true = rotation.motion([t + moved for t in at], DIGITS)
-            with mp.workdps(2 * DIGITS):
-                rows = zip(motion[name], true[name], motion.radius, true.radius, strict=True)
-                assert all(_norm(x - y) <= r * _scale(x) + s * _scale(y) for x, y, r, s in rows)
+            assert overlap(motion, replace(true, quantities={name: true[name]}))
 
 
 RADIUS_SPINS = ("max-axis", "min-axis", "separatrix", "axisymmetric, oblate", "steady")

@@ -30,6 +30,7 @@ from builders.clebsch import (
     exact,
     falling,
 )
+from builders.numbers import overlap
 from builders.routes import closed_routes
 from builders.scenes import one_instant, vector
 from builders.turns import by_turns
@@ -45,12 +46,12 @@ from taylor_verify.exact.kirchhoff.regime import ELLIPTIC, turning_points
 from taylor_verify.exact.kirchhoff.space import CayleyKlein
 from taylor_verify.exact.kirchhoff.wave import Rise, SquareIntegral
 from taylor_verify.exact.kirchhoff.weierstrass import Orbit
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import CLOSED_ROUTES, solution
 from taylor_verify.exact.solution import NoClosedForm, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import exact_value
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.reading.reader import load
@@ -78,25 +79,6 @@ def scene(name: str) -> Scene:
 
 
 # The comparison.
-
-
-def overlap(a: Motion, b: Motion) -> bool:
-    """Return whether all vectors and matrices differ by no more than the two radii together."""
-    with mp.workdps(400):
-        return set(a.quantities) == set(b.quantities) and all(
-            _norm(a[name][k] - b[name][k]) <= _room(a, k, name) + _room(b, k, name)
-            for name in a.quantities
-            for k in range(len(a.radius))
-        )
-
-
-def _norm(entries: np.ndarray[Any, Any]) -> mpf:
-    return mp.norm(list(entries.flat))
-
-
-def _room(motion: Motion, k: int, name: str) -> mpf:
-    """The radius times the largest norm that the truth can have."""
-    return motion.radius[k] * (_norm(motion[name][k]) / (1 - motion.radius[k]) or 1)
 
 
 def motion_by(asked: Scene, route: str, times: Sequence[Fraction], digits: int = DIGITS) -> Motion:
@@ -137,8 +119,8 @@ def test_begins_as_it_is_told(name: str) -> None:
             with mp.workdps(DIGITS + 20):
                 for quantity, expected in stated.items():
                     exactly = np.vectorize(mp.convert, otypes=[object])(np.array(expected))
-                    room = mpf(10) ** -DIGITS * _norm(exactly)
-                    assert _norm(motion[quantity][0] - exactly) <= room
+                    room = mpf(10) ** -DIGITS * mp.norm(list(exactly.flat))
+                    assert mp.norm(list((motion[quantity][0] - exactly).flat)) <= room
 
 
 @of_each_regime

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.numbers import largest, matrix, rational
+from builders.numbers import largest, matrix
 from builders.scenes import GENERAL, LOADED, MOMENT, OMEGA, QUATERNION, TENSOR, one_instant, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution, arcs
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector, diagonal, scaled
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
@@ -105,8 +106,8 @@ def test_a_restarted_motion_continues(span: Fraction) -> None:
     scene = kirchhoff(LOADED)
     whole = TaylorSolution(scene).motion([Fraction(5, 2), Fraction(5, 2) + span], 50)
     middle = Impulse(
-        tuple(rational(entry) for entry in whole["linear_impulse"][0]),
-        tuple(rational(entry) for entry in whole["angular_impulse"][0]),
+        tuple(exact_value(entry) for entry in whole["linear_impulse"][0]),
+        tuple(exact_value(entry) for entry in whole["angular_impulse"][0]),
     )
     rest = arcs(scene, [middle], [span], 45)
     with mp.workdps(60):

@@ -13,10 +13,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.attitudes import in_form
 from taylor_verify.exact.printed import document
-from taylor_verify.exact.rotation import rotation_rows
 from taylor_verify.exact.route import solution
+from taylor_verify.numbers.rotation import rotation_matrix, rotation_rows
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.turns import AXES, Turn, matrix, product
+from taylor_verify.scenes.turns import AXES, Turn, product
 
 TIMES = [(text, Fraction(text)) for text in ("0", "1.5", "-7", "60")]
 
@@ -32,7 +32,7 @@ def printed(form: str) -> tuple[Any, ...]:
 def from_angles(angles: Any) -> Any:
     axes = reversed(AXES)
     turns = [Turn(axis, Fraction(angle)) for axis, angle in zip(axes, angles, strict=True)]
-    R = np.array(matrix(product(turns)), dtype=object)
+    R = np.array(rotation_matrix(product(turns)), dtype=object)
     return np.vectorize(lambda entry: entry.near(), otypes=[object])(R)
 
 

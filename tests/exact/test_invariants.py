@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.numbers import largest, rational
+from builders.numbers import largest
 from builders.scenes import (
     CLEBSCH,
     COUPLE,
@@ -25,6 +25,7 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.invariants import Invariant, invariants
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
@@ -127,7 +128,7 @@ def assert_balance(scene: Scene, name: str, rate: Callable[[Motion], Array]) -> 
     """Q(1) - Q(0) is the integral of the rate over [0, 1]."""
     with mp.workdps(40):
         nodes, weights = legendre(28)
-        inner = sampled(scene, [rational((1 + node) / 2) for node in nodes], 30)
+        inner = sampled(scene, [exact_value((1 + node) / 2) for node in nodes], 30)
         ends = sampled(scene, [Fraction(0), Fraction(1)], 30)
         value = named(scene)[name].value(ends)
         integral = np.array(weights) @ rate(inner) / 2

@@ -24,13 +24,13 @@ from taylor_verify.exact.kirchhoff.displaced import about, centred, moved, symme
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Number, Time
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

@@ -17,7 +17,6 @@ from builders.routes import closed_routes
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
-from taylor_verify.exact import rotation
 from taylor_verify.exact.elliptic import Landen
 from taylor_verify.exact.euler import fixed_axis, jacobi
 from taylor_verify.exact.euler import orbit as euler_orbit
@@ -29,6 +28,7 @@ from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
+from taylor_verify.numbers import rotation
 from taylor_verify.scenes.motion import Motion, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene

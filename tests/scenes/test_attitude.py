@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.scenes.turns import matrix
 
 SCENE = """
 title = "Attitude"
@@ -32,7 +32,7 @@ samples = 2
 
 def turned(attitude: str) -> Matrix:
     q = read(SCENE.format(attitude=attitude), "attitude").initial.attitude
-    return matrix(q)
+    return rotation_matrix(q)
 
 
 def rotation(rows: Sequence[Sequence[Fraction]]) -> Rotation:

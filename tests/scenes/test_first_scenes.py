@@ -9,11 +9,11 @@ from itertools import permutations
 import pytest
 
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import IDENTITY, Quaternion, Spin
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.turns import matrix
 
 # A tenth of omega is told from it in any file.
 VISIBLE = Fraction(1, 10)
@@ -41,7 +41,7 @@ def test_the_first_scene_has_a_full_tensor_and_a_unit_quaternion() -> None:
     inertia, omega, q = start()
     assert all(flat(inertia) + omega + q)
     assert tensors.dot(q, q) == 1
-    assert all(flat(matrix(q)))
+    assert all(flat(rotation_matrix(q)))
 
 
 MISTAKES: dict[str, Callable[[Quaternion], Quaternion]] = {
@@ -58,17 +58,17 @@ def test_a_mistaken_quaternion_is_another_attitude_in_the_first_row(
 ) -> None:
     """The conjugate, either order of the components and no attitude at all show at once."""
     _, _, q = start()
-    assert distance(flat(matrix(mistake(q))), flat(matrix(q))) > VISIBLE
+    assert distance(flat(rotation_matrix(mistake(q))), flat(rotation_matrix(q))) > VISIBLE
 
 
 def test_axes_are_told_apart_in_the_first_row() -> None:
     """omega in space axes, by R or its transpose, and in permuted axes is another vector at the start;
     from the identity attitude the first of these is the same one."""
     _, omega, q = start()
-    R = matrix(q)
+    R = rotation_matrix(q)
     assert distance(tensors.apply(R, omega), omega) > VISIBLE
     assert distance(tensors.apply(tensors.transpose(R), omega), omega) > VISIBLE
-    assert tensors.apply(matrix(IDENTITY), omega) == omega
+    assert tensors.apply(rotation_matrix(IDENTITY), omega) == omega
     for order in permutations(range(3)):
         permuted = tuple(omega[i] for i in order)
         assert order == (0, 1, 2) or distance(permuted, omega) > VISIBLE
@@ -96,7 +96,7 @@ def acceleration(inertia: Matrix, omega: Vector) -> Vector:
 def test_the_heading_of_the_vehicle_is_what_its_comment_says() -> None:
     """(4 + 2k) is a turn about axis 3 with cosine 0.6 and sine 0.8: 53 degrees."""
     q = load("kirchhoff/auv-turn").initial.attitude
-    assert matrix(q) == (
+    assert rotation_matrix(q) == (
         (Fraction(3, 5), Fraction(-4, 5), 0),
         (Fraction(4, 5), Fraction(3, 5), 0),
         (0, 0, 1),

@@ -16,11 +16,11 @@ from mpmath import mp
 
 from taylor_verify.cli import main
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.markup import DEEPEST
 from taylor_verify.run import run
-from taylor_verify.scenes import turns
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.imported import import_scene
 from taylor_verify.scenes.imported.tree import MOST_BYTES, MOST_ELEMENTS
@@ -307,7 +307,7 @@ QUATERNIONS: list[Quaternion] = [
 @pytest.mark.parametrize("q", QUATERNIONS)
 def test_the_matrix_of_a_quaternion_is_orthogonal_exactly(q: Quaternion) -> None:
     """R R^T = 1 and R keeps the axis, for a quaternion of any length."""
-    R = turns.matrix(q)
+    R = rotation_matrix(q)
     assert tensors.product(R, tensors.transpose(R)) == LINK_AXES
     assert tensors.apply(R, q[1:]) == q[1:]
     assert tensors.dot(R[0], tensors.cross(R[1], R[2])) == 1

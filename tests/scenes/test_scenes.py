@@ -8,6 +8,7 @@ from hashlib import sha256
 from itertools import pairwise, permutations
 
 import pytest
+from builders.free_spins import rotation
 from builders.scenes import remus_inertia
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,7 +19,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
-from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
@@ -153,25 +154,9 @@ def test_the_triangle_inequality_is_decided_in_any_axes(
 ) -> None:
     """Turned by any rational rotation a tensor gives the answer of its principal moments, the flat
     plate, which just obeys, included."""
-    turned = rotated(tensors.diagonal(moments), q)
+    R = rotation(*q)
+    turned = tensors.product(tensors.product(R, tensors.diagonal(moments)), tensors.transpose(R))
     assert obeys_triangle_inequality(turned) is has_real_moments(*moments)
-
-
-def rotated(tensor: Matrix, q: tuple[int, int, int, int]) -> Matrix:
-    """R I R^T for the rotation of an integer quaternion."""
-    s, *v = (Fraction(entry) for entry in q)
-    norm = s * s + sum(entry * entry for entry in v)
-    rotation = tensors.transpose(
-        tuple(turned(e, s, tuple(v), norm) for e in tensors.diagonal((1, 1, 1)))
-    )
-    return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
-
-
-def turned(e: Vector, s: Fraction, v: Vector, norm: Fraction) -> Vector:
-    """q e q^-1 = e + 2 (s v x e + v x (v x e)) / |q|^2."""
-    once = tensors.cross(v, e)
-    both = tensors.plus(tensors.scaled(s, once), tensors.cross(v, once))
-    return tensors.plus(e, tensors.scaled(2 / norm, both))
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -348,19 +333,13 @@ def test_the_separatrix_is_exact(name: str, middle: Fraction) -> None:
 def roots_below(inertia: Matrix, moment: Fraction) -> tuple[int, int]:
     """How many principal moments lie below this one, and how many are equal to it.
 
-    Read off the signs of the characteristic polynomial of I - moment, whose roots are real
-    (Descartes' rule is then exact).
+    By the signs of the polynomial of I - moment, whose roots are real: Descartes' rule is then exact.
     """
-    a, b, c = (tuple(inertia[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3))
-    trace = a[0] + b[1] + c[2]
-    pairs = ((0, 1), (1, 2), (2, 0))
-    rows = (a, b, c)
-    minors = sum(rows[i][i] * rows[j][j] - rows[i][j] ** 2 for i, j in pairs)
-    determinant = tensors.dot(a, tensors.cross(b, c))
-    # det(I - moment + s) = s^3 + trace s^2 + minors s + determinant has the roots moment - J.
-    coefficients = [Fraction(1), trace, minors, determinant]
-    equal = next(k for k, entry in enumerate(reversed(coefficients)) if entry != 0)
-    return changes([entry for entry in coefficients if entry != 0]), equal
+    shifted = map(tensors.minus, inertia, tensors.diagonal((moment,) * 3))
+    signs = list(tensors.characteristic(tuple(shifted)))
+    equal = next(k for k, entry in enumerate(signs) if entry)
+    above = sum(a * b < 0 for a, b in pairwise([entry for entry in signs if entry]))
+    return 3 - equal - above, equal
 
 
 def is_exact_on_every_rung(value: Fraction) -> bool:
@@ -465,10 +444,6 @@ def clebsch(scene: Scene) -> Clebsch:
     assert isinstance(scene.body, ImmersedBody)
     assert scene.body.clebsch is not None
     return scene.body.clebsch
-
-
-def changes(signs: list[Fraction]) -> int:
-    return sum(a * b < 0 for a, b in pairwise(signs))
 
 
 def test_a_path_is_a_path_and_a_name_a_name() -> None:

@@ -16,9 +16,9 @@ from builders.trajectories import columns_at, conjugate
 import taylor_verify
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.velocities import velocities
+from taylor_verify.numbers import rotation
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.turns import times
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats import ccsds
 from taylor_verify.solvers.files.formats.column import ELEMENTS
@@ -220,7 +220,7 @@ def test_euler_angles_turn_a_into_b(frame: str, sign: int, tmp_path: Path) -> No
     half, quarter = np.sqrt(0.5), np.radians(15)
     about_z, about_x = (half, 0, 0, sign * half), (np.cos(quarter), -sign * np.sin(quarter), 0, 0)
     first, second = (about_z, about_x)[::sign]
-    assert np.allclose(np.array(q, float), times(first, second), rtol=0, atol=1e-15)
+    assert np.allclose(np.array(q, float), rotation.product(first, second), rtol=0, atol=1e-15)
 
 
 ORBIT = """CCSDS_OEM_VERS = 2.0

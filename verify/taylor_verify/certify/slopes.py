@@ -12,8 +12,8 @@ from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.event_times import system
-from taylor_verify.exact.rotation import product
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.rotation import product
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.loads.states import Held

@@ -9,8 +9,8 @@ from flint import ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Quaternion
 
 _SPARE_BITS: Final = 16

@@ -37,3 +37,8 @@ class Cubic(NamedTuple):
     def discriminant(self) -> Fraction:
         """Delta, which is zero where two eigenvalues are equal."""
         return (4 * self.spread**3 - self.skewness**2) / 27
+
+    @property
+    def double_root(self) -> Fraction:
+        """The eigenvalue that is repeated, where one alone is: it is rational."""
+        return (self.trace * self.minors - 9 * self.determinant) / (2 * self.spread)

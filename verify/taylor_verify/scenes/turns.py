@@ -1,4 +1,4 @@
-"""Rotations by angles: quaternions of any length, scalar first, and their exact matrices.
+"""Rotations by angles, as quaternions of any length, scalar first.
 
 The sine and cosine of a rational angle are irrational. But a quaternion may have any length, and that of an
 angle is (1, c v) with c the tangent of half the angle over the length of the axis v: one irrational number
@@ -18,7 +18,7 @@ from typing import Any, Final, NamedTuple, final
 
 from flint import arb
 
-from taylor_verify.numbers import tensors
+from taylor_verify.numbers import rotation, tensors
 from taylor_verify.numbers.irrational import PI, Constant, Irrational, ball, generator
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -87,7 +87,7 @@ def product(turns: Iterable[Turn]) -> tuple[Any, ...]:
 
     Each turn is about an axis that moves along. The sign is that of each one's cos(angle/2), sin(angle/2).
     """
-    whole: Sequence[Any] = reduce(times, map(_quaternion, turns))
+    whole: Sequence[Any] = reduce(rotation.product, map(_quaternion, turns))
     return tuple(whole)
 
 
@@ -108,25 +108,12 @@ def roll_pitch_yaw(angles: Vector, degrees: bool = False) -> Quaternion:
     return combined(Turn(axis, angle, degrees) for axis, angle in pairs)
 
 
-def matrix(q: Quaternion) -> Matrix:
-    """Return R of v = R v', exactly, for a quaternion of any length but zero."""
-    s, *vector = q
-    v = tuple(vector)
-    square = s * s + tensors.dot(v, v)
-    columns = []
-    for e in AXES:
-        once = tensors.cross(v, e)
-        both = tensors.plus(tensors.scaled(s, once), tensors.cross(v, once))
-        columns.append(tensors.plus(e, tensors.scaled(2 / square, both)))
-    return tensors.transpose(tuple(columns))
-
-
 def turned(tensor: Matrix, q: Quaternion) -> Matrix:
     """Return R I R^T, the components of a tensor in the axes that the turn leads to."""
     if not any(q[1:]):
         return tensor
-    rotation = matrix(q)
-    return tensors.product(tensors.product(rotation, tensor), tensors.transpose(rotation))
+    R = rotation.rotation_matrix(q)
+    return tensors.product(tensors.product(R, tensor), tensors.transpose(R))
 
 
 def remarks_on(name: str, angles: Vector, degrees: bool = False) -> tuple[str, ...]:
@@ -183,14 +170,3 @@ def _tangent(turn: Turn) -> Any:
 
 def _near(number: Any) -> Fraction:
     return number.near() if isinstance(number, Irrational) else number
-
-
-def times(a: Sequence[Any], b: Sequence[Any]) -> Sequence[Any]:
-    """Return the product of two quaternions, scalar first, in any arithmetic."""
-    (s, x, y, z), (t, u, v, w) = a, b
-    return (
-        s * t - x * u - y * v - z * w,
-        s * u + t * x + y * w - z * v,
-        s * v + t * y + z * u - x * w,
-        s * w + t * z + x * v - y * u,
-    )

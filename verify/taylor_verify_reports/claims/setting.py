@@ -22,7 +22,7 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify_reports.claims.check import Residual, Worded
 from taylor_verify_reports.claims.field import Field, Point
 

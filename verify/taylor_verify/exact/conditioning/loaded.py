@@ -27,11 +27,11 @@ from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.proving import Times
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import product, rotation_matrix, rotation_rows
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution
 from taylor_verify.exact.taylor import Enclosing
 from taylor_verify.numbers.precision import floor_log2, power_of_two
+from taylor_verify.numbers.rotation import product, rotation_matrix, rotation_rows
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 

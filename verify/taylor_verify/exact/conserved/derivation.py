@@ -15,7 +15,6 @@ from itertools import chain, repeat
 from operator import add, sub
 from typing import Any, Final
 
-from taylor_verify.exact import rotation
 from taylor_verify.exact.conserved.polynomial import (
     Polynomial,
     TooLong,
@@ -27,6 +26,7 @@ from taylor_verify.exact.conserved.polynomial import (
 )
 from taylor_verify.exact.equations import Equations, Exact
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.numbers import rotation
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, Piece

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.tape import Graph, Sum, total
-from taylor_verify.exact.rotation import rotation_matrix
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.scene import Scene
 

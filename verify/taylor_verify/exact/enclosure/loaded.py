@@ -25,7 +25,7 @@ from taylor_verify.exact.enclosure.piece_tapes import PieceTapes
 from taylor_verify.exact.enclosure.rationals import rational_values
 from taylor_verify.exact.enclosure.system import Piece, System, Taken
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rotation import rotation_matrix, rotation_rows
+from taylor_verify.numbers.rotation import rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Instant

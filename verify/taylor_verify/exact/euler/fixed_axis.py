@@ -14,14 +14,13 @@ from typing import Any, Final, final
 from flint import arb
 from mpmath import mp, mpf
 
-from taylor_verify.exact import rotation
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.euler.orbit import converted
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.euler.rotations import OneByOne, Rotation, RotationBalls, Rows, decades
 from taylor_verify.exact.frames import Frame, turn
 from taylor_verify.exact.solution import Number, Time, beside, unchanged
-from taylor_verify.numbers import tensors
+from taylor_verify.numbers import rotation, tensors
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.motion import Quaternion

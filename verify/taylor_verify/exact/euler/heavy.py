@@ -25,9 +25,9 @@ from taylor_verify.exact.carried import Back, carried
 from taylor_verify.exact.kirchhoff.axes import Axes, at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import regime
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import NoClosedForm, Number, Solution, Time
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.loads.loads import Loads

@@ -33,8 +33,8 @@ from taylor_verify.exact.conserved.polynomial import (
 )
 from taylor_verify.exact.euler import heavy
 from taylor_verify.exact.kirchhoff import closed
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Solution, Time
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.steps import exact_root

@@ -95,8 +95,7 @@ class FreeSpin:
         """J_d, the repeated principal moment, which is always rational."""
         if self.is_spherical:
             return self.trace / 3
-        trace, minors, determinant = self.cubic
-        return (9 * determinant - trace * minors) / (-2 * self.cubic.spread)
+        return self.cubic.double_root
 
     @property
     def simple_moment(self) -> Fraction:

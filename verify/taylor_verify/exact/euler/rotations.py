@@ -19,9 +19,9 @@ from mpmath import mp
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix
 from taylor_verify.exact.frames import product, start_frame
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Quantities, Settled, Time, longest
 from taylor_verify.numbers.precision import floor_log2
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes import motion
 
 _STEP_BITS: Final = 32

@@ -20,8 +20,8 @@ from fractions import Fraction
 from typing import Any, Self, final
 
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.rotation import scalar_product
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import scalar_product
 from taylor_verify.numbers.tensors import Vector, cross, dot
 
 Convert = Callable[[Fraction], Any]

@@ -30,7 +30,9 @@ from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.exact.gyrostat.point import PointMap, point_map
 from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.lattice import Lattice, lattice
-from taylor_verify.exact.rotation import (
+from taylor_verify.exact.solution import Time
+from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.rotation import (
     conjugate,
     cross,
     product,
@@ -38,8 +40,6 @@ from taylor_verify.exact.rotation import (
     scalar_product,
     turn,
 )
-from taylor_verify.exact.solution import Time
-from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector, dot
 from taylor_verify.scenes.motion import Quaternion
 

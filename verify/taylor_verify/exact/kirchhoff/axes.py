@@ -27,9 +27,10 @@ from flint import arb
 from mpmath import mp
 
 from taylor_verify.exact.carried import Back
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
+from taylor_verify.exact.spectrum import Cubic
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody
 from taylor_verify.scenes.motion import Impulse
@@ -134,23 +135,16 @@ def _direction(matrix: Matrix) -> Vector | None:
 
     Where the matrix is not of that form this is some vector, or None.
     """
-    trace = sum((matrix[i][i] for i in range(3)), Fraction(0))
-    minors = (trace**2 - sum(tensors.dot(row, column) for row, column in _pairs(matrix))) / 2
-    below = 2 * (3 * minors - trace**2)
-    if not below:
+    cubic = Cubic.of(matrix)
+    if not cubic.spread:
         return None
-    determinant = tensors.dot(matrix[0], tensors.cross(matrix[1], matrix[2]))
-    double = (9 * determinant - trace * minors) / below
+    double = cubic.double_root
     rest = [
         tensors.minus(row, tensors.scaled(double, unit))
         for row, unit in zip(matrix, _UNIT, strict=True)
     ]
     column = next((row for row in rest if any(row)), None)
     return None if column is None else _primitive(column)
-
-
-def _pairs(matrix: Matrix) -> Sequence[tuple[Vector, Vector]]:
-    return tuple(zip(matrix, tensors.transpose(matrix), strict=True))
 
 
 def _primitive(v: Vector) -> Vector | None:

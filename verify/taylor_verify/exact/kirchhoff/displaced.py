@@ -26,10 +26,10 @@ from taylor_verify.exact.carried import Back
 from taylor_verify.exact.equations import exact
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse

@@ -22,9 +22,9 @@ from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear, multiple
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 

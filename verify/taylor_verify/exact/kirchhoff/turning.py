@@ -19,10 +19,10 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix, balls
 from taylor_verify.exact.kirchhoff.solid import velocities
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time, beside
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse

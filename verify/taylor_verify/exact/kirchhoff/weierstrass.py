@@ -28,9 +28,9 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix, balls, b
 from taylor_verify.exact.kirchhoff.course import Pole, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.lattice import Lattice, Periods
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.exact.solution import Time
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Impulse
 
 Rows = list[list[arb]]

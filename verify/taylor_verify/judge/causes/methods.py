@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact import rotation
 from taylor_verify.judge.causes.equations import Equations
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.models.frame import attitude_rate
+from taylor_verify.numbers import rotation
 
 _Step = Callable[[Equations, Floats, Floats, Floats], Floats]
 _Update = Callable[[Floats, Floats, Floats, Floats], Floats]

@@ -20,9 +20,9 @@ from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Fin
 from taylor_verify.judge.conventions.readings import rotations
 from taylor_verify.judge.conventions.search import attitudes_at, beginnings
 from taylor_verify.judge.conventions.vectors import vectors
+from taylor_verify.numbers import rotation
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.scenes.turns import times
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -90,7 +90,7 @@ class Angles:
             turn = np.zeros_like(q)
             turn[0], turn[1 + "xyz".index(axis)] = np.cos(turns[:, k] / 2), np.sin(turns[:, k] / 2)
             first, then = (turn, q) if self.is_fixed else (q, turn)
-            q = np.array(times(list(first), list(then)))
+            q = np.array(rotation.product(list(first), list(then)))
         return q.T
 
     @property

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact import rotation
+from taylor_verify.numbers import rotation
 
 Array = np.ndarray[Any, Any]
 

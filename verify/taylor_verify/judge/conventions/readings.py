@@ -17,9 +17,9 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.rotation import rotation_rows
 from taylor_verify.judge.conventions.axes import Axes, Frames
 from taylor_verify.judge.errors.state import norms
+from taylor_verify.numbers.rotation import rotation_rows
 from taylor_verify.records.quantities import GROUPS
 
 Array = np.ndarray[Any, Any]

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.attributes import Reading, is_true
@@ -122,7 +123,7 @@ def _of_sdf(part: Node, reading: Reading) -> _Pose | None:
 
 
 def _turn(angles: Vector, degrees: bool = False) -> Matrix:
-    return turns.matrix(turns.roll_pitch_yaw(angles, degrees))
+    return rotation_matrix(turns.roll_pitch_yaw(angles, degrees))
 
 
 def _between(child: _Pose | None, base: _Pose | None, joint: _Pose | None) -> _Pose | None:

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 from mpmath import mp
 
-from taylor_verify.exact.rotation import rotation_matrix
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Clebsch
 from taylor_verify.scenes.motion import Impulse, Quaternion

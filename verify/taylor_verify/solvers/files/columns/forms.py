@@ -17,8 +17,9 @@ from typing import Any, Final
 
 import gmpy2
 
+from taylor_verify.numbers import rotation
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
-from taylor_verify.scenes.turns import AXES, times
+from taylor_verify.scenes.turns import AXES
 from taylor_verify.solvers.values import Value
 
 Numbers = Sequence[Fraction]
@@ -57,7 +58,7 @@ def _of_euler(axes: Sequence[int], angles: Numbers) -> Sequence[Value]:
     with gmpy2.context(precision=STAND_IN_BITS + _SPARE_BITS):
         units = ([int(part) for part in AXES[axis]] for axis in axes)
         turns = (_half_turn(e, _mpfr(a)) for e, a in zip(units, angles, strict=True))
-        return _exact(reduce(times, turns))
+        return _exact(reduce(rotation.product, turns))
 
 
 def _of_axis(numbers: Numbers) -> Sequence[Value]:

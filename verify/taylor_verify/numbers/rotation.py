@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from flint import arb
 
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.tensors import Matrix
-from taylor_verify.scenes.motion import Quaternion
+from taylor_verify.numbers.tensors import Matrix, Vector
 
 Number = TypeVar("Number", int, Fraction, arb)
 
@@ -32,7 +31,7 @@ def cross(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
     ]
 
 
-def product(p: Sequence[Number], q: Sequence[Number]) -> list[Number]:
+def product(p: Sequence[Any], q: Sequence[Any]) -> list[Any]:
     """Return the product p q of two quaternions: the rotation q, then p."""
     a, b, c, d = p
     w, x, y, z = q
@@ -58,7 +57,7 @@ def rotation_rows(q: Sequence[Number]) -> list[list[Number]]:
     ]
 
 
-def rotation_matrix(quaternion: Quaternion) -> Matrix:
+def rotation_matrix(quaternion: Vector) -> Matrix:
     """Return R of a quaternion of any length: rational, being of degree 2 in q/|q|."""
     scale = 1 / tensors.dot(quaternion, quaternion)
     return tuple(tuple(scale * entry for entry in row) for row in rotation_rows(quaternion))
