@@ -70,3 +70,35 @@ SPINS = {
         vector("0.1", "0.7", "-0.4"),
     ),
 }
+
+TINY = Fraction(1, 10**30)
+# Beside the separatrix, the axes and symmetric bodies, and thin rods.
+EXTREMES = {
+    "m' ~ 1e-60": near_separatrix(Fraction(-1, 10**60)),
+    "m' ~ 1e-60, oblique": turned(OBLIQUE, near_separatrix(Fraction(1, 10**60))),
+    "on the separatrix, beside its saddle": spinning(
+        vector(4, "5/2", 1), vector(TINY, "-3/5", 2 * TINY)
+    ),
+    "beside the unstable axis": spinning(vector(3, 2, 1), vector(TINY, 1, 2 * TINY)),
+    "beside the unstable axis, w_c = 0, oblique": turned(
+        OBLIQUE, spinning(vector(1, 2, 3), vector(0, 1, -TINY))
+    ),
+    "beside the stable axis": spinning(vector(3, 2, 1), vector(-1, 0, -TINY)),
+    "beside the stable axis, oblique": turned(
+        OBLIQUE, spinning(vector(1, 2, 3), vector(1, TINY, -TINY))
+    ),
+    "upper gap 1e-30": spinning(vector(2, 2 + TINY, 1), vector("0.6", -1, "0.3")),
+    "upper gap 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(2, 2 + TINY, 1), vector("0.6", -1, "0.3"))
+    ),
+    "lower gap 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(1, 1 + TINY, 2), vector("0.3", "-0.4", "0.2"))
+    ),
+    "both gaps 1e-30, oblique": turned(
+        OBLIQUE, spinning(vector(1, 1 + TINY, 1 - 2 * TINY), vector("0.3", "-0.4", "0.2"))
+    ),
+    "ratio 1e12": spinning(vector(1, 10**6, 10**12), vector("0.3", "-0.4", "0.2")),
+    "ratio 1e12, oblique": turned(
+        OBLIQUE, spinning(vector("1e12", 3, 1), vector("1e-6", 2, "0.3"))
+    ),
+}
