@@ -10,7 +10,6 @@ from typing import Final
 
 from taylor_verify.batch.cluster import Unreachable, executor_named
 from taylor_verify.batch.lock import Occupied
-from taylor_verify.batch.sweeps.report import document
 from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
@@ -19,6 +18,7 @@ from taylor_verify.cli.inputs import known_rungs, parse_tolerance
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 from taylor_verify.words.account import cause_line
@@ -78,7 +78,7 @@ def answer(options: argparse.Namespace) -> Answer:
     messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
     if folder is not None:
         messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
-    return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
+    return Answer(summary.exit_status, complete(summary), partial(_text, summary), messages)
 
 
 # The text.

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.batch.sweeps.questions import Questions
 from taylor_verify.batch.sweeps.summary import with_files
@@ -43,19 +43,13 @@ def write_summary(
     }
     texts |= {
         "summary.md": page(summary),
-        "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
+        "summary.json": json.dumps(complete(summary), indent=1, allow_nan=False) + "\n",
     }
     # Those that are written now are not removed, nor scenes that the user has put there.
     earlier = [
         file for file in (folder / WORST).glob("*.toml") if first_line(file).startswith(_REASON)
     ]
     return summary, [*replace_files(folder, texts, stale=earlier)]
-
-
-def document(summary: SweepSummary) -> dict[str, Any]:
-    """Return the document of `sweep --json`."""
-    made: dict[str, Any] = complete(summary)
-    return made
 
 
 def page(summary: SweepSummary) -> str:
