@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from taylor_verify import run, run_many
-from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.sums import with_sum
 
 SCENE = "euler/rest"

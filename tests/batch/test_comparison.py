@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 import taylor_verify
-from taylor_verify.batch.comparison import compare_with_baseline, shown_verdicts
+from taylor_verify.batch.comparison import read_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     remarks,
@@ -67,7 +67,7 @@ def test_a_junit_file_is_as_red_as_the_result(
     write_junit(file, changed(results, "euler/generic", "omega", verdict=Status.FAIL))
     assert colour(file) == "red"
     worse = changed(results, "euler/generic", "omega", max=1e-3)
-    write_junit(file, worse, compare_with_baseline(worse, baseline))
+    write_junit(file, worse, read_baseline(baseline).compare_as_baseline(worse))
     assert colour(file) == "red"
     expected = taylor_verify.run_many([LONG])
     write_junit(file, expected)

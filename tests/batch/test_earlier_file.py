@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 from builders.verdicts import row
 
-from taylor_verify.batch.comparison import compare_with_baseline
+from taylor_verify.batch.comparison import read_baseline
 from taylor_verify.batch.differences import compare
 from taylor_verify.batch.earlier_file import load
-from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.status import Status
 from taylor_verify.records.store import load as load_report
 from taylor_verify.records.store import write
@@ -89,13 +90,14 @@ def test_nothing_passes_by_an_edited_baseline(tmp_path: Path) -> None:
     write(tmp_path, [row()], [])
     file = tmp_path / "data" / "verdicts.json"
     same, worse = (Judgement((each,), None) for each in (row(), row(500.0, bound=1e-9)))
-    assert compare_with_baseline(same, file).passed
+    assert read_baseline(file).compare_as_baseline(same).passed
     file.write_text(file.read_text().replace("5e-15", "6e-15"))
-    doubted = compare_with_baseline(same, file)
-    assert (doubted.exit_status, compare_with_baseline(worse, file).exit_status) == (3, 1)
+    doubted = read_baseline(file).compare_as_baseline(same)
+    regressed = read_baseline(file).compare_as_baseline(worse)
+    assert (doubted.exit_status, regressed.exit_status) == (3, 1)
     with pytest.raises(NotPassed, match="is not what a run has written, by its own sum"):
         doubted.raise_for_failure()
     file.with_name("verdicts.sha256").unlink()
-    alone = compare_with_baseline(same, file)
+    alone = read_baseline(file).compare_as_baseline(same)
     assert alone.passed
     assert "has no sum" in alone.notes[0]

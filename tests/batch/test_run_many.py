@@ -19,8 +19,9 @@ from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
-from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library

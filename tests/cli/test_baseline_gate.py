@@ -14,7 +14,7 @@ import pytest
 from builders.scenes import scene_file
 from builders.verdicts import row
 
-from taylor_verify.batch.comparison import Earlier, compare_with_baseline
+from taylor_verify.batch.comparison import Earlier, read_baseline
 from taylor_verify.check import check
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
@@ -216,7 +216,8 @@ def test_a_file_is_compared_with_the_one_file_of_a_baseline(scene: str, capsys: 
     assert main([*call, "--gate", "baseline"]) == 0
     message = "the baseline is of the file monday.csv, and this is tuesday.csv"
     assert message in capsys.readouterr().err
-    comparison = compare_with_baseline(check(scene, "tuesday.csv"), "base.json", decides=True)
+    judged = check(scene, "tuesday.csv")
+    comparison = read_baseline("base.json").compare_as_baseline(judged, decides=True)
     assert comparison.passed
     assert {verdict.setting for verdict in comparison.before} == {"tuesday.csv"}
 

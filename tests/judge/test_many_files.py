@@ -18,12 +18,12 @@ from jsonschema import Draft202012Validator
 
 import taylor_verify
 from taylor_verify.cli import main
-from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.judge.series.files import FilesJudgement
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load

@@ -16,8 +16,9 @@ from taylor_verify.batch.differences import (
     compare,
     finite,
 )
-from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
+from taylor_verify.records.passing import NotPassed, Passing
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
 
@@ -29,7 +30,7 @@ _WITHOUT_SUM: Final = "has no sum: nothing says that it is what a run has writte
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Passing):
     """Rows that were ``compared`` with earlier ones, and their differences.
 
     ``failures`` fail the comparison: what is worse than in a baseline, or whatever left the rounding class
@@ -61,9 +62,6 @@ class Comparison:
     def passed(self) -> bool:
         """True if rows were compared and none failed or stayed undecided."""
         return self.exit_status == 0
-
-    def __bool__(self) -> bool:
-        return self.passed
 
     def document(self) -> AgainstBaseline:
         """Return the comparison as a document of `--json` has it."""
@@ -102,6 +100,8 @@ class Earlier:
     ) -> Comparison:
         """Find regressions: errors beyond what rounding explains, worse verdicts, rows that are gone.
 
+        Of the earlier rows those count that were asked for again: the same solver, its rungs and, where
+        scenes were named, these. One trajectory file is compared with one file whatever their names are.
         With ``decides`` the comparison decides alone: what shows nothing of its own is no pass either.
         """
         before, notes = _of_one_file(self.verdicts, results)
@@ -129,19 +129,6 @@ class Earlier:
         return Comparison(*compared, doubted=bool(self.edited), source=self.source)
 
 
-def compare_with_baseline(
-    results: Judgements | Judgement, file: str | PathLike[str], decides: bool = False
-) -> Comparison:
-    """Compare a result with a baseline file, as `taylor-verify run --baseline FILE` does.
-
-    Of the baseline those rows count that were asked for again: the same solver, its rungs and, where
-    scenes were named, these. One trajectory file is compared with the one file of a baseline whatever their
-    names are. With ``decides`` it is the comparison of `--gate baseline`. Raises what `read_baseline`
-    raises.
-    """
-    return read_baseline(file).compare_as_baseline(results, decides)
-
-
 def read_baseline(file: str | PathLike[str]) -> Earlier:
     """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
 
@@ -163,14 +150,14 @@ def earlier_document(document: Mapping[str, Any]) -> Earlier:
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:
     """Return the earlier rows that the call of these results has asked for again."""
     if isinstance(results, Judgement):
-        runs = {_run(verdict) for verdict in results.verdicts}
+        runs = {verdict.run for verdict in results.verdicts}
         files = {(v.scene, v.solver, v.rung) for v in results.verdicts if v.solver == Recorded.name}
         # Of several files none may be left out, unless all have other names.
-        whole = len(runs) > 1 and not runs.isdisjoint(_run(verdict) for verdict in before)
+        whole = len(runs) > 1 and not runs.isdisjoint(verdict.run for verdict in before)
         return tuple(
             verdict
             for verdict in before
-            if _run(verdict) in runs
+            if verdict.run in runs
             or (whole and (verdict.scene, verdict.solver, verdict.rung) in files)
         )
     asked = results.selection
@@ -232,7 +219,3 @@ def _row(of: Verdict | Difference) -> tuple[str, str, str]:
 def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:
     """Return the verdicts without expected ones that are not a pass, for CI systems."""
     return list(results.verdicts) if isinstance(results, Judgement) else results.unexpected
-
-
-def _run(verdict: Verdict) -> tuple[str, ...]:
-    return verdict.scene, verdict.solver, verdict.setting, verdict.rung

@@ -129,9 +129,9 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     """
     # Whether the row COMPLETE exists depends on the options of each call, so it is not compared.
     old, new = ([v for v in rows if v.quantity != COMPLETE] for rows in (before, now))
-    lacking = {_run(v) for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
+    lacking = {v.run for v in (*old, *new) if v.verdict is Status.UNAVAILABLE}
     earlier, later = (
-        {(_run(v), v.quantity): v for v in rows if _run(v) not in lacking} for rows in (old, new)
+        {(v.run, v.quantity): v for v in rows if v.run not in lacking} for rows in (old, new)
     )
     differing = [_missing(v) for key, v in earlier.items() if key not in later]
     differing += [_new(v) for key, v in later.items() if key not in earlier]
@@ -143,10 +143,6 @@ def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     shared = [(earlier[key], v) for key, v in later.items() if key in earlier]
     differing += [each for pair in shared for each in _decisive(*pair)]
     return Differences(len(shared), tuple(differing))
-
-
-def _run(verdict: Verdict) -> tuple[str, ...]:
-    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
 
 
 def _missing(verdict: Verdict) -> Difference:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Final, overload
 from taylor_verify.batch.comparison import Comparison
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
 from taylor_verify.batch.selection import Selection
-from taylor_verify.judge.judgement import Judgement, NotPassed
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.passing import NotPassed, Passing
 from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table
 from taylor_verify.records.status import Status
@@ -28,7 +29,7 @@ _MOST_SHOWN: Final = 40
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Judgements(Sequence[Judgement]):
+class Judgements(Passing, Sequence[Judgement]):
     """A sequence of Judgement, in the order of the scenes and of the rungs within each.
 
     It equals a list of the same judgements. ``comparison`` is that with a baseline, where one was given.
@@ -57,9 +58,6 @@ class Judgements(Sequence[Judgement]):
         return isinstance(other, Sequence) and [*self] == [*other]
 
     __hash__ = None  # type: ignore[assignment]
-
-    def __bool__(self) -> bool:
-        return self.passed
 
     @cached_property
     def verdicts(self) -> tuple[Verdict, ...]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.records.certificate import Certified
+from taylor_verify.records.passing import Passing
 from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.words.certificate import certificate_lines
 
@@ -17,11 +17,8 @@ _HEADINGS = ("quantity", "bound", "near t", "reached", "rounding")
 
 
 @dataclass(frozen=True, repr=False)
-class Certificate(Certified):
+class Certificate(Certified, Passing):
     """Proven bounds of the error of a dense answer, and its faults; true if it passed."""
-
-    def __bool__(self) -> bool:
-        return self.passed
 
     def __repr__(self) -> str:
         bounds = ", ".join(f"{name} <= {bound:.3e}" for name, bound in self.bound.items())
@@ -40,8 +37,3 @@ class Certificate(Certified):
             [f"{v:.6g}" if isinstance(v, float) else v for v in row.values()] for row in self.rows()
         ]
         return html_table(repr(self)[1:-1], _HEADINGS, rows, certificate_lines(self))
-
-    def raise_for_failure(self) -> None:
-        """Raise NotPassed, an AssertionError with the text of the certificate, unless it passed."""
-        if not self.passed:
-            raise NotPassed(str(self))

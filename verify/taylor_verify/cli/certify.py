@@ -12,6 +12,7 @@ from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, w
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
+from taylor_verify.records.json_text import complete
 from taylor_verify.words.certificate import certificate_lines, finding_sentence
 
 
@@ -47,17 +48,7 @@ def _text(file: str, certificate: Certificate) -> str:
 
 def document(certificate: Certificate) -> dict[str, Any]:
     """Return the certificate as JSON has it."""
-    return {
-        "scene": certificate.scene,
-        "bound": dict(certificate.bound),
-        "at": dict(certificate.at),
-        "largest": dict(certificate.largest),
-        "rounding": dict(certificate.rounding),
-        "gaps": [
-            {"kind": g.kind.value, "quantity": g.quantity, "at": g.at, "end": g.end, "size": g.size}
-            for g in certificate.gaps
-        ],
-        "findings": [finding_sentence(finding) for finding in certificate.findings],
-        "tolerance": certificate.tolerance,
-        "passed": certificate.passed,
-    } | ({"because": certificate.because} if certificate.because else {})
+    content = complete(certificate)
+    because = {} if content.pop("because") == "" else {"because": certificate.because}
+    findings = [finding_sentence(finding) for finding in certificate.findings]
+    return {**content, "findings": findings, "passed": certificate.passed, **because}

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from rich.text import Text
 
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table
-from taylor_verify.cli.inputs import known_rungs, read_number, read_scene, read_tolerances
+from taylor_verify.cli.inputs import known_rungs, read_number, read_tolerances
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import (
     figure,
@@ -22,7 +22,7 @@ from taylor_verify.cli.sentences import (
     print_sentence,
     status_text,
 )
-from taylor_verify.cli.standard_input import read_named
+from taylor_verify.cli.standard_input import scene_and_files
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import (
     FilesJudgement,
@@ -32,12 +32,10 @@ from taylor_verify.judge.series.files import (
     repeated,
 )
 from taylor_verify.numbers.precision import rung
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import GATE_FACTOR, states_among
 from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.words.account import cause_line, note_line
 from taylor_verify.words.opening import opening
@@ -87,24 +85,12 @@ def _asked(
     options: argparse.Namespace,
 ) -> tuple[Scene, list[TrajectoryFile], Sequence[float] | None]:
     """Read scene, files and steps; the faults of all are reported at once."""
-    faults = repeated(options.files)
-
-    def attempt(reading: Callable[..., Any], *given: Any) -> Any:
-        try:
-            return reading(*given)
-        except (WrongCall, Refused) as error:
-            faults.extend(error.faults)
-
-    steps = attempt(_steps, options)
-    scene = attempt(read_scene, options.scene)
-    columns = options.columns or ()
-    names = dict.fromkeys(options.files)
-    files = [
-        attempt(lambda name: read_named(name, request(columns), scene), name) for name in names
-    ]
-    if faults:
-        raise WrongCall(*faults)
-    return scene, files, steps
+    faults, steps = repeated(options.files), None
+    try:
+        steps = _steps(options)
+    except WrongCall as error:
+        faults += error.faults
+    return (*scene_and_files(options, faults), steps)
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:

@@ -11,8 +11,9 @@ from typing import Any, Final
 from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.folders import unwritable, writable_file
-from taylor_verify.cli.inputs import known_rungs, read_scene, require_matplotlib
+from taylor_verify.cli.inputs import known_rungs, require_matplotlib
 from taylor_verify.cli.progress import working
+from taylor_verify.cli.standard_input import scene_and_files
 from taylor_verify.draw import file_errors, missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.course import lengthened, motion
@@ -24,12 +25,10 @@ from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import ENDINGS as STILLS
 from taylor_verify.plotting.picture import Picture, content
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import request
-from taylor_verify.solvers.files.file import TrajectoryFile, read
+from taylor_verify.solvers.files.file import TrajectoryFile
 
 ERRORS: Final = "errors"
 LOAD: Final = "load"
@@ -42,7 +41,7 @@ def answer(options: argparse.Namespace) -> Answer:
     """Draw the motion of a scene, and the errors of files, every picture to a file of its own."""
     require_matplotlib("draw")
     (options.rung,) = known_rungs([options.rung])
-    scene, files = _asked(options)
+    scene, files = scene_and_files(options)
     place = _place(options, scene)
     names = [name.strip() for name in options.only.split(",")] if options.only else []
     if options.animate and (names or files):
@@ -65,27 +64,6 @@ def _animate(motion: Mapping[str, Any], place: Path) -> dict[str, str]:
         (path,) = replace_files(place.parent, {place.name: page(motion)})
     named = {"title": motion["title"], "shows": motion["alt"]}
     return {"file": str(path), "picture": "animation", **named}
-
-
-def _asked(options: argparse.Namespace) -> tuple[Scene, list[TrajectoryFile]]:
-    """Read the scene and the files; the faults of all are reported at once."""
-    faults: list[str] = []
-
-    def attempt(reading: Callable[[], Any]) -> Any:
-        try:
-            return reading()
-        except (WrongCall, Refused) as error:
-            faults.extend(error.faults)
-
-    scene = attempt(lambda: read_scene(options.scene))
-    columns = options.columns or ()
-    names = dict.fromkeys(options.files)
-    files = [
-        attempt(partial(lambda name: read(name, request(columns), scene), name)) for name in names
-    ]
-    if faults:
-        raise WrongCall(*faults)
-    return scene, files
 
 
 def _document(scene: Scene, is_animated: bool) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL
 from taylor_verify.cli.console import Page, bold
+from taylor_verify.words.account import allowance
 from taylor_verify.words.next_steps import next_steps
 
 if TYPE_CHECKING:
@@ -57,9 +58,7 @@ def print_arithmetic(page: Page, verdicts: Sequence[Verdict]) -> None:
     """Print the arithmetic of every bound that has one."""
     for verdict in verdicts:
         if verdict.is_compared and verdict.reason.allowance:
-            place = f"{verdict.bound:.3g} = " if verdict.bound is not None else ""
-            text = f"{place}{verdict.reason.allowance}"
-            page.indented(f"{verdict.quantity} allowed: ", text)
+            page.indented(f"{verdict.quantity} allowed: ", allowance(verdict))
 
 
 def print_end(

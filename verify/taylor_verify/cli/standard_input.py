@@ -1,18 +1,21 @@
-"""A trajectory on standard input, named `-`: read once, with the limits of a file, and judged as one."""
+"""The trajectories of a call: files, or standard input, named `-`, which is read once like a file."""
 
 from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Mapping
+from argparse import Namespace
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from taylor_verify.cli.answer import WrongCall
+from taylor_verify.cli.inputs import read_scene
+from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.request import Request, request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 from taylor_verify.solvers.files.formats.column import BYTES
 
@@ -27,7 +30,30 @@ _ENDINGS: Final[Mapping[bytes, str]] = {
 }
 
 
-def read_named(name: str, columns: Request, scene: Scene) -> TrajectoryFile:
+def scene_and_files(
+    options: Namespace, faults: Sequence[str] = ()
+) -> tuple[Scene, list[TrajectoryFile]]:
+    """Read the scene and the files of a call, each file once.
+
+    Raises WrongCall with the faults of all, behind the ``faults`` that are known.
+    """
+    told = list(faults)
+
+    def attempt(reading: Callable[..., Any], *given: Any) -> Any:
+        try:
+            return reading(*given)
+        except (WrongCall, Refused) as error:
+            told.extend(error.faults)
+
+    scene = attempt(read_scene, options.scene)
+    columns = request(options.columns or ())
+    files = [attempt(_read_named, name, columns, scene) for name in dict.fromkeys(options.files)]
+    if told:
+        raise WrongCall(*told)
+    return scene, files
+
+
+def _read_named(name: str, columns: Request, scene: Scene) -> TrajectoryFile:
     """Return the trajectory in a file, or on standard input for `-`. Raises Refused and WrongCall."""
     if name != NAME:
         return read(name, columns, scene)

@@ -10,7 +10,6 @@ from typing import Final
 
 from taylor_verify.batch.cluster import Unreachable, executor_named
 from taylor_verify.batch.lock import Occupied
-from taylor_verify.batch.sweeps.report import counts, document
 from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
@@ -19,6 +18,7 @@ from taylor_verify.cli.inputs import known_rungs, parse_tolerance
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
+from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import INITIAL
 from taylor_verify.records.sweep import Spread, SweepSummary
 from taylor_verify.words.account import cause_line
@@ -78,7 +78,7 @@ def answer(options: argparse.Namespace) -> Answer:
     messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
     if folder is not None:
         messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
-    return Answer(summary.exit_status, document(summary), partial(_text, summary), messages)
+    return Answer(summary.exit_status, complete(summary), partial(_text, summary), messages)
 
 
 # The text.
@@ -97,13 +97,13 @@ def _text(summary: SweepSummary) -> str:
         page.line(bold("the worst cases"), ", each with the numbers that `run` finds for its scene")
     for case in summary.worst[:_SHOWN]:
         # The arithmetic of a bound is long; `run --explain` on the scene shows it.
-        size = case.because if case.ratio is None else f"{case.ratio:.3g}"
+        size = case.because if case.ratio is None else figure(case.ratio)
         words = f"  {case.scene}  {case.quantity} {size}"
         page.line(status_text(case.verdict.value), f"{words}  {case.file}".rstrip())
         for cause in case.causes:
             page.line(cause_line(cause))
     page.line()
-    print_end(page, [], f"bodies: {counts(summary)}", summary.exit_status, explained=True)
+    print_end(page, [], f"bodies: {summary.counts}", summary.exit_status, explained=True)
     return page.text()
 
 

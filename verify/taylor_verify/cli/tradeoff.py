@@ -8,9 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from rich.table import Table
 from rich.text import Text
 
 from taylor_verify.cli.answer import (
@@ -21,7 +20,7 @@ from taylor_verify.cli.answer import (
     WrongCall,
     wrong_calls,
 )
-from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import alone_in, not_written, writable
 from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
 from taylor_verify.cli.progress import working
@@ -43,7 +42,9 @@ from taylor_verify.tradeoff.setting import (
 from taylor_verify.tradeoff.solves import cold_caches
 from taylor_verify.tradeoff.trade_off import trade_off
 
-_NOT_RUN = "not run"
+_NOT_RUN: Final = "not run"
+_NUMBERS: Final = (">drift", ">steps", ">evals", ">seconds", ">spread", ">first", ">compile")
+_TIMES: Final = ("seconds", "spread", "first_seconds", "compile_seconds")
 
 
 def answer(options: argparse.Namespace) -> Answer:
@@ -142,7 +143,7 @@ def tradeoff_text(documents: Sequence[Mapping[str, Any]]) -> str:
 def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     timing, machine = trade["timing"], trade["provenance"]
     page.line(bold(trade["scene"]), f" on {machine['processor']}")
-    page.console.print(_points_table(trade))
+    _print_points(page, trade)
     for reason, names in _not_run(trade["points"]).items():
         page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
@@ -174,36 +175,19 @@ def _label(row: Mapping[str, Any]) -> str:
     return label(row["solver"], row["setting"], row["rung"])
 
 
-def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
-    """Return a table with columns of words to the left and of numbers to the right."""
-    table = Table(box=None, padding=(0, 1, 0, 0), pad_edge=False)
-    for heading in words:
-        table.add_column(heading, no_wrap=True)
-    for heading in numbers:
-        table.add_column(heading, justify="right", no_wrap=True)
-    return table
-
-
-def _points_table(trade: Mapping[str, Any]) -> Table:
+def _print_points(page: Page, trade: Mapping[str, Any]) -> None:
     rows = [row for row in trade["points"] if row["standing"] != _NOT_RUN]
     quantities = list(dict.fromkeys(name for row in rows for name in row["max"]))
-    errors = [heading for name in quantities for heading in (name, "final")]
-    numbers = ("drift", "steps", "evals", "seconds", "spread", "first", "compile")
-    table = _table(("", "setting", "rung"), (*errors, *numbers))
+    errors = [heading for name in quantities for heading in (f">{name}", ">final")]
+    cells = []
     for row in rows:
         mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
-        cells = [row[part].get(name) for name in quantities for part in ("max", "final")]
-        table.add_row(
-            mark,
-            Text(f"{row['solver']} {row['setting']}".rstrip()),
-            row["rung"],
-            *(_short(value) for value in (*cells, row["drift"])),
-            str(row["steps"]),
-            str(row["evaluations"]),
-            *(_short(row[key]) for key in ("seconds", "spread", "first_seconds")),
-            _short(row["compile_seconds"]),
-        )
-    return table
+        sizes = [row[part].get(name) for name in quantities for part in ("max", "final")]
+        sizes = [_short(value) for value in (*sizes, row["drift"])]
+        times = [_short(row[key]) for key in _TIMES]
+        begin = [f"{row['solver']} {row['setting']}".rstrip(), row["rung"], mark]
+        cells.append([*begin, *sizes, str(row["steps"]), str(row["evaluations"]), *times])
+    print_table(page.console, ("setting", "rung", "", *errors, *_NUMBERS), cells, keys=2)
 
 
 def _not_run(points: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:

@@ -13,10 +13,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.event_times import Events, EventTime, events_of
 from taylor_verify.exact.printed_events import event_row
-from taylor_verify.judge.judgement import NotPassed
 from taylor_verify.models.problem import pose_as_stored
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import brief, refusal
+from taylor_verify.records.passing import Passing
 from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.words.judged_events import event_lines
@@ -40,7 +40,7 @@ class Answered(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class EventsJudgement:
+class EventsJudgement(Passing):
     """The times given for an event, against ``true``: answered, missed, invented; true if it passed."""
 
     scene: str
@@ -49,9 +49,6 @@ class EventsJudgement:
     missed: tuple[EventTime, ...]
     invented: tuple[Fraction, ...]
     tolerance: float | None = None
-
-    def __bool__(self) -> bool:
-        return self.passed
 
     def __repr__(self) -> str:
         word = "passed" if self.passed else "failed" if self.is_wrong else "undecided"
@@ -67,11 +64,6 @@ class EventsJudgement:
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame, a row an answered event. Raises ModuleNotFoundError without pandas."""
         return dataframe(self.document()["events"])
-
-    def raise_for_failure(self) -> None:
-        """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""
-        if not self.passed:
-            raise NotPassed(str(self))
 
     @property
     def heading(self) -> str:

@@ -15,6 +15,7 @@ from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.answers import LikelyCause
+from taylor_verify.records.passing import Passing
 from taylor_verify.records.quantities import MAIN
 from taylor_verify.records.reason import Carried, Cause, stated
 from taylor_verify.records.record import Record
@@ -31,12 +32,8 @@ if TYPE_CHECKING:
     import pandas
 
 
-class NotPassed(AssertionError):
-    """The error for a judgement that did not pass; its text has every other verdict with its reason."""
-
-
 @dataclass(frozen=True, repr=False)
-class Judgement:
+class Judgement(Passing):
     """The verdicts of one run and the record of their numbers (None if there was nothing to compare).
 
     ``causes`` explain nearly all of the error of a failed quantity. ``notes`` are sentences on the answer
@@ -77,9 +74,6 @@ class Judgement:
                 return verdict
         raise KeyError(f"{quantity}, of {', '.join(verdict.quantity for verdict in self.verdicts)}")
 
-    def __bool__(self) -> bool:
-        return self.passed
-
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame with a row for each verdict and a column for each field.
 
@@ -110,11 +104,6 @@ class Judgement:
             gate.quantity: gate.errors for gate in gates if len(gate.errors) == len(self.times)
         }
         return table + (picture(self.times, curves, "errors", log=True) if curves else "")
-
-    def raise_for_failure(self) -> None:
-        """Raise NotPassed, an AssertionError with the text of the judgement, unless it passed."""
-        if not self.passed:
-            raise NotPassed(str(self))
 
 
 def judgement(

@@ -72,8 +72,7 @@ def runs(verdicts: Iterable[Verdict]) -> tuple[Run, ...]:
     """Return the runs in reading order, each with its verdicts in the order in which they came."""
     gathered: dict[tuple[str, str, str, str], list[Verdict]] = {}
     for verdict in verdicts:
-        key = (verdict.scene, verdict.solver, verdict.setting, verdict.rung)
-        gathered.setdefault(key, []).append(verdict)
+        gathered.setdefault(verdict.run, []).append(verdict)
     result = [Run(*key, tuple(rows)) for key, rows in gathered.items()]
     return tuple(sorted(result, key=_place))
 

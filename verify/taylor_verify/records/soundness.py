@@ -34,7 +34,7 @@ def check_rows(placed: Mapping[str, Verdict]) -> None:
         if verdict.verdict is Status.PASS:
             _check_pass(verdict, place)
         _check_run(verdict, place)
-    rows = Counter(" ".join(filter(None, (*run_of(v), v.quantity))) for v in placed.values())
+    rows = Counter(" ".join(filter(None, (*v.run, v.quantity))) for v in placed.values())
     if twice := [row for row, count in rows.items() if count > 1]:
         raise ValueError(f"expected every row once, got more of {', '.join(twice)}")
 
@@ -42,14 +42,9 @@ def check_rows(placed: Mapping[str, Verdict]) -> None:
 def check_runs(placed: Mapping[str, Verdict], timed: Collection[tuple[str, ...]]) -> None:
     """Raise ValueError for a row of a run that is not among the runs that were timed."""
     for place, verdict in placed.items():
-        if run_of(verdict) not in timed:
-            run = " ".join(filter(None, run_of(verdict)))
+        if verdict.run not in timed:
+            run = " ".join(filter(None, verdict.run))
             raise ValueError(f"expected a run with its time in timings.json, got {run} @ {place}")
-
-
-def run_of(verdict: Verdict) -> tuple[str, ...]:
-    """Return what tells the run of a row from other runs."""
-    return verdict.scene, verdict.solver, verdict.setting, verdict.rung
 
 
 def _check_sizes(verdict: Verdict, place: str) -> None:

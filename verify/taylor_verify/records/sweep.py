@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from taylor_verify.records.json_text import Count, Size, about
+from taylor_verify.records.passing import Passing
 from taylor_verify.records.provenance import Provenance
 from taylor_verify.records.status import Status
 
@@ -59,7 +60,7 @@ class WorstCase:
 
 
 @dataclass(frozen=True)
-class SweepSummary:
+class SweepSummary(Passing):
     """The sweep of one family or folder by one solver.
 
     ``bodies`` counts the bodies by the gravest of their verdicts. ``tolerance`` is what was asked for in
@@ -96,5 +97,10 @@ class SweepSummary:
         """True if something was judged, and the exit status is 0."""
         return self.exit_status == 0 and not self.lacks
 
-    def __bool__(self) -> bool:
-        return self.passed
+    @property
+    def counts(self) -> str:
+        """The number of bodies of each verdict that occurs, in words."""
+        return ", ".join(f"{n} {word}" for word, n in self.bodies.items() if n) or "none"
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.total} bodies by {self.solver} on {self.rung}: {self.counts}"

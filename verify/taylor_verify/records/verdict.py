@@ -128,6 +128,11 @@ class Verdict:
         return min(counts, default=None)
 
     @property
+    def run(self) -> tuple[str, str, str, str]:
+        """What tells the run of the row from other runs: scene, solver, setting and rung."""
+        return self.scene, self.solver, self.setting, self.rung
+
+    @property
     def is_conserved(self) -> bool:
         """True for the row of a conserved quantity."""
         return is_conserved(self.quantity)

@@ -21,7 +21,7 @@ def tradeoff(
     scene
         A Scene, a path, or the name of a shipped scene.
     asked
-        The settings to measure, by default all of the scene. ``chosen`` in studies.tradeoff.setting makes
+        The settings to measure, by default all of the scene. ``chosen`` in tradeoff.setting makes
         settings from names of solvers.
     repeats
         The number of repeated solves, whose best time counts; by default that of
@@ -31,7 +31,7 @@ def tradeoff(
 
     Returns
     -------
-    studies.tradeoff.trade_off.TradeOff
+    tradeoff.trade_off.TradeOff
         A point for each setting, with errors in the judge's units and with seconds, and the front of those
         that no other beats in both. A setting that cannot run is a point with the reason. The call takes
         from seconds to minutes.
@@ -76,13 +76,13 @@ def recommend(
 
     Returns
     -------
-    studies.tradeoff.recommendation.Recommendation
+    tradeoff.recommendation.Recommendation
         The setting with its time and its errors. Rungs on which rounding alone leaves far more are not
         measured. It takes from seconds to minutes.
 
     Raises
     ------
-    studies.tradeoff.recommendation.OutOfReach
+    tradeoff.recommendation.OutOfReach
         If no setting reaches the error.
     records.faults.Refused
         For a scene that cannot be read.

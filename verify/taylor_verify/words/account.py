@@ -65,6 +65,12 @@ def with_numbers(verdict: Verdict) -> str:
     )
 
 
+def allowance(verdict: Verdict) -> str:
+    """Return the bound of a verdict that was compared, and its arithmetic."""
+    bound = "" if verdict.bound is None else f"{verdict.bound:.3g} = "
+    return f"{bound}{verdict.reason.allowance}"
+
+
 def _row(verdict: Verdict) -> str:
     return f"{verdict.verdict}  {verdict.scene} {verdict.rung} {with_numbers(verdict)}"
 

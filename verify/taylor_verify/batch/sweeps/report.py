@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.batch.sweeps.questions import Questions
 from taylor_verify.batch.sweeps.summary import with_files
@@ -43,7 +43,7 @@ def write_summary(
     }
     texts |= {
         "summary.md": page(summary),
-        "summary.json": json.dumps(document(summary), indent=1, allow_nan=False) + "\n",
+        "summary.json": json.dumps(complete(summary), indent=1, allow_nan=False) + "\n",
     }
     # Those that are written now are not removed, nor scenes that the user has put there.
     earlier = [
@@ -52,15 +52,9 @@ def write_summary(
     return summary, [*replace_files(folder, texts, stale=earlier)]
 
 
-def document(summary: SweepSummary) -> dict[str, Any]:
-    """Return the document of `sweep --json`."""
-    made: dict[str, Any] = complete(summary)
-    return made
-
-
 def page(summary: SweepSummary) -> str:
     """Return the summary as Markdown."""
-    judged = f"{summary.total} bodies by {code(summary.solver)} on {code(summary.rung)}: {counts(summary)}."
+    judged = f"{summary.total} bodies by {code(summary.solver)} on {code(summary.rung)}: {summary.counts}."
     blocks = [
         f"# {prose(summary.title or summary.name)}",
         judged,
@@ -83,11 +77,6 @@ def page(summary: SweepSummary) -> str:
         words = "Each has the numbers that `run` finds for its scene."
         blocks += ["## The worst cases", words, _worst_table(summary.worst)]
     return "\n\n".join([*blocks, traced(complete(summary.provenance))]) + "\n"
-
-
-def counts(summary: SweepSummary) -> str:
-    """Return the number of bodies of each verdict that occurs, in words."""
-    return ", ".join(f"{n} {word}" for word, n in summary.bodies.items() if n) or "none"
 
 
 def _cells(spread: Spread, quantiles: Quantiles | None) -> list[str]:
@@ -125,7 +114,7 @@ def _file(rank: int, case: WorstCase) -> str:
 
 def _reason(summary: SweepSummary, case: WorstCase) -> str:
     """Return the comment that begins the scene of a worst case."""
-    size = "no number" if case.ratio is None else f"{case.ratio:.3g}"
+    size = "no number" if case.ratio is None else figure(case.ratio)
     drawn = f", seed {summary.seed}, {summary.points} points" if summary.seed is not None else ""
     tolerance = "" if summary.tolerance is None else f" with the tolerance {summary.tolerance}"
     return (

@@ -11,14 +11,13 @@ import json
 import selectors
 import socket
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from time import monotonic
 from typing import Any, Final
 
-from taylor_verify.solvers.process import supervisor
+from taylor_verify.solvers.process.conversation import supervised
 from taylor_verify.solvers.trajectory import Outcome
 
 _CHUNK: Final = 2**16
@@ -44,20 +43,7 @@ class Session:
         self.places: dict[str, int] = {}
         self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the program runs)
         self._rest = b""
-        self._link, theirs = socket.socketpair()
-        words = [sys.executable, "-I", "-S", supervisor.__file__, str(theirs.fileno()), *command]
-        try:
-            self._process = subprocess.Popen(
-                words,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._stderr,
-                pass_fds=[theirs.fileno()],
-                start_new_session=True,
-                bufsize=0,
-            )
-        finally:
-            theirs.close()
+        self._process, self._link = supervised(command, self._stderr)
 
     def ask(self, request: Mapping[str, Any], limit: float) -> dict[str, Any]:
         """Return the answer to a request within ``limit`` seconds; Broken where there is none."""

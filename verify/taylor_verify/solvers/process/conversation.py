@@ -70,27 +70,12 @@ def converse(
 
     It runs in ``folder``, or in the working folder of this process.
     """
-    # Isolated and without site: no variable meant for the program has an effect on the supervisor.
-    supervisor = [sys.executable, "-I", "-S", str(_SUPERVISOR)]
-    ours, theirs = socket.socketpair()
     try:
-        process = subprocess.Popen(
-            [*supervisor, str(theirs.fileno()), *command],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            pass_fds=[theirs.fileno()],
-            start_new_session=True,
-            cwd=folder,
-            bufsize=0,
-        )
+        process, link = supervised(command, subprocess.PIPE, folder)
     except (OSError, ValueError) as error:
-        ours.close()
         reason = getattr(error, "strerror", None) or str(error)
         return Ended(Outcome.NOT_STARTED, f"{command[0]}: {reason}")
-    finally:
-        theirs.close()
-    talk = _Talk(process, ours, asked)
+    talk = _Talk(process, link, asked)
     try:
         outcome, what = talk.listen(monotonic() + limit, longest)
     finally:
@@ -105,6 +90,32 @@ def converse(
     if report.is_certain:
         _log.warning("taylor-verify: warning: %s @ %s", report.left, shlex.join(command))
     return Ended(outcome, what, bytes(talk.answer), bytes(talk.stderr), report.seconds, report.left)
+
+
+def supervised(
+    command: Sequence[str], stderr: Any, folder: str | None = None
+) -> tuple[subprocess.Popen[bytes], socket.socket]:
+    """Start a program under its supervisor, and return it with the link to the supervisor."""
+    # Isolated and without site: no variable meant for the program has an effect on the supervisor.
+    supervisor = [sys.executable, "-I", "-S", str(_SUPERVISOR)]
+    ours, theirs = socket.socketpair()
+    try:
+        process = subprocess.Popen(
+            [*supervisor, str(theirs.fileno()), *command],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=stderr,
+            pass_fds=[theirs.fileno()],
+            start_new_session=True,
+            cwd=folder,
+            bufsize=0,
+        )
+    except BaseException:
+        ours.close()
+        raise
+    finally:
+        theirs.close()
+    return process, ours
 
 
 _UNKNOWN: Final = "processes that have left its session, if any, could not be ended"

@@ -63,7 +63,8 @@ def read(file: Content, path: Path, part: str) -> Table:
         return _checked(list(version4.arrays(file.whole(BYTES), path)), part, path)
     if version != _VERSION:
         got = f"one that begins with {header[:10].decode('latin-1')!r}"
-        raise refusal("a MATLAB file of version 4 to 7.3", got, path)
+        mend = "Octave saves one by `save -v7`"
+        raise refusal("a MATLAB file of version 4 to 7.3", got, path, mend)
     with unbroken("a MATLAB file", path, _BROKEN):
         arrays = list(_Reader(order, path).arrays(file.whole(BYTES)[_HEADER:]))
     return _checked(arrays, part, path)

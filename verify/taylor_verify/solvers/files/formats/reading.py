@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.plugins import Plugin, free
 from taylor_verify.records.regular_file import regular_file
-from taylor_verify.solvers.files.formats import ccsds, echo, octave, rosbag
+from taylor_verify.solvers.files.formats import ccsds, echo, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.package import install, needed
@@ -127,9 +127,8 @@ def _reader(content: Content, path: Path) -> Any:
     """Return the file beside this one that reads the format."""
     if message := ccsds.kind(content):
         return import_module(f"{__package__}.{message}")
-    for known_by_content in (octave, echo):
-        if known_by_content.is_one(content):
-            return known_by_content
+    if echo.is_one(content):
+        return echo
     known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
         expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"
