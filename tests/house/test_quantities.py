@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
@@ -51,7 +51,7 @@ TOLD: Final = {
     "solvers/files/columns/names.py": (
         (
             '    yield Spelling("centre", _P,',
-            f'    yield Spelling("{NAME}", ("e_spin",), is_whole=True)\n',
+            f'    yield Spelling("{NAME}", ("espin",), is_whole=True)\n',
         ),
     ),
 }
@@ -104,47 +104,90 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
             text = text.replace(f"\n{line}", f"\n{added}{line}")
         file.write_text(text, "utf-8")
     (folder / "spin.toml").write_text(SCENE, "utf-8")
+    loaded = SCENE.replace("[initial]", 'moment = ["-0.1*w1", 0, "0.1*sin(t)"]\n[initial]')
+    (folder / "loaded.toml").write_text(loaded, "utf-8")
+    (folder / "doors.py").write_text(SCRIPT, "utf-8")
+    (folder / "gate.py").write_text(GATE, "utf-8")
     (folder / "simulator.py").write_text(SOLVER, "utf-8")
     subprocess.run([sys.executable, "simulator.py"], cwd=folder, check=True)
     return folder
 
 
-Call = Callable[..., tuple[int, str]]
+# The words of each call; {} is the name of an answer that is right or wrong.
+CALLS: Final = {
+    "file": "check {}.csv --scene spin.toml --json --tolerance 1e-6",
+    "function": "run spin.toml --solver python:simulator:{} --json --tolerance 1e-6",
+}
+DOORS: Final = (
+    "explain spin.toml",
+    "question spin.toml --csv",
+    "question spin.toml",
+    "exact spin.toml --at 1,2",
+    "exact spin.toml --at 1,2 --json --route mpmath",
+    "check wrong.csv --scene spin.toml",
+    "check wrong.csv --scene spin.toml --explain",
+    "check wrong.csv --scene spin.toml --github",
+    "check wrong.csv --scene spin.toml --junit junit.xml",
+    "draw spin.toml wrong.csv --only errors --out drawn.svg",
+    "run spin.toml --solver scipy:DOP853",
+    "run loaded.toml --solver taylor",
+)
+SCRIPT: Final = """import contextlib, io, json, sys
+import taylor_verify
+from taylor_verify.cli import main
+import simulator
+
+answers = {}
+for words in json.loads(sys.argv[1]):
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
+        try:
+            code = main(words.split())
+        except SystemExit as end:
+            code = end.code
+    answers[words] = code, out.getvalue()
+judged = taylor_verify.check("spin.toml", simulator.wrong)
+answers["page"] = 1, judged._repr_html_()
+answers["table"] = 1, judged.to_dataframe().to_csv()
+answers["motion"] = 0, taylor_verify.exact("spin.toml", [1], digits=20).to_dataframe().to_csv()
+print(json.dumps(answers))
+"""
+GATE: Final = """import simulator
+def test_spin(verify_solver):
+    verify_solver("spin.toml", simulator.wrong)
+"""
+
+
+def told(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run Python with the copy of the package."""
+    environment = {**os.environ, "PYTHONPATH": str(folder / "verify")}
+    return subprocess.run(
+        [sys.executable, *words], cwd=folder, env=environment, capture_output=True, encoding="utf-8"
+    )
 
 
 @pytest.fixture(scope="module")
-def call(folder: Path) -> Call:
-    def call(*words: str) -> tuple[int, str]:
-        environment = {**os.environ, "PYTHONPATH": str(folder / "verify")}
-        done = subprocess.run(
-            [sys.executable, "-m", *words],
-            cwd=folder,
-            env=environment,
-            capture_output=True,
-            encoding="utf-8",
-        )
-        return done.returncode, done.stdout + done.stderr
-
-    return call
+def answers(folder: Path) -> dict[str, tuple[int, str]]:
+    """The exit status and the text of every door."""
+    calls = [words.format(name) for words in CALLS.values() for name in ("solve", "wrong")]
+    done = told(folder, "doors.py", json.dumps([*calls, *DOORS]))
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
 
 
 def test_five_files_are_told() -> None:
-    """Four files of the package and the page of columns are all that a new quantity needs."""
-    assert len(TOLD) + 1 <= 5
+    """Four files of the package and the page of columns are named in the list for contributors."""
+    page = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    steps = page.partition("## To add a state quantity")[2].partition("\n## ")[0]
+    named = set(re.findall(r"`((?:verify|docs)/[\w/]+\.\w+)`", steps))
+    assert named == {*(f"verify/taylor_verify/{name}" for name in TOLD), "docs/columns.md"}
+    assert len(named) <= 5
 
 
-@pytest.mark.parametrize(
-    "answer",
-    [
-        ("check", "{}.csv", "--scene", "spin.toml"),
-        ("run", "spin.toml", "--solver", "python:simulator:{}"),
-    ],
-)
-def test_an_answer_is_judged(call: Call, answer: tuple[str, ...]) -> None:
+@pytest.mark.parametrize("words", CALLS.values(), ids=CALLS)
+def test_an_answer_is_judged(answers: dict[str, tuple[int, str]], words: str) -> None:
     """A right energy passes and one that is 1e-3 too large fails, from a file and from a function."""
     for name, verdict, status in (("solve", "pass", 0), ("wrong", "fail", 1)):
-        words = [word.format(name) for word in answer]
-        code, text = call("taylor_verify", *words, "--json", "--tolerance", "1e-6")
+        code, text = answers[words.format(name)]
         assert code == status, text
         rows = {row["quantity"]: row for row in json.loads(text)["verdicts"]}
         assert rows[NAME]["verdict"] == verdict
@@ -152,24 +195,19 @@ def test_an_answer_is_judged(call: Call, answer: tuple[str, ...]) -> None:
     assert abs(rows[NAME]["max"] - 1e-3) <= 1e-6
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "explain spin.toml",
-        "question spin.toml --csv",
-        "question spin.toml",
-        "exact spin.toml --at 1,2",
-        "exact spin.toml --at 1,2 --json",
-        "check wrong.csv --scene spin.toml",
-        "check wrong.csv --scene spin.toml --explain",
-        "check wrong.csv --scene spin.toml --github",
-        "run spin.toml --solver scipy:DOP853",
-        "run spin.toml --solver taylor",
-    ],
-)
-def test_a_door_names_it(call: Call, words: str) -> None:
+@pytest.mark.parametrize("words", [*DOORS, "page", "table", "motion"])
+def test_a_door_names_it(folder: Path, answers: dict[str, tuple[int, str]], words: str) -> None:
     """Each door names the quantity, or its column."""
-    code, text = call("taylor_verify", *words.split())
+    code, text = answers[words]
+    if (out := words.rpartition(" ")[2]) in ("junit.xml", "drawn.svg"):
+        text += (folder / out).read_text("utf-8")
     assert code in (0, 1), text
-    assert "Traceback" not in text
-    assert NAME in text or ",es" in text or " es" in text
+    names = ("es",) if words.startswith("question") else (NAME,)
+    assert any(re.search(rf"\b{name}\b", text) for name in names), text
+
+
+def test_pytest_names_it(folder: Path) -> None:
+    """The fixture of pytest fails a wrong energy by its name."""
+    done = told(folder, "-m", "pytest", "-q", "-p", "taylor_verify.testing.plugin", "gate.py")
+    assert done.returncode == 1
+    assert f"{NAME}: " in done.stdout

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any, Final, final
+from typing import Final, final
 
 import numpy as np
 from mpmath import mp, mpf
@@ -28,34 +29,25 @@ def functions(scene: Scene) -> list[Invariant]:
     return [FUNCTIONS[each.name](scene) for each in scene.tracked if each.is_function]
 
 
-def values(scene: Scene, motion: Motion) -> dict[str, np.ndarray[Any, Any]]:
-    """The values of these quantities at every row of a motion (n, components)."""
-    rows = in_mpfr(motion)
-    with precision():
-        formed = {each.name: each.value(rows) for each in functions(scene)}
-        return {name: to_mpf(column.reshape(len(column), -1)) for name, column in formed.items()}
-
-
 def with_functions(scene: Scene, motion: Motion) -> Motion:
-    """The motion with these quantities, whose radius is twice the first-order effect of its own.
+    """The motion with these quantities, whose error is twice the first-order effect of its own.
 
     What is quadratic in the radius of the motion is far less than the second half of that.
     """
-    formed = values(scene, motion)
-    rows, errors = in_mpfr(motion), [mpf(radius) for radius in motion.radius]
-    radii = {name: motion.radius_of(name) for name in motion.quantities}
+    quantities, radii, errors = dict(motion.quantities), dict(motion.radii), dict(motion.errors)
+    rows, count = in_mpfr(motion), len(motion.radius)
     for function in functions(scene):
         with precision():
-            slopes = function.sensitivity(rows)
-            steep = [norms(np.asarray(slope).reshape(len(errors), -1)) for slope in slopes.values()]
-            sizes = [norms(part.reshape(len(errors), -1)) for part in rows.quantities.values()]
-            bound = to_mpf(sum(steep) * sum(sizes))
-        scale = [mp.norm(list(row)) or mpf(1) for row in formed[function.name]]
-        radii[function.name] = np.array(
-            [2 * b * r / s for b, r, s in zip(bound, errors, scale, strict=True)], dtype=object
-        )
-    radius = np.array([max(row) for row in zip(*radii.values(), strict=True)], dtype=object)
-    return Motion({**motion.quantities, **formed}, radius, radii, motion.errors, motion.peaks)
+            value = function.value(rows).reshape(count, -1)
+            slopes = function.sensitivity(rows).values()
+            steep = sum(norms(slope.reshape(count, -1)) for slope in slopes)
+            size = sum(norms(part.reshape(count, -1)) for part in rows.quantities.values())
+            wide, sizes = 2 * to_mpf(steep * size) * motion.radius, to_mpf(norms(value))
+        quantities[function.name] = values = to_mpf(value)
+        errors[function.name] = np.repeat(wide, values.shape[1]).reshape(values.shape)
+        radii[function.name] = wide / np.array([norm or mpf(1) for norm in sizes], dtype=object)
+    radius = np.maximum.reduce([motion.radius, *(radii[each.name] for each in functions(scene))])
+    return replace(motion, quantities=quantities, radius=radius, radii=radii, errors=errors)
 
 
 @final
