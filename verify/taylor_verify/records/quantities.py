@@ -56,7 +56,8 @@ class Quantity:
 
     Every run of the model ``main_of`` has it, and a scene of the models ``tracked_by`` may ask for it
     besides; one that is neither is in files alone. ``groups`` are the columns in which a solver's state
-    has it. A scene that tracks it tracks what it ``needs`` too. ``unit`` is that of its error.
+    has it. A scene that tracks it tracks what it ``needs`` too. ``unit`` is that of its error. One that
+    ``is_function`` follows from the others at each time and has no equation of its own.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Quantity:
     tracked_by: tuple[str, ...] = ()
     measure: Measure = Measure.VECTORS
     needs: tuple[str, ...] = ()
+    is_function: bool = False
 
 
 @dataclass(frozen=True)
