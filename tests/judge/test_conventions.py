@@ -404,7 +404,7 @@ def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
     instants = [t + Fraction(1, 8192) for t in scene.clock.instants[::4]]
     sound = exact_columns(scene.name)
     spoiled = {**sound, "t": [float(t) for t in instants]}
-    judgement = judged(tmp_path, scene.name, spoiled)
-    shifts = [v.time_shift for v in judgement.verdicts if v.time_shift is not None]
-    assert shifts == pytest.approx([1 / 8192] * 2, rel=1e-9)
-    assert statuses(judged(tmp_path, scene.name, spoiled, accept=True)) == {Status.PASS}
+    judgement = judged(tmp_path, scene.name, spoiled, accept=True)
+    (finding,) = judgement.conventions
+    assert finding.words == "t is late by 0.0001220703125"
+    assert statuses(judgement) == {Status.PASS}
