@@ -36,7 +36,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that the wheel was installed into, apart from this environment's own copy."""
     folder = tmp_path_factory.mktemp("installed")
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
-    options = ["--no-deps", "--no-index", "--target", str(folder)]
+    options = ["--no-deps", "--no-index", "--no-compile", "--target", str(folder)]
     subprocess.run([*pip, "install", *options, str(wheel)], check=True)
     return folder
 
@@ -179,7 +179,9 @@ def bare(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
             (site / part).symlink_to(Path(distribution(name).locate_file(part)))
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
     pip += ["--python", str(folder / "bin" / "python")]
-    subprocess.run([*pip, "install", "--no-deps", "--no-index", str(wheel)], check=True)
+    subprocess.run(
+        [*pip, "install", "--no-deps", "--no-index", "--no-compile", str(wheel)], check=True
+    )
     return folder
 
 

@@ -55,29 +55,26 @@ def bad_beginnings(source: str) -> Iterator[str]:
 
 def nameless(source: str) -> Iterator[str]:
     """Yield the place of every variable, argument, function, class and import called by such a word."""
-    tree, keys = ast.parse(source), set[ast.AST]()
+    keys = set[ast.AST]()
     # A class comes before its fields.
-    for node in ast.walk(tree):
-        match node:
-            case ast.ClassDef(name=owner, body=body):
-                fields = (line.target for line in body if isinstance(line, ast.AnnAssign))
-                keys.update(field for field in fields if (owner, ast.unparse(field)) in KEYS)
-        match node:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.Attribute(attr=name, ctx=ast.Store()):
-                pass
-            case (
-                ast.arg(arg=name) | ast.alias(name=name, asname=None) | ast.alias(asname=str(name))
-            ):
-                pass
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
-                pass
-            case ast.ClassDef(name=name) | ast.MatchAs(name=str(name)):
-                pass
-            case ast.ExceptHandler(name=str(name)):
-                pass
-            case _:
-                continue
-        if NAMELESS.fullmatch(name) and node not in keys:
+    for node in ast.walk(ast.parse(source)):
+        name: str | None = None
+        if isinstance(node, ast.Name | ast.Attribute):
+            if isinstance(node.ctx, ast.Store):
+                name = node.id if isinstance(node, ast.Name) else node.attr
+        elif isinstance(node, ast.ClassDef):
+            fields = (line.target for line in node.body if isinstance(line, ast.AnnAssign))
+            keys.update(field for field in fields if (node.name, ast.unparse(field)) in KEYS)
+            name = node.name
+        elif isinstance(node, ast.arg):
+            name = node.arg
+        elif isinstance(node, ast.alias):
+            name = node.asname or node.name
+        elif isinstance(
+            node, ast.FunctionDef | ast.AsyncFunctionDef | ast.MatchAs | ast.ExceptHandler
+        ):
+            name = node.name
+        if name and NAMELESS.fullmatch(name) and node not in keys:
             yield f"{node.lineno}: {name}"
 
 

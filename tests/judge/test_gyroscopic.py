@@ -90,7 +90,7 @@ def test_omega_in_space_axes_is_taken_to_the_body_first(tmp_path: Path) -> None:
     cause, *_ = causes(
         tmp_path,
         "euler/with-attitude",
-        in_space_axes(engine("euler/with-attitude", explicit, 0.01, 201)),
+        in_space_axes(engine("euler/with-attitude", explicit, 0.01, 51)),
     )
     assert cause.startswith("explicit gyroscopic step: ")
 

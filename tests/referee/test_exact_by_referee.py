@@ -26,7 +26,7 @@ from referee.motion import Row, motion
 
 HERE: Final = Path(__file__).parent
 MOST_REFUSED: Final = Fraction(2, 100)
-FEW: Final = 80
+FEW: Final = 40
 
 SCENE: Final = """
 title = "A body"

@@ -180,10 +180,10 @@ def test_blind(verify_solver):
     verify_solver("euler/generic", still, only="conserved")
 
 def test_one(verify_solver):
-    verify_solver("euler/generic", still, only="T")
+    verify_solver("euler/spherical", still, only="T")
 
 def test_seen(verify_solver):
-    verify_solver("euler/generic", too_fast, only=["T", "H2"])
+    verify_solver("euler/spherical", too_fast, only=["T", "H2"])
 
 def test_state(verify_solver):
     verify_solver("euler/spherical", still, only=["omega", "T"])
@@ -203,7 +203,7 @@ def test_the_note_of_a_worker_reaches_the_summary(pytester: pytest.Pytester) -> 
     """Under xdist, where tests run in other processes, the summary has the note all the same."""
     pytester.makepyfile(
         SOLVERS
-        + 'def test_blind(verify_solver):\n    verify_solver("euler/generic", still, only="T")\n'
+        + 'def test_blind(verify_solver):\n    verify_solver("euler/spherical", still, only="T")\n'
     )
     plugins = ("-p", "taylor_verify.testing.plugin", "-p", "xdist.plugin", "-n", "1")
     result = pytester.runpytest_subprocess(*plugins)
