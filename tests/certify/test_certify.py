@@ -207,6 +207,11 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
         (lambda t: SPLINE(t), {"degree": 3, "nodes": [0, "x"]}, "finite numbers, got 'x' @ nodes"),
         (lambda t: SPLINE(t), {"degree": 61, "nodes": NODES}, "a degree from 0 to 60"),
         ({**DOCUMENT, "breaks": NODES[::-1].tolist()}, {}, "breaks that rise"),
+        (
+            {"breaks": [0, 3, 2, 4], "quantities": {"omega": [[[1], [1], [1]]] * 3}},
+            {},
+            r"^expected breaks that rise, got 3 @ breaks\[\d\]$",
+        ),
         ({**DOCUMENT, "quantities": {"omega": [[[1.0]]] * 32}}, {}, "3 components"),
         (PPoly(SPLINE.c * 180 / np.pi, NODES), {}, "in degrees per unit of time"),
         (TABLE, {"interpolation": "quintic"}, "linear, cubic, hermite"),

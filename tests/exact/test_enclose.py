@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any, Final
 
 import pytest
+from builders.fields import drawn, verdict
 from mpmath import cos, mp, mpf, odefun, sin, sqrt
 
 from taylor_verify import enclose
@@ -88,6 +91,17 @@ def test_the_true_motion_lies_within_the_errors(name: str) -> None:
 def _number(text: Any) -> mpf:
     above, _, below = str(text).partition("/")
     return mpf(above) / mpf(below or 1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_fields_lie_within_the_errors(seed: int) -> None:
+    """No end of another integrator is outside; from a start that is off by 1e-14 it is."""
+    field = drawn(seed)
+    word = verdict(field)
+    assert word != "outside"
+    off = {name: number + Fraction(1, 10**14) for name, number in field.start.items()}
+    if word == "inside":
+        assert verdict(field, replace(field, start=off)) in ("outside", "not judged")
 
 
 def test_the_clock_may_begin_anywhere() -> None:
