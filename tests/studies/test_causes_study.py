@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
+from taylor_verify_reports.studies.causes import measure
 from taylor_verify_reports.studies.causes.kinds import KINDS
-from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, page, table
+from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
+from taylor_verify_reports.studies.unfinished import Parts
 
 
 def test_sound_methods_are_kinds() -> None:
@@ -24,3 +30,13 @@ def test_the_table_counts_every_answer() -> None:
     answers = [Named("a", "free", "right", ()), Named("b", "free", "false", ("x",))]
     assert table(answers).splitlines()[0] == f"| answers | {' | '.join(OUTCOMES)} |"
     assert table(answers).splitlines()[-1] == "| all | 1 | 0 | 0 | 0 | 0 | 1 |"
+
+
+def test_a_finished_answer_is_not_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After an interrupt the study goes on with the answers that are not finished yet."""
+    kind = next(kind for kind in KINDS if kind.name == "degrees")
+    (first,) = measured(1, 1, [kind], Parts(tmp_path))
+    monkeypatch.setattr(measure, "_answer", lambda *asked: None)
+    assert [*measured(1, 2, [kind], Parts(tmp_path))] == [first]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
+from itertools import product
 from typing import Final
 
 import numpy as np
@@ -24,6 +26,7 @@ from taylor_verify.solvers.files.file import Recorded
 from taylor_verify_reports.studies.causes.bodies import Sample, sample
 from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
 from taylor_verify_reports.studies.causes.simulated import Rows, printed
+from taylor_verify_reports.studies.unfinished import Parts
 
 SIZES: Final = (3e-3, 0.06, 0.5)
 OUTCOMES: Final = ("right", "several", "half", "silent", "passes", "false")
@@ -41,13 +44,20 @@ class Named:
     sentences: tuple[str, ...]
 
 
-def measured(seed: int, count: int, kinds: Iterable[Kind] = KINDS) -> Iterator[Named]:
-    """Yield what is said of so many answers of each kind."""
-    for kind in kinds:
-        for number in range(count):
+def measured(
+    seed: int, count: int, kinds: Iterable[Kind] = KINDS, stored: Parts | None = None
+) -> Iterator[Named]:
+    """Yield what is said of so many answers of each kind; those that are ``stored`` are not made again."""
+    for kind, number in product(kinds, range(count)):
+        key = json.dumps([seed, kind.name, number]).encode()
+        text = None if stored is None else stored.find(key)
+        if text is None:
             answer = _answer(kind, seed, number)
-            if answer is not None:
-                yield _named(kind, *answer)
+            text = json.dumps(None if answer is None else asdict(_named(kind, *answer)))
+            if stored is not None:
+                stored.keep(key, text)
+        if (fields := json.loads(text)) is not None:
+            yield Named(**{**fields, "sentences": tuple(fields["sentences"])})
 
 
 def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
