@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from taylor_verify.judge.causes.exact_motion import ExactMotion
+from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
+from taylor_verify_reports.studies.causes import measure
+from taylor_verify_reports.studies.causes.kind import right
 from taylor_verify_reports.studies.causes.kinds import KINDS
-from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, page, table
+from taylor_verify_reports.studies.causes.loaded import LOADED, any_sample
+from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
+from taylor_verify_reports.studies.unfinished import Parts
 
 
 def test_sound_methods_are_kinds() -> None:
@@ -24,3 +37,97 @@ def test_the_table_counts_every_answer() -> None:
     answers = [Named("a", "free", "right", ()), Named("b", "free", "false", ("x",))]
     assert table(answers).splitlines()[0] == f"| answers | {' | '.join(OUTCOMES)} |"
     assert table(answers).splitlines()[-1] == "| all | 1 | 0 | 0 | 0 | 0 | 1 |"
+
+
+def test_a_finished_answer_is_not_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After an interrupt the study goes on with the answers that are not finished yet."""
+    kind = next(kind for kind in KINDS if kind.name == "degrees")
+    (first,) = measured(1, 1, [kind], Parts(tmp_path))
+    monkeypatch.setattr(measure, "_answer", lambda *asked: None)
+    assert [*measured(1, 2, [kind], Parts(tmp_path))] == [first]
+
+
+# What the contract of likely causes names, and given files, each with its kind.
+_NAMED = {
+    "affine clock": "clock factor",
+    "clock that is early": "early clock",
+    "frames of 24, 60, 240": "times in frames",
+    "rounding of the stamps": "times rounded",
+    "jitter of the stamps": "times that scatter",
+    "a float32 running sum": "times by a float32 sum",
+    "rows saved twice": "rows saved twice",
+    "exact from the own first row": "own start",
+    "space axes turned": "space frame turned",
+    "body frame turned": "body frame turned",
+    "velocity of another point": "velocity of another point",
+    "path of another point": "path of another point",
+    "frame that turns": "frame that turns",
+    "constant current": "constant current",
+    "asleep from a time on": "asleep",
+    "a cap": "speed capped",
+    "a moment that stops": "load for a while",
+    "one row repeated": "row repeated",
+    "an error between the first two rows": "speed capped",
+    "methods of step": "RK4",
+    "held omega": "held rate of the attitude",
+    "in-place update": "attitude in place",
+    "components in place": "components updated in place",
+    "momentum turned explicitly": "momentum turned",
+    "side": "attitude on the wrong side",
+    "a method with loads": "RK4 and another load",
+    "a fault and steps": "a fault and Euler steps",
+    "steps that do not divide the rows": "steps that do not divide the rows",
+    "C of another matrix": "added mass missing in C",
+    "C of the other sign": "added mass of the other sign in C",
+    "C twice": "added mass twice in C",
+    "single entries of C_A zeroed": "entry of C_A zeroed",
+    "single entries of the other sign": "entry of C_A of the other sign",
+    "entries as public simulators": "entries of C_A as simulators zero them",
+    "centre of mass missing in one": "centre of mass in M alone",
+    "load left out": "thrust left out",
+    "load of another sign": "thrust of the other sign",
+    "load in space axes": "load in space axes",
+    "load that is held": "loads held over a step",
+    "load late by a step": "pulses late by a step",
+    "a switch missed": "switch missed",
+    "controller at another rate": "controller at another rate",
+    "controller one sample late": "controller one sample late",
+    "controller without its delay": "controller without its delay",
+    "continuous for sampled": "controller continuous",
+    "load in body axes": "one load more",
+    "load in space": "moment in space",
+    "couple of weight and buoyancy": "couple of weight and buoyancy left out",
+    "linear drag": "drag on one axis",
+    "quadratic drag": "quadratic drag",
+    "missing wheel": "wheels left out",
+    "another wheel": "wheel",
+    "factor of the gyroscopic term": "gyroscopic factor",
+    "cubic interpolation": "cubic interpolation",
+    "linear interpolation": "linear interpolation",
+    "attitude alone": "attitude alone",
+    "a body without closed form": "switch late by a step",
+    "drag by the ground velocity": "drag over ground",
+    "a direction turned the wrong way": "load turned the wrong way",
+    "gravity gradient without products": "products left out of the gravity gradient",
+}
+
+
+def test_every_name_of_the_vocabulary_is_a_kind() -> None:
+    """Each fault that the search shall name is a kind of the study, so that a silent one is counted."""
+    names = {kind.name for kind in KINDS}
+    assert {word: kind for word, kind in _NAMED.items() if kind not in names} == {}
+
+
+def test_loads_as_texts_and_as_plain_code_are_the_same() -> None:
+    """The exact motion of a scene with texts is that of the plain code, to the digits that it prints."""
+    for sort in LOADED:
+        body = any_sample(sort, np.random.default_rng([3, LOADED.index(sort)]))
+        rows = right(body)
+        times = [Fraction(str(t)) for t in rows.times[:6]]
+        given = adopt(body.scene, rung("f64"), times).given
+        exact = ExactMotion(given, has_centre=body.n == 6).at([*given.clock.elapsed], False)
+        assert np.max(np.abs(exact.v - rows.v[:6])) < 1e-10
+        if exact.c is not None and rows.c is not None:
+            assert np.max(np.abs(exact.c - rows.c[:6])) < 1e-10

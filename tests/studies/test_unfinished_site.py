@@ -8,6 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from taylor_verify.plotting.picture import Picture
+from taylor_verify_reports.studies import unfinished as folders
 from taylor_verify_reports.studies.site import pages, unfinished
 from taylor_verify_reports.studies.site.unfinished import Work
 
@@ -17,7 +18,7 @@ SOURCES = {"index.md": "# One\n"}
 
 @pytest.fixture(autouse=True)
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(unfinished, "user_cache_path", lambda name: tmp_path / name)
+    monkeypatch.setattr(folders, "user_cache_path", lambda name: tmp_path / name)
     return tmp_path
 
 

@@ -157,7 +157,11 @@ def material_of_file(
         return None
     names = [n for n in (MOMENTA[given.model], VELOCITIES) if set(n) <= set(file.groups)]
     if not names:
-        return _of_attitudes(file, given, conventions, verdicts, every)
+        group, times = _frame_of(file), np.array([float(t) for t in file.times])
+        if not group:
+            return None
+        q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
+        return material_of_attitudes(given, times, q, unit, verdicts, every)
     frame = _frame_of(file)
     own = _own_attitudes(file, frame, conventions) if frame else None
     in_space = not MOVING.isdisjoint(conventions.readings)
@@ -177,18 +181,15 @@ def material_of_file(
     return other if other.off <= LEAVES * answer.off else answer
 
 
-def _of_attitudes(
-    file: TrajectoryFile,
+def material_of_attitudes(
     given: Scene,
-    conventions: Conventions,
+    times: Floats,
+    q: Floats,
+    unit: float,
     verdicts: Iterable[Verdict],
-    every: int,
+    every: int = 1,
 ) -> Answer | None:
     """Return attitudes as material: with their own rates, or else with the exact motion."""
-    group, times = _frame_of(file), np.array([float(t) for t in file.times])
-    if not group:
-        return None
-    q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
     if given.model != "euler" or len(times) < _FEWEST_ATTITUDES:
         return _of_frame_alone(given, q, unit, verdicts, every)
     omega, noise = rates_of_attitudes(times, q, unit)

@@ -41,6 +41,7 @@ class Sample:
     ``lines`` belong to [body] of its scene and ``tables`` follow; ``acting`` says the same in numbers. A
     ``solid`` in a fluid may be stated by keys of [body] in place of its mass matrix, which is that of the
     ``dry`` solid and its added mass. A ``current`` changes the place alone: v is relative to the fluid.
+    ``source`` has the numbers of its loads.
     """
 
     sort: str
@@ -57,6 +58,7 @@ class Sample:
     solid: Mapping[str, Any] = field(default_factory=dict)
     dry: Floats = field(default_factory=lambda: np.zeros((6, 6)))
     current: Floats = field(default_factory=lambda: np.zeros(3))
+    source: Any = None
 
     @property
     def n(self) -> int:

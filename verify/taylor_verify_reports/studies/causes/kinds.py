@@ -7,12 +7,16 @@ that the search does not have, or a sound method: there silence is right.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
-from taylor_verify_reports.studies.causes.bodies import SORTS, Floats, Sample
+from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind, of, right, setting
+from taylor_verify_reports.studies.causes.kinds_of_loads import OF_LOADS
+from taylor_verify_reports.studies.causes.kinds_of_rows import OF_ROWS
+from taylor_verify_reports.studies.causes.kinds_of_steps import OF_STEPS
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
     Rows,
@@ -35,38 +39,10 @@ from taylor_verify_reports.studies.causes.stepping import (
     rk4,
 )
 
-RIGID: Final = ("free", "moment", "wheels")
-FLUID: Final = ("fluid", "momenta")
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of answers; ``words`` of which one stands in each true sentence."""
-
-    name: str
-    words: tuple[str, ...]
-    make: Make
-    sorts: tuple[str, ...] = SORTS
-
-
-def _of(change: Callable[[Law, Sample, Draw, float], None]) -> Make:
-    """Return the maker of a changed law."""
-
-    def make(sample: Sample, draw: Draw, size: float) -> Rows:
-        own = law(sample)
-        change(own, sample, draw, size)
-        return integrated(sample, own)
-
-    return make
-
 
 def _load_scale(sample: Sample) -> Floats:
     pace = float(np.linalg.norm(sample.v0[-3:]))
     return np.asarray(np.abs(sample.mass @ sample.v0) * pace + 0.05)
-
-
-def _set(name: str, value: Callable[[Sample, Draw, float], Any]) -> Make:
-    return _of(lambda own, s, d, size: setattr(own, name, value(s, d, size)))
 
 
 def _one(s: Sample, d: Draw, size: float) -> Floats:
@@ -158,10 +134,6 @@ def _waving(own: Law, s: Sample, d: Draw, size: float) -> None:
 # Conventions, times and rows, made of the right motion.
 
 
-def _right(sample: Sample, times: Floats | None = None) -> Rows:
-    return integrated(sample, law(sample), times)
-
-
 def _omega(rows: Rows, change: Callable[[Floats], Floats]) -> Rows:
     v = rows.v.copy()
     v[:, -3:] = change(v[:, -3:])
@@ -171,37 +143,37 @@ def _omega(rows: Rows, change: Callable[[Floats], Floats]) -> Rows:
 def _sign(s: Sample, d: Draw, size: float) -> Rows:
     signs = np.ones(3)
     signs[int(d.integers(3))] = -1
-    return _omega(_right(s), lambda w: w * signs)
+    return _omega(right(s), lambda w: w * signs)
 
 
 def _bias(s: Sample, d: Draw, size: float) -> Rows:
-    return _omega(_right(s), lambda w: w + size * d.uniform(0.3, 1, 3))
+    return _omega(right(s), lambda w: w + size * d.uniform(0.3, 1, 3))
 
 
 def _degrees(s: Sample, d: Draw, size: float) -> Rows:
-    return _omega(_right(s), lambda w: w * 180 / np.pi)
+    return _omega(right(s), lambda w: w * 180 / np.pi)
 
 
 def _space_axes(s: Sample, d: Draw, size: float) -> Rows:
-    rows = _right(s)
+    rows = right(s)
     turns = np.array([rotation(q) for q in rows.q])
     return _omega(rows, lambda w: np.einsum("nij,nj->ni", turns, w))
 
 
 def _conjugate(s: Sample, d: Draw, size: float) -> Rows:
-    rows = _right(s)
+    rows = right(s)
     return rows._replace(q=rows.q * np.array([1, -1, -1, -1]))
 
 
 def _scalar_last(s: Sample, d: Draw, size: float) -> Rows:
-    rows = _right(s)
+    rows = right(s)
     return rows._replace(q=np.roll(rows.q, -1, axis=1))
 
 
 def _space_turned(s: Sample, d: Draw, size: float) -> Rows:
     half, axis = size / 2, d.standard_normal(3)
     turn = np.array([np.cos(half), *(np.sin(half) * axis / np.linalg.norm(axis))])
-    rows = _right(s)
+    rows = right(s)
     a, u = turn[0], turn[1:]
     b, w = rows.q[:, :1], rows.q[:, 1:]
     q = np.hstack([a * b - w @ u[:, None], a * w + b * u + np.cross(u, w)])
@@ -212,20 +184,20 @@ def _at(late: Callable[[Sample, Draw, float], Floats]) -> Make:
     """Return rows of the right motion at other times than their stamps."""
 
     def make(s: Sample, d: Draw, size: float) -> Rows:
-        return _right(s, late(s, d, size))._replace(times=s.times)
+        return right(s, late(s, d, size))._replace(times=s.times)
 
     return make
 
 
 def _repeated(s: Sample, d: Draw, size: float) -> Rows:
-    rows, k = _right(s), int(d.integers(3, len(s.times) - 3))
+    rows, k = right(s), int(d.integers(3, len(s.times) - 3))
     v, q = rows.v.copy(), rows.q.copy()
     v[k], q[k] = v[k - 1], q[k - 1]
     return Rows(rows.times, v, q)
 
 
 def _interpolated(s: Sample, d: Draw, size: float) -> Rows:
-    rows, every = _right(s), int(d.integers(2, 6))
+    rows, every = right(s), int(d.integers(2, 6))
     nodes = np.arange(0, len(s.times), every)
     line = [np.interp(s.times, s.times[nodes], column[nodes]) for column in rows.v.T]
     turn = np.transpose([np.interp(s.times, s.times[nodes], c[nodes]) for c in rows.q.T])
@@ -239,7 +211,7 @@ def _own_start(s: Sample, d: Draw, size: float) -> Rows:
 
 
 def _jump(s: Sample, d: Draw, size: float) -> Rows:
-    rows, k = _right(s), len(s.times) // 2
+    rows, k = right(s), len(s.times) // 2
     kick = 1 + size * d.uniform(0.3, 1, s.n)
     later = replace(s, v0=rows.v[k] * kick, q0=rows.q[k], times=s.times[k:])
     after = integrated(later, law(later))
@@ -247,14 +219,14 @@ def _jump(s: Sample, d: Draw, size: float) -> Rows:
 
 
 def _asleep(s: Sample, d: Draw, size: float) -> Rows:
-    rows, k = _right(s), len(s.times) // 2
+    rows, k = right(s), len(s.times) // 2
     v, q = rows.v.copy(), rows.q.copy()
     v[k:], q[k:] = 0, q[k]
     return Rows(s.times, v, q)
 
 
 def _noise(s: Sample, d: Draw, size: float) -> Rows:
-    rows = _right(s)
+    rows = right(s)
     return rows._replace(v=rows.v * (1 + 1e-3 * size * d.standard_normal(rows.v.shape)))
 
 
@@ -268,7 +240,7 @@ def _coriolis_product(own: Law, s: Sample, d: Draw, size: float) -> None:
 
 
 def _turning_frame(s: Sample, d: Draw, size: float) -> Rows:
-    rows, rate = _right(s), size * d.uniform(0.3, 1, 3)
+    rows, rate = right(s), size * d.uniform(0.3, 1, 3)
     turns = np.array([rotation(q) for q in rows.q])
     return _omega(rows, lambda w: w - np.einsum("nij,i->nj", turns, rate))
 
@@ -308,27 +280,27 @@ def _fault_and_steps(s: Sample, d: Draw, size: float) -> Rows:
 
 
 _LOADS: Final = ("force", "couple", "moment", "loads", "factor of the inertia")
-KINDS: Final = (
-    Kind("clock factor", ("clock", "factor of the"), _set("clock", lambda s, d, e: 1 + e)),
-    Kind("gyroscopic factor", ("factor of the", "clock"), _of(_factor)),
-    Kind("no gyroscopic term", ("no gyroscopic", "no Coriolis", "sphere", "factor"), _of(_no_term)),
-    Kind("Munk moment", ("Munk",), _of(_munk), FLUID),
-    Kind("wheel", ("wheel",), _of(_wheel), ("wheels",)),
-    Kind("wheels left out", ("wheel",), _set("rotor", lambda s, d, e: 0 * s.rotor), ("wheels",)),
-    Kind("load left out", ("moment",), _set("load", lambda s, d, e: 0 * s.load), ("moment",)),
-    Kind("load of another size", _LOADS, _of(_moment_factor), ("moment",)),
-    Kind("load in space axes", ("space axes",), _of(_in_space), ("moment",)),
-    Kind("one load more", _LOADS, _set("load", lambda s, d, e: _one(s, d, e) + law(s).load)),
-    Kind("moment more", _LOADS, _set("load", lambda s, d, e: _three(s, d, e) + law(s).load)),
-    Kind("moment in space", ("space axes",), _set("space", _three)),
-    Kind("load from some time on", ("right up to", "force", "couple", "moment"), _of(_from_time)),
-    Kind("drag on one axis", ("drag",), _set("linear", _one)),
-    Kind("drag on all rates", ("drag",), _set("linear", _three)),
-    Kind("quadratic drag", ("quadratic drag",), _set("quadratic", _three)),
-    Kind("damping", ("damping",), _set("damping", lambda s, d, e: 0.1 * e)),
-    Kind("entry of the tensor", ("I_", "M_"), _of(_diagonal_entry)),
-    Kind("entry in the Coriolis terms", ("I_", "M_", "tensor in"), _of(_coriolis_entry)),
-    Kind("products left out", ("products", "off-diagonal", "tensor", "mass"), _of(_products)),
+SIMPLE: Final = (
+    Kind("clock factor", ("clock", "factor of the"), setting("clock", lambda s, d, e: 1 + e)),
+    Kind("gyroscopic factor", ("factor of the", "clock"), of(_factor)),
+    Kind("no gyroscopic term", ("no gyroscopic", "no Coriolis", "sphere", "factor"), of(_no_term)),
+    Kind("Munk moment", ("Munk",), of(_munk), FLUID),
+    Kind("wheel", ("wheel",), of(_wheel), ("wheels",)),
+    Kind("wheels left out", ("wheel",), setting("rotor", lambda s, d, e: 0 * s.rotor), ("wheels",)),
+    Kind("load left out", ("moment",), setting("load", lambda s, d, e: 0 * s.load), ("moment",)),
+    Kind("load of another size", _LOADS, of(_moment_factor), ("moment",)),
+    Kind("load in space axes", ("space axes",), of(_in_space), ("moment",)),
+    Kind("one load more", _LOADS, setting("load", lambda s, d, e: _one(s, d, e) + law(s).load)),
+    Kind("moment more", _LOADS, setting("load", lambda s, d, e: _three(s, d, e) + law(s).load)),
+    Kind("moment in space", ("space axes",), setting("space", _three)),
+    Kind("load from some time on", ("right up to", "force", "couple", "moment"), of(_from_time)),
+    Kind("drag on one axis", ("drag",), setting("linear", _one)),
+    Kind("drag on all rates", ("drag",), setting("linear", _three)),
+    Kind("quadratic drag", ("quadratic drag",), setting("quadratic", _three)),
+    Kind("damping", ("damping",), setting("damping", lambda s, d, e: 0.1 * e)),
+    Kind("entry of the tensor", ("I_", "M_"), of(_diagonal_entry)),
+    Kind("entry in the Coriolis terms", ("I_", "M_", "tensor in"), of(_coriolis_entry)),
+    Kind("products left out", ("products", "off-diagonal", "tensor", "mass"), of(_products)),
     Kind("own start", ("another start",), _own_start),
     Kind("jump", ("jump", "first two rows"), _jump),
     Kind("asleep", ("at rest", "all velocities are 0"), _asleep),
@@ -355,14 +327,14 @@ KINDS: Final = (
     Kind("held rate of the attitude", ("attitude turned by",), held_rate),
     Kind("attitude backwards", ("backwards", "turns by"), _backwards, (*RIGID, "fluid")),
     Kind("attitude on the wrong side", ("wrong axes",), _wrong_side, (*RIGID, "fluid")),
-    Kind("two faults", ("damping", *_LOADS), _of(_two)),
+    Kind("two faults", ("damping", *_LOADS), of(_two)),
     Kind("a fault and Euler steps", ("explicit Euler", *_LOADS), _fault_and_steps),
-    Kind("cubic drag", (), _of(_cubic)),
-    Kind("growing load", (), _of(_growing)),
-    Kind("waving load", (), _of(_waving)),
+    Kind("cubic drag", (), of(_cubic)),
+    Kind("growing load", (), of(_growing)),
+    Kind("waving load", (), of(_waving)),
     Kind("noise", ("contradicts",), _noise),
     Kind("attitude in place", ("in place",), in_place),
-    Kind("product in the Coriolis terms", ("C_", "Coriolis"), _of(_coriolis_product), FLUID),
+    Kind("product in the Coriolis terms", ("C_", "Coriolis"), of(_coriolis_product), FLUID),
     Kind("frame that turns", ("frame that turns",), _turning_frame, (*RIGID, "fluid")),
     Kind("tensor in space axes", ("space axes",), _tensor_in_space, ("free",)),
     Kind("RK45 at 1e-4", (), _coarse("RK45", 1e-4)),
@@ -370,5 +342,6 @@ KINDS: Final = (
     Kind("RK23 at 1e-5", (), _coarse("RK23", 1e-5)),
     Kind("LSODA at 1e-6", (), _coarse("LSODA", 1e-6)),
     Kind("Radau at 1e-6", (), _coarse("Radau", 1e-6)),
-    Kind("load for a while", ("from t =",), _of(_for_a_while), ("free", "wheels", *FLUID)),
+    Kind("load for a while", ("from t =",), of(_for_a_while), ("free", "wheels", *FLUID)),
 )
+KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS)

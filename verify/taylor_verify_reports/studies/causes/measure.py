@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
+from itertools import product
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Motion, steady_signs
 from taylor_verify.judge.causes.answers import explained
-from taylor_verify.judge.causes.material import material
+from taylor_verify.judge.causes.material import material, material_of_attitudes
 from taylor_verify.judge.judgement import unjudged
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -21,12 +23,16 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded
-from taylor_verify_reports.studies.causes.bodies import Sample, sample
-from taylor_verify_reports.studies.causes.kinds import KINDS, Kind
+from taylor_verify_reports.studies.causes.bodies import Sample
+from taylor_verify_reports.studies.causes.kind import Kind
+from taylor_verify_reports.studies.causes.kinds import KINDS
+from taylor_verify_reports.studies.causes.loaded import any_sample
 from taylor_verify_reports.studies.causes.simulated import Rows, printed
+from taylor_verify_reports.studies.unfinished import Parts
 
 SIZES: Final = (3e-3, 0.06, 0.5)
 OUTCOMES: Final = ("right", "several", "half", "silent", "passes", "false")
+_QUANTITIES: Final = ("omega", "impulse", "attitude", "centre")
 _LARGEST: Final = 1e3
 _TRIES: Final = 20
 
@@ -41,20 +47,27 @@ class Named:
     sentences: tuple[str, ...]
 
 
-def measured(seed: int, count: int, kinds: Iterable[Kind] = KINDS) -> Iterator[Named]:
-    """Yield what is said of so many answers of each kind."""
-    for kind in kinds:
-        for number in range(count):
+def measured(
+    seed: int, count: int, kinds: Iterable[Kind] = KINDS, stored: Parts | None = None
+) -> Iterator[Named]:
+    """Yield what is said of so many answers of each kind; those that are ``stored`` are not made again."""
+    for kind, number in product(kinds, range(count)):
+        key = json.dumps([seed, kind.name, number]).encode()
+        text = None if stored is None else stored.find(key)
+        if text is None:
             answer = _answer(kind, seed, number)
-            if answer is not None:
-                yield _named(kind, *answer)
+            text = json.dumps(None if answer is None else asdict(_named(kind, *answer)))
+            if stored is not None:
+                stored.keep(key, text)
+        if (fields := json.loads(text)) is not None:
+            yield Named(**{**fields, "sentences": tuple(fields["sentences"])})
 
 
 def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
     """Return an answer that stays of moderate size."""
     for attempt in range(_TRIES):
         draw = np.random.default_rng([seed, KINDS.index(kind), number, attempt])
-        body = sample(str(draw.choice(kind.sorts)), draw)
+        body = any_sample(str(draw.choice(kind.sorts)), draw)
         with np.errstate(all="ignore"):
             rows = kind.make(body, draw, SIZES[number % len(SIZES)])
         if np.all(np.isfinite(rows.v)) and np.max(np.abs(rows.v)) < _LARGEST:
@@ -68,12 +81,17 @@ def _named(kind: Kind, body: Sample, rows: Rows) -> Named:
     q, of_q = printed(rows.q, body.digits)
     scene = body.scene
     given = adopt(scene, rung("f64"), [Fraction(str(t)) for t in rows.times]).given
-    motion = Motion(v, steady_signs(q))
-    verdicts = [_failure(scene, name) for name in ("omega", "impulse", "attitude")]
+    motion, unit, of_c = Motion(v, steady_signs(q)), 2 * float(np.max(of_q)), np.zeros(3)
+    if kind.has_centre and rows.c is not None:
+        c, of_c = printed(rows.c, body.digits)
+        motion = replace(motion, c=c)
+    verdicts = [_failure(scene, name) for name in _QUANTITIES]
     with np.errstate(all="ignore"):
-        answer = material(
-            given, motion, has_momenta, (noise, 2 * float(np.max(of_q)), 0.0), verdicts, 3
-        )
+        if kind.has_rates:
+            noises = noise, unit, float(np.max(of_c))
+            answer = material(given, motion, has_momenta, noises, verdicts, 3)
+        else:
+            answer = material_of_attitudes(given, rows.times, steady_signs(q), unit, verdicts[2:3])
         if answer is None or not answer.failed:
             return Named(kind.name, body.sort, "passes", ())
         sentences = tuple(cause.sentence for cause in explained(answer).causes)

@@ -17,11 +17,12 @@ from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
 
 
 class Rows(NamedTuple):
-    """The rows of an answer: v (or momenta) and unit quaternions at some times."""
+    """The rows of an answer: v (or momenta), unit quaternions and the centre at some times."""
 
     times: Floats
     v: Floats
     q: Floats
+    c: Floats | None = None
 
 
 @dataclass
@@ -125,24 +126,26 @@ def integrated(
     turn = law.turn or turned
 
     def slope(t: float, z: Floats) -> Floats:
-        v, q, own = np.split(z, (n, n + 4))
+        v, q, _, own = np.split(z, (n, n + 4, n + 7))
         turning = law.clock * turn(q, v[-3:])
+        going = rotation(q) @ v[:3] + sample.current if n == 6 else np.zeros(3)
         own_rate = law.acting.rate(t, v, q / np.linalg.norm(q), own)
-        return np.concatenate([rates(law, t, v, q, own), turning, own_rate])
+        return np.concatenate([rates(law, t, v, q, own), turning, law.clock * going, own_rate])
 
-    z0 = np.concatenate([sample.v0, sample.q0 / np.linalg.norm(sample.q0), law.acting.start])
+    q0 = sample.q0 / np.linalg.norm(sample.q0)
+    z0 = np.concatenate([sample.v0, q0, np.zeros(3), law.acting.start])
     parts: list[Floats] = []
     for begin, end in pairwise(_edges(law, float(sample.times[0]), float(times[-1]))):
-        v, q, own = np.split(z0, (n, n + 4))
-        z0[n + 4 :] = law.acting.taken(begin, v, q / np.linalg.norm(q), own)
+        v, q, _, own = np.split(z0, (n, n + 4, n + 7))
+        z0[n + 7 :] = law.acting.taken(begin, v, q / np.linalg.norm(q), own)
         inside = times[(times > begin) & (times <= end)] if parts else times[times <= end]
         ask = np.union1d(inside, [end])
         solved = solve_ivp(slope, (begin, end), z0, method, t_eval=ask, rtol=rtol, atol=1e-3 * rtol)
         if not solved.success:
-            return _rows(times, np.full((len(times), n + 4), np.nan), n)
+            return _rows(times, np.full((len(times), n + 7), np.nan), n)
         parts.append(solved.y.T[np.isin(ask, inside)])
         z0 = solved.y[:, -1]
-    return _rows(times, np.vstack(parts)[:, : n + 4], n)
+    return _rows(times, np.vstack(parts)[:, : n + 7], n)
 
 
 def _edges(law: Law, begin: float, end: float) -> list[float]:
@@ -180,8 +183,8 @@ def stepped(
 
 
 def _rows(times: Floats, z: Floats, n: int) -> Rows:
-    q = z[:, n:]
-    return Rows(times, z[:, :n], q / np.linalg.norm(q, axis=1, keepdims=True))
+    q, c = z[:, n : n + 4], z[:, n + 4 :]
+    return Rows(times, z[:, :n], q / np.linalg.norm(q, axis=1, keepdims=True), c)
 
 
 def printed(values: Floats, digits: int) -> tuple[Floats, Any]:

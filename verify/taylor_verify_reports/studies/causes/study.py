@@ -7,6 +7,7 @@ from typing import Final
 
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
+from taylor_verify_reports.studies.unfinished import Parts, unfinished
 
 # The repository does not hold the page.
 _PAGE: Final = "local/causes.md"
@@ -14,15 +15,16 @@ _SEED: Final = 1
 
 
 def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
-    """Write the confusion table, and below it each false sentence."""
+    """Write the confusion table, and below it each false sentence; go on after an interrupt."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
     from taylor_verify_reports.studies.causes.measure import Named, measured, page
 
     finished, answers = progress.counting(len(KINDS)), list[Named]()
-    for kind in KINDS:
-        answers += measured(_SEED, count, [kind])
-        finished(kind.name)
-    return Measured(replace_files(folder, {_PAGE: page(answers)}))
+    with unfinished(STUDY.name, folder) as place:
+        for kind in KINDS:
+            answers += measured(_SEED, count, [kind], Parts(place))
+            finished(kind.name)
+        return Measured(replace_files(folder, {_PAGE: page(answers)}))
 
 
 def _positive(text: str) -> int:

@@ -1,8 +1,7 @@
-"""The folder in which a site is made: what was finished before an interrupt is there the next time.
+"""The folder in which a site is made, with what was finished before an interrupt.
 
-It lies in the user's cache, one for each report and each text of this package. A drawing has the digest of
-its picture for a name. What Sphinx has read of the pages is kept, as long as all sources are the same;
-others begin anew. The folder is removed when the site is whole.
+A drawing has the digest of its picture for a name. What Sphinx has read of the pages is kept, as long as
+all sources are the same; others begin anew.
 """
 
 from __future__ import annotations
@@ -10,39 +9,35 @@ from __future__ import annotations
 import hashlib
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
-from platformdirs import user_cache_path
-
-from taylor_verify.batch.lock import alone_in
 from taylor_verify.batch.pickling import dumps
-from taylor_verify.batch.store import package_digest
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.replacement import replace_files
+from taylor_verify_reports.studies import unfinished as folders
+from taylor_verify_reports.studies.unfinished import Parts
 
 _STAMP: Final = "sources.sha256"
 
 
 @dataclass(frozen=True)
 class Drawings:
-    """Drawings by the digest of their picture, each written as it is made."""
+    """Drawings by their pictures, each written as it is made."""
 
     folder: Path
 
     def find(self, picture: Picture) -> str | None:
-        file = self.folder / _name(picture)
-        return file.read_text(encoding="utf-8") if file.exists() else None
+        return self._parts.find(dumps(picture))
 
     def keep(self, picture: Picture, svg: str) -> None:
-        replace_files(self.folder, {_name(picture): svg})
+        self._parts.keep(dumps(picture), svg)
 
-
-def _name(picture: Picture) -> str:
-    return f"{hashlib.sha256(dumps(picture)).hexdigest()}.svg"
+    @property
+    def _parts(self) -> Parts:
+        return Parts(self.folder, ".svg")
 
 
 @dataclass(frozen=True)
@@ -90,23 +85,13 @@ def _digest(files: Mapping[str, str | bytes]) -> str:
 def unfinished(report: Path) -> Iterator[Work]:
     """Open the folder of the site of a report; after an interrupt it stays.
 
-    After an error its drawings stay: Sphinx would not look at a page with a fault again. Where the cache
-    cannot be written, nothing stays. Raises Occupied if the same site is being made.
+    After an error its drawings stay: Sphinx would not look at a page with a fault again. Raises Occupied if
+    the same site is being made.
     """
-    own = hashlib.sha256(str(report.resolve()).encode()).hexdigest()[:32]
-    place = user_cache_path("taylor-verify") / "site" / own
-    with ExitStack() as stack:
-        try:
-            stack.enter_context(alone_in(place))
-        except OSError:
-            place = Path(stack.enter_context(TemporaryDirectory(prefix="taylor-verify-site-")))
-        for old in place.iterdir():
-            if old.is_dir() and old.name != package_digest():
-                shutil.rmtree(old, ignore_errors=True)
-        work = Work(place / package_digest())
+    with folders.unfinished("site", report) as folder:
+        work = Work(folder)
         try:
             yield work
         except Exception:
             shutil.rmtree(work.pages, ignore_errors=True)
             raise
-        shutil.rmtree(work.folder, ignore_errors=True)

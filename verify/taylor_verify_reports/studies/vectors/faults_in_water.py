@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kinds import Kind
+from taylor_verify_reports.studies.causes.kind import Kind
 from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law, rotation
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
 from taylor_verify_reports.studies.vectors.loaded_kinds import without_lag

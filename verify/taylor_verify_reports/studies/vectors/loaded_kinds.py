@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
-from taylor_verify_reports.studies.causes.kinds import Kind
+from taylor_verify_reports.studies.causes.kind import Kind
 from taylor_verify_reports.studies.causes.simulated import Rows, integrated, law, rotation
 from taylor_verify_reports.studies.causes.stepping import Draw, Make
 from taylor_verify_reports.studies.vectors.bodies_under_loads import WRITTEN

@@ -16,7 +16,8 @@ import numpy as np
 import taylor_verify
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify_reports.studies.causes.kinds import FLUID, KINDS, RIGID, Kind
+from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind
+from taylor_verify_reports.studies.causes.kinds import SIMPLE
 from taylor_verify_reports.studies.causes.simulated import integrated, law
 from taylor_verify_reports.studies.vectors.bodies_under_loads import OWN_STATES, WRITTEN
 from taylor_verify_reports.studies.vectors.expected_words import family, forbidden
@@ -127,13 +128,13 @@ def judged(scene: str, answer: Columns) -> Said:
 
 @cache
 def _makers() -> list[Maker]:
-    rigid = [partial(_of_kind, kind, RIGID) for kind in KINDS if set(kind.sorts) & set(RIGID)]
+    rigid = [partial(_of_kind, kind, RIGID) for kind in SIMPLE if set(kind.sorts) & set(RIGID)]
     general = ("times", "frames", "starts")
-    moved = [k for k in KINDS if family(k.name) in general and k.name not in _BY_NUMBERS]
+    moved = [k for k in SIMPLE if family(k.name) in general and k.name not in _BY_NUMBERS]
     in_water = [
         *(partial(_of_kind, kind, kind.sorts) for kind in WATER_KINDS),
-        *(partial(_of_kind, kind, ("fluid",)) for kind in KINDS if kind.sorts == FLUID),
-        *(partial(_of_kind, kind, _WITHOUT_STATES) for kind in KINDS if _is_of_water(kind)),
+        *(partial(_of_kind, kind, ("fluid",)) for kind in SIMPLE if kind.sorts == FLUID),
+        *(partial(_of_kind, kind, _WITHOUT_STATES) for kind in SIMPLE if _is_of_water(kind)),
     ]
     under = [partial(_of_kind, k, _LOADED) for k in moved if family(k.name) != "starts"]
     written = [partial(_of_kind, kind, kind.sorts) for kind in LOADED_KINDS]

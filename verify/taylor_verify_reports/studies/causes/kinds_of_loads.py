@@ -1,0 +1,184 @@
+"""Kinds of faults of loads that a scene writes as texts, and of the Coriolis terms of an added mass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
+from taylor_verify_reports.studies.causes.kind import Kind, of
+from taylor_verify_reports.studies.causes.loaded import held
+from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law
+from taylor_verify_reports.studies.causes.stepping import Draw, Make
+
+_LOWER: Final = ((4, 0), (4, 2), (5, 0), (5, 1))
+
+
+def _crossing(p: Floats) -> Floats:
+    return np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
+
+
+def _added_coriolis(s: Sample, v: Floats) -> Floats:
+    """Return C_A(v) of Fossen (Handbook of Marine Craft Hydrodynamics, 2nd ed., 6.3.1)."""
+    p, turning = np.split((s.mass - s.dry) @ v, 2)
+    return np.block([[np.zeros((3, 3)), -_crossing(p)], [-_crossing(p), -_crossing(turning)]])
+
+
+def _entries(places: Callable[[Draw], Any], factor: float) -> Make:
+    """Return the maker of a motion with some entries of C_A times a factor."""
+
+    def change(own: Law, s: Sample, d: Draw, size: float) -> None:
+        mask = np.zeros((6, 6))
+        mask[tuple(np.transpose(places(d)))] = factor - 1
+        own.loads_of = lambda t, v: -(mask * _added_coriolis(s, v)) @ v
+
+    return of(change)
+
+
+def _any_entry(d: Draw) -> Any:
+    i, k = int(d.integers(6)), int(d.integers(2))
+    block = 3 if i < 3 or d.integers(2) else 0
+    return [(i, block + (i % 3 + 1 + k) % 3)]
+
+
+def _of_added(factor: float) -> Make:
+    def change(own: Law, s: Sample, d: Draw, size: float) -> None:
+        own.coriolis = s.dry + factor * (s.mass - s.dry)
+        own.munk = own.coriolis[:3].copy()
+
+    return of(change)
+
+
+def _no_added(own: Law, s: Sample, d: Draw, size: float) -> None:
+    own.mass, own.coriolis, own.munk = s.dry, s.dry.copy(), s.dry[:3].copy()
+
+
+def _centre_in_one(own: Law, s: Sample, d: Draw, size: float) -> None:
+    matrix = s.mass.copy()
+    matrix[:3, 3:] = matrix[3:, :3] = 0
+    own.coriolis, own.munk = matrix, matrix[:3].copy()
+
+
+def _with(**changes: Any) -> Make:
+    """Return the maker of a motion with another source of loads; a value may be made of the old source."""
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        values = {n: x(s.source, s, size) if callable(x) else x for n, x in changes.items()}
+        other = replace(s.source, **values)
+        acting = getattr(other, "acting", None)
+        if acting is None:
+            edges = getattr(other, "times", (getattr(other, "until", np.inf),))
+            acting = Acting(other.load, switches=tuple(edges))
+        return integrated(s, _acting(s, acting))
+
+    return make
+
+
+def _acting(s: Sample, acting: Acting) -> Law:
+    own = law(s)
+    own.acting = acting
+    return own
+
+
+def _held(s: Sample, d: Draw, size: float) -> Rows:
+    return integrated(s, _acting(s, held(s.source.load, s)))
+
+
+def _continuous(s: Sample, d: Draw, size: float) -> Rows:
+    return integrated(s, _acting(s, Acting(lambda t, v, q, own: -s.source.gain * v)))
+
+
+def _half_drag(v: Any, s: Any, size: float) -> Any:
+    return (1 + size) * v.drag
+
+
+def _one_drag_less(v: Any, s: Any, size: float) -> Any:
+    return v.drag * np.array([1, 0, 1, 1, 1, 1])
+
+
+_V: Final = ("vehicle",)
+_S: Final = ("sampled",)
+_DRAG: Final = ("drag", "abs(u", "abs(w")
+_THRUST: Final = ("force 1", "1 if t <", "from t =", "right up to")
+_PULSES: Final = ("late", "step(t -")
+OF_LOADS: Final = (
+    Kind(
+        "added mass missing in C",
+        ("lack the added mass", "added mass left out in"),
+        _of_added(0),
+        ("solid",),
+    ),
+    Kind("added mass twice in C", ("added mass twice",), _of_added(2), ("solid",)),
+    Kind(
+        "added mass of the other sign in C",
+        ("added mass with the other",),
+        _of_added(-1),
+        ("solid",),
+    ),
+    Kind("added mass missing", ("added mass left out", "mass"), of(_no_added), ("solid",)),
+    Kind("entry of C_A zeroed", ("C_",), _entries(_any_entry, 0.0), ("solid",)),
+    Kind("entry of C_A of the other sign", ("C_",), _entries(_any_entry, -1.0), ("solid",)),
+    Kind(
+        "entries of C_A as simulators zero them",
+        ("C_",),
+        _entries(lambda d: _LOWER, 0.0),
+        ("solid",),
+    ),
+    Kind(
+        "centre of mass in M alone",
+        ("centre of mass", "coupling left out in", "m r_"),
+        of(_centre_in_one),
+        ("solid",),
+    ),
+    Kind("drag of another size", _DRAG, _with(drag=_half_drag), _V),
+    Kind("drag left out on an axis", _DRAG, _with(drag=_one_drag_less), _V),
+    Kind("thrust left out", _THRUST, _with(thrust=0.0), _V),
+    Kind("thrust of the other sign", _THRUST, _with(thrust=lambda v, s, e: -v.thrust), _V),
+    Kind("switch missed", _THRUST, _with(until=np.inf), _V),
+    Kind(
+        "switch late by a step",
+        _THRUST,
+        _with(until=lambda v, s, e: v.until + float(s.times[1])),
+        _V,
+    ),
+    Kind(
+        "couple of weight and buoyancy left out",
+        ("weight", "buoyancy", "couple", "component 3 of its point"),
+        _with(arm=np.zeros(3)),
+        _V,
+    ),
+    Kind("drag over ground", ("ground",), _with(wind=lambda v, s, e: s.current), _V),
+    Kind("loads held over a step", ("held in between",), _held, (*_V, "pulse", "gradient")),
+    Kind("load turned the wrong way", ("wrong way",), _with(is_back=True), ("gradient",)),
+    Kind(
+        "products left out of the gravity gradient",
+        ("I12", "I13", "I23", "products"),
+        _with(inertia=lambda g, s, e: np.diag(np.diag(g.inertia))),
+        ("gradient",),
+    ),
+    Kind(
+        "pulses late by a step",
+        _PULSES,
+        _with(times=lambda p, s, e: tuple(t + float(s.times[1]) for t in p.times)),
+        ("pulse",),
+    ),
+    Kind("pulses left out", ("0.", "moment", "from t ="), _with(size=0.0), ("pulse",)),
+    Kind(
+        "controller at another rate",
+        ("taken every", "every ="),
+        _with(every=lambda c, s, e: 2 * c.every),
+        _S,
+    ),
+    Kind("controller one sample late", ("one sample late",), _with(delay=3), _S),
+    Kind("controller without its delay", ("without its delay",), _with(delay=0), _S),
+    Kind("controller continuous", ("continuous",), _continuous, _S),
+    Kind(
+        "controller of another gain",
+        ("in value of m", "of states", "every `"),
+        _with(gain=lambda c, s, e: (1 + e) * c.gain),
+        _S,
+    ),
+)

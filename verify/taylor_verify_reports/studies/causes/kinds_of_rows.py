@@ -1,0 +1,178 @@
+"""Kinds of faults in the rows of a right motion: times, frames, points, interpolation, starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from taylor_verify_reports.studies.causes.bodies import Floats, Sample
+from taylor_verify_reports.studies.causes.kind import RIGID, Kind, right
+from taylor_verify_reports.studies.causes.simulated import (
+    Rows,
+    integrated,
+    law,
+    rates,
+    rotation,
+    turned,
+)
+from taylor_verify_reports.studies.causes.stepping import Draw, Make
+
+_WITH_PATH: Final = ("fluid",)
+_PACES: Final = (1 / 24, 1 / 60, 1 / 240, 24.0, 60.0)
+
+
+def _changed(change: Callable[[Rows, Sample, Draw, float], Rows]) -> Make:
+    return lambda s, d, size: change(right(s), s, d, size)
+
+
+def _turns(rows: Rows) -> Floats:
+    return np.array([rotation(q) for q in rows.q])
+
+
+def _frames(s: Sample, d: Draw, size: float) -> Rows:
+    pace = _PACES[int(d.integers(3))]
+    return right(s, s.times * pace)._replace(times=s.times)
+
+
+def _float32_sum(s: Sample, d: Draw, size: float) -> Rows:
+    h = np.float32(s.times[1])
+    stamps = np.r_[0, np.cumsum(np.full(len(s.times) - 1, h), dtype=np.float32)].astype(float)
+    return right(s)._replace(times=stamps)
+
+
+def _jitter(s: Sample, d: Draw, size: float) -> Rows:
+    late = 0.1 * size * s.times[1] * d.uniform(-1, 1, len(s.times)) * (s.times > 0)
+    return right(s, s.times + late)._replace(times=s.times)
+
+
+def _dropped(s: Sample, d: Draw, size: float) -> Rows:
+    rows, k = (
+        right(s, np.r_[s.times, s.times[-1] + s.times[1]]),
+        int(d.integers(4, len(s.times) - 4)),
+    )
+    return Rows(s.times, np.delete(rows.v, k, 0), np.delete(rows.q, k, 0))
+
+
+def _twice(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    half = np.arange(len(s.times)) // 2 * 2
+    return Rows(s.times, rows.v[half], rows.q[half])
+
+
+def _outlier(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    v, k = rows.v.copy(), int(d.integers(3, len(s.times) - 3))
+    v[k] *= 1 + size
+    return rows._replace(v=v)
+
+
+def _body_turned(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    axis = d.standard_normal(3)
+    p = np.r_[np.cos(size / 2), np.sin(size / 2) * axis / np.linalg.norm(axis)]
+    v = np.hstack([part @ rotation(p) for part in np.split(rows.v, s.n // 3, axis=1)])
+    return rows._replace(v=v, q=np.array([2 * turned(q, p[1:]) + p[0] * q for q in rows.q]))
+
+
+def _exchanged(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    v, n = rows.v.copy(), s.n
+    v[:, [n - 3, n - 2]] = v[:, [n - 2, n - 3]]
+    return rows._replace(v=v)
+
+
+def _scaled(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    factors = np.ones(s.n)
+    factors[s.n - 3 + int(d.integers(3))] += size
+    return rows._replace(v=rows.v * factors)
+
+
+def _other_point(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    v = rows.v.copy()
+    v[:, :3] += np.cross(v[:, 3:], size * d.uniform(0.3, 1, 3))
+    return rows._replace(v=v)
+
+
+def _moving_frame(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    v = rows.v.copy()
+    v[:, :3] += np.einsum("nij,i->nj", _turns(rows), size * d.uniform(0.3, 1, 3))
+    return rows._replace(v=v)
+
+
+def _path(change: Callable[[Rows, Floats], Floats]) -> Make:
+    """Return rows with another path, by a vector of three."""
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        rows = right(s)
+        return rows._replace(c=change(rows, size * d.uniform(0.3, 1, 3)))
+
+    return make
+
+
+def _depth(rows: Rows, arm: Floats) -> Floats:
+    assert rows.c is not None
+    return np.asarray(rows.c * np.array([1, 1, -1]))
+
+
+def _of_point(rows: Rows, arm: Floats) -> Floats:
+    assert rows.c is not None
+    return np.asarray(rows.c + _turns(rows) @ arm)
+
+
+def _drifting(rows: Rows, arm: Floats) -> Floats:
+    assert rows.c is not None
+    return np.asarray(rows.c + rows.times[:, None] * arm)
+
+
+def _cubic(s: Sample, d: Draw, size: float) -> Rows:
+    from scipy.interpolate import CubicHermiteSpline
+
+    rows, own = right(s), law(s)
+    nodes = np.arange(0, len(s.times), int(d.integers(3, 6)))
+    slopes = [
+        np.r_[rates(own, t, v, q, np.zeros(0)), turned(q, v[-3:])]
+        for t, v, q in zip(s.times[nodes], rows.v[nodes], rows.q[nodes], strict=True)
+    ]
+    z = CubicHermiteSpline(s.times[nodes], np.hstack([rows.v, rows.q])[nodes], np.array(slopes))
+    times = s.times[: nodes[-1] + 1]
+    v, q = np.split(z(times), [s.n], axis=1)
+    return Rows(times, v, q / np.linalg.norm(q, axis=1, keepdims=True))
+
+
+def _capped(s: Sample, d: Draw, size: float) -> Rows:
+    """Return a motion whose velocities are cut down after the first row."""
+    later = integrated(replace(s, v0=s.v0 / (1 + size)), law(s))
+    return later._replace(v=np.vstack([s.v0, later.v[1:]]))
+
+
+def _alone(s: Sample, d: Draw, size: float) -> Rows:
+    own = law(s)
+    own.coriolis = (1 + size) * own.coriolis
+    return integrated(s, own)
+
+
+_AXES: Final = ("fixed rotation", "space axes turned", "contradicts")
+OF_ROWS: Final = (
+    Kind("times in frames", ("clock", "factor of the"), _frames),
+    Kind("times by a float32 sum", ("float32", "times", "clock"), _float32_sum),
+    Kind("times that scatter", ("times scatter", "times are rounded"), _jitter),
+    Kind("rows dropped", ("rows dropped", "jump"), _dropped),
+    Kind("rows saved twice", ("saved twice", "repeat", "held"), _changed(_twice)),
+    Kind("one row wrong", ("one row is wrong",), _changed(_outlier)),
+    Kind("body frame turned", _AXES, _changed(_body_turned), (*RIGID, "fluid")),
+    Kind("axes exchanged", ("other axes", "contradicts"), _changed(_exchanged)),
+    Kind("scale of an axis", ("factor", "contradicts"), _changed(_scaled)),
+    Kind("velocity of another point", ("another point",), _changed(_other_point), _WITH_PATH),
+    Kind("constant current", ("moving frame", "drifts"), _changed(_moving_frame), _WITH_PATH),
+    Kind("depth upward", ("other sign on axis 3",), _path(_depth), _WITH_PATH, has_centre=True),
+    Kind(
+        "path of another point",
+        ("path of the body",),
+        _path(_of_point),
+        _WITH_PATH,
+        has_centre=True,
+    ),
+    Kind("path that drifts", ("drifts",), _path(_drifting), _WITH_PATH, has_centre=True),
+    Kind("cubic interpolation", ("interpolation",), _cubic),
+    Kind("speed capped", ("first two rows", "jump"), _capped),
+    Kind("attitude alone", ("factor of the", "clock"), _alone, ("free", "wheels"), has_rates=False),
+)
