@@ -62,6 +62,12 @@ def test_each_treatment_is_named(
     assert kick is none or f", h = {h:g}; " in cause
 
 
+def test_a_step_much_finer_than_the_rows_is_named(tmp_path: Path) -> None:
+    """A hundred steps from row to row, on a body that flips: the first-order term alone says 108."""
+    cause, *_ = causes(tmp_path, "engines/flip", engine("engines/flip", explicit, 0.02, 21, 100))
+    assert cause.startswith("explicit gyroscopic step: explicit Euler, h = 0.02; ")
+
+
 @pytest.mark.parametrize("kick", by_turns([explicit, implicit], 2))
 @pytest.mark.parametrize("scene", by_turns(["euler/gyrostat", "euler/gyrostat-moment"], 2))
 def test_a_step_for_a_body_with_wheels_is_named(scene: str, kick: Kick, tmp_path: Path) -> None:

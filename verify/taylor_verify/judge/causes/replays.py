@@ -33,8 +33,10 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, which are this many roundings at least.
 _LEAVES: Final = 0.02
 _CLEAR: Final = 30.0
-# The steps of an arc by which the error of a method is measured; of explicit and implicit ones the most.
+# The steps of an arc by which the error of a method is measured; how many times
+# finer steps are measured again; of explicit and implicit ones the most.
 _FINE: Final = 16
+_MUCH_FINER: Final = 2
 _MOST: Final = 200
 _MOST_IMPLICIT: Final = 64
 # Evaluations of an implicit step, about.
@@ -152,21 +154,34 @@ class _Replays:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
-            errors = defects - self._stepped(method, _FINE, self.sets)
-            some = set[tuple[int, int]]()
-            for place, own in enumerate(zip(defects, errors, strict=True)):
-                some |= {(place, count) for count in self._counts(method, place, own, near)}
-            for place, count in sorted(some):
+            rests = self._stepped(method, _FINE, self.sets)
+            for place, count in self._near(method, defects, rests, near):
                 (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
                 if np.all(np.isfinite(rest)):
                     yield Steps(name, method, count, min(self._lefts(place, rest)))
 
+    def _near(
+        self, method: Method, defects: Floats, rests: Floats, near: float
+    ) -> Iterator[tuple[int, int]]:
+        """Yield each place with the numbers of steps by which the error of the method is the defects.
+
+        Much finer steps than those measured are measured once more: the first-order term alone misses them.
+        """
+        most = _MOST_IMPLICIT if method.is_implicit else _MOST
+        for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
+            counts = self._counts(method, place, own, own - rest, near, _FINE)
+            steps = counts[0] * self.stride if counts else 0
+            if _MUCH_FINER * _FINE < steps <= most:
+                (finer,) = self._stepped(method, steps, [self.sets[place]])
+                counts = self._counts(method, place, own, own - finer, near, steps) or counts
+            around = {max(1, count) + more for count in counts for more in (-1, 0, 1)}
+            yield from ((place, count) for count in sorted(around) if 1 <= count <= most)
+
     def _counts(
-        self, method: Method, place: int, own: tuple[Floats, Floats], near: float
-    ) -> set[int]:
-        """Return the numbers of steps from row to row by which the error would be the defects."""
-        parts, most = list[tuple[float, float]](), _MOST_IMPLICIT if method.is_implicit else _MOST
-        defects, error = own
+        self, method: Method, place: int, defects: Floats, error: Floats, near: float, steps: int
+    ) -> list[int]:
+        """Return the numbers of steps from row to row, best first, by the error of so many in an arc."""
+        parts = list[tuple[float, float]]()
         for basis in self._beside(place):
             beyond = across(basis, error)
             size = float(beyond @ beyond)
@@ -176,9 +191,8 @@ class _Replays:
             left = float(np.linalg.norm(across(basis, defects) - part * beyond)) / self.arcs.size
             if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.arcs.size:
                 parts.append((left, part))
-        some = [round(_FINE / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
-        around = {max(1, count) + more for count in some[:_FITS] for more in (-1, 0, 1)}
-        return {count for count in around if 1 <= count <= most}
+        some = [round(steps / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
+        return some[:_FITS]
 
     def _beside(self, place: int) -> Sequence[Floats]:
         none = np.zeros((self.arcs.of_right[: self.arcs.answer.n].size, 0))
