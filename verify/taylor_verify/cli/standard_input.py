@@ -20,7 +20,7 @@ from taylor_verify.solvers.files.file import TrajectoryFile, read
 from taylor_verify.solvers.files.formats.column import BYTES
 
 NAME: Final = "-"
-# The ending of a file by its first bytes; text is told apart below.
+# The ending of a file by its first bytes; text is known apart below.
 _ENDINGS: Final[Mapping[bytes, str]] = {
     b"PAR1": ".parquet",
     b"PK\x03\x04": ".npz",
@@ -37,19 +37,19 @@ def scene_and_files(
 
     Raises WrongCall with the faults of all, behind the ``faults`` that are known.
     """
-    told = list(faults)
+    known = list(faults)
 
     def attempt(reading: Callable[..., Any], *given: Any) -> Any:
         try:
             return reading(*given)
         except (WrongCall, Refused) as error:
-            told.extend(error.faults)
+            known.extend(error.faults)
 
     scene = attempt(read_scene, options.scene)
     columns = request(options.columns or ())
     files = [attempt(_read_named, name, columns, scene) for name in dict.fromkeys(options.files)]
-    if told:
-        raise WrongCall(*told)
+    if known:
+        raise WrongCall(*known)
     return scene, files
 
 

@@ -1,4 +1,4 @@
-"""What every result of a judgement has: its truth value, and the error that it raises."""
+"""Results that passed or did not: their truth value, and the error that they raise."""
 
 from __future__ import annotations
 

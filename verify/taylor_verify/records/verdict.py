@@ -129,7 +129,7 @@ class Verdict:
 
     @property
     def run(self) -> tuple[str, str, str, str]:
-        """What tells the run of the row from other runs: scene, solver, setting and rung."""
+        """Scene, solver, setting and rung, which tell the run of the row from other runs."""
         return self.scene, self.solver, self.setting, self.rung
 
     @property
