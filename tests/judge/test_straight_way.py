@@ -7,7 +7,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from builders.trajectories import exact_columns, write_csv
+from builders.trajectories import exact_columns, file_judgement, scalar_last, write_csv
 
 import taylor_verify
 from taylor_verify.judge.errors.measured import Block, Comparison, Measured
@@ -98,14 +98,21 @@ def test_a_right_file_passes_few_functions_and_no_search(tmp_path: Path) -> None
 
 def test_a_file_that_does_not_fit_is_searched(tmp_path: Path) -> None:
     """Another convention makes a row fail, so that it is searched for, and named."""
-    columns = dict(exact_columns(SCENE))
-    columns |= {"q0": tuple(-q for q in columns["q1"]), "q1": columns["q0"]}
-    columns["w1"] = tuple(-w for w in columns["w1"])
-    file = write_csv(tmp_path / "mine.csv", columns)
+    file = write_csv(tmp_path / "mine.csv", scalar_last(exact_columns(SCENE)))
     way = Way(file)
-    sys.setprofile(way)
+    searching = str(Path("judge", "conventions", "search.py"))
+
+    def until_searching(frame: FrameType, event: str, returned: Any) -> None:
+        way(frame, event, returned)
+        if searching in way.rooms:
+            sys.setprofile(None)
+
+    sys.setprofile(until_searching)
     try:
-        assert not taylor_verify.check(SCENE, file).passed
+        judgement = file_judgement(file, SCENE)
     finally:
         sys.setprofile(None)
-    assert str(Path("judge", "conventions", "search.py")) in way.rooms
+    assert searching in way.rooms
+    assert not judgement.passed
+    (finding,) = judgement.conventions
+    assert "scalar last" in finding.words
