@@ -154,6 +154,13 @@ def test_steps_that_are_wrong_are_no_interpolant() -> None:
     assert certificate.passed
 
 
+def test_a_body_at_rest_has_no_fault() -> None:
+    """An answer that is exact has no finding, though its proven bound is no zero."""
+    certificate = certify(until("euler/rest"), PPoly(np.zeros((4, 8, 3)), np.linspace(0, END, 9)))
+    assert certificate.bound["omega"] < 1e-100
+    assert not certificate.findings
+
+
 def test_gaps_are_named_with_their_places() -> None:
     """A jump and a span without pieces are found where they are, and do not pass."""
     jump = certify(SCENE, _wrong_node()).gaps

@@ -20,6 +20,8 @@ _BETWEEN: Final = 10.0
 # A fault explains an error if it leaves a tenth.
 _LEFT: Final = 0.1
 _ROUNDINGS: Final = 2.0**-46
+# An error within the rounding of a double is no fault.
+_LEAST: Final = 2.0**-53
 # The rounding of a time to float32 is at most 2^-24 of it; some rounding of the largest shifts is seen.
 _SINGLE: Final = 2.0**-24
 _LEAST_SHARE: Final = 2.0**-4
@@ -127,6 +129,8 @@ def _norm(vector: Floats) -> float:
 
 
 def _fault(nodes: Sequence[Node], bound: float, scale: float) -> Fault | None:
+    if bound <= _LEAST:
+        return None
     if _is_single(nodes):
         return Fault.ABSCISSA
     jumps = [node.jump for node in nodes if node.jump > node.rounding]
