@@ -120,7 +120,7 @@ PLAIN = [("o1", "(cos(0.3*t))"), ("o2", "(sin(0.3*t))"), ("o3", "0")]
                 GROUND,
                 "the loads take the velocity over ground, not that through the water",
             ),
-            (VEHICLE, DOUBLED, "quadratic drag twice"),
+            (VEHICLE, DOUBLED, "factor of all quadratic drag"),
             (VEHICLE, [("at = [0.02, 0, 0]", "at = [0, 0, 0]")], "buoyancy at the origin"),
             (SATELLITE, [*LAST[:2]], None),
             (SATELLITE, PRODUCTS[:2], None),
