@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from taylor_verify.judge.causes.exact_motion import ExactMotion
+from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify_reports.studies.causes import measure

@@ -11,19 +11,24 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.added_mass import faults_of_added_mass
 from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
-from taylor_verify.judge.causes.bodies import families_of_bodies, faults_of_bodies
+from taylor_verify.judge.causes.bodies import (
+    families_of_bodies,
+    faults_of_added_mass,
+    faults_of_bodies,
+)
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
 from taylor_verify.judge.causes.course import Courses
 from taylor_verify.judge.causes.equations import Changes
-from taylor_verify.judge.causes.fault import Fault, Sizes, both
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
+    Fault,
+    Sizes,
     across,
+    both,
     by_factor,
     gauss_newton,
     orthonormal,

@@ -10,9 +10,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
+from taylor_verify.judge.causes.answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row
-from taylor_verify.judge.causes.attitude_pieces import attitude_in_pieces
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.equations import (
@@ -23,11 +22,10 @@ from taylor_verify.judge.causes.equations import (
     rotations,
     to_space,
 )
-from taylor_verify.judge.causes.fault import Fault, linear
-from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.fit import Family, Fault, linear
 from taylor_verify.judge.causes.flow import Floats, flow
 from taylor_verify.judge.causes.methods import UPDATES
-from taylor_verify.judge.causes.proof import chained, maps_of_attitude, with_units
+from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
 from taylor_verify.judge.causes.replays import replay
 from taylor_verify.scenes.instants import evenly
 
@@ -40,6 +38,13 @@ _MOST: Final = 256
 _FEW: Final = 4
 _ALONG: Final = 0.5
 
+# A turn between two rows that is wrong by so many roundings, and by this part of the largest, is a jump.
+_JUMP: Final = 40.0
+_PART: Final = 1e-3
+# Jumps are few: this many, and one in so many rows.
+_FEW_JUMPS: Final = 3
+_ONE_IN: Final = 10
+_LAST: Final = 3
 # The weights (b, a) of q' = (b W q + a q W) / 2.
 _WRONG: Final = (
     ("attitude kinematics in the wrong axes: R' = [omega]x R with omega in body axes", (1.0, 0.0)),
@@ -63,7 +68,7 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     answer = answer.with_start(right.mass)
     rows = np.array(evenly(answer.count - 1, _ARCS))
     turns = _Turns(answer, Arcs(answer, rows, rows + 1), right)
-    in_pieces = None if method else attitude_in_pieces(answer, right)
+    in_pieces = None if method else _in_pieces(answer, right)
     if in_pieces is not None or turns.floor * _CLEAR > 1:
         return in_pieces
     search = Search(answer, turns, turns.motion, ["attitude"])
@@ -232,3 +237,68 @@ def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) ->
     q = with_units(arcs.begin(n)[0])[:, n:]
     rates = _rates(right, arcs, method, steps)
     return _updated(update, q, rates, arcs.spans / steps).transpose(2, 1, 0)
+
+
+# Attitudes that are set anew, or at rest for a part of the run.
+
+
+def _in_pieces(answer: Answer, right: Equations) -> Cause | None:
+    """Return the cause of attitudes that are right from row to row but at few of them, given the motion."""
+    q, n, arcs = answer.file.q, answer.n, row_to_row(answer)
+    assert q is not None
+    maps, ends = maps_of_attitude(right, arcs), arcs.ends(right, arcs.steps)
+    turned = np.einsum("aij,aj->ai", maps, q[:-1])
+    wrong = angles(q[1:], turned / np.linalg.norm(turned, axis=1, keepdims=True))
+    # What turns more than the file's own omega lets it is no jump of the attitude alone.
+    apart = np.linalg.norm(arcs.end[-3:] - ends[0, n - 3 : n], axis=0)
+    by_omega = np.abs(arcs.spans) * apart
+    bad = np.flatnonzero(wrong > max(_JUMP * answer.roundings["attitude"], _PART * np.max(wrong)))
+    still = np.all(q[1:] == q[:-1], axis=1)
+    if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= by_omega[bad]):
+        return None
+    if still[bad].all() and len(bad) >= _LAST and _is_one_part(bad):
+        return _stands_still(answer, maps, bad)
+    if len(bad) > min(_FEW_JUMPS, answer.count // _ONE_IN):
+        return None
+    begins = [0, *(int(row) + 1 for row in bad)]
+    listed = ", ".join(f"{answer.times[row] + answer.right.start:.6g}" for row in begins[1:])
+    words = (
+        f"attitude set anew at t = {listed}: each piece follows the motion from its own first row"
+    )
+    is_start = angles(q[bad[:1] + 1], q[:1])[0] <= answer.roundings["attitude"]
+    words += ", which is the attitude of the start" if is_start and len(bad) == 1 else ""
+    return _proven(answer, maps, begins, words)
+
+
+def _is_one_part(rows: Places) -> bool:
+    return bool(np.all(np.diff(rows) == 1))
+
+
+def _stands_still(answer: Answer, maps: Floats, bad: Places) -> Cause | None:
+    """Return the cause of attitudes that do not change in one part of the run."""
+    last = int(bad[-1]) + 1
+    still = maps.copy()
+    still[bad] = np.eye(4)
+    where = f"from t = {answer.times[bad[0]] + answer.right.start:.6g}"
+    if last < answer.count - 1:
+        where += f" to {answer.times[last] + answer.right.start:.6g}"
+    else:
+        where += " on"
+    return _proven(
+        answer, still, [0], f"attitude stands still {where}, and follows the motion before"
+    )
+
+
+def _proven(answer: Answer, maps: Floats, begins: list[int], words: str) -> Cause | None:
+    """Return the cause if each piece follows from its own first row, the first one from the start."""
+    q, start = answer.file.q, answer.start.q
+    assert q is not None
+    assert start is not None
+    pieces = [
+        chained(maps[begin : end - 1], q[begin] if begin else start[0])
+        for begin, end in zip(begins, [*begins[1:], answer.count], strict=True)
+    ]
+    left = answer.leaves(Motion(answer.truth.v, np.concatenate(pieces))).get("attitude", np.inf)
+    if left > may_leave(answer, ["attitude"]):
+        return None
+    return Cause(words, "attitude in pieces", {"attitude": left})

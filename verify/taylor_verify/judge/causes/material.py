@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.causes.answer import Answer, Motion, matrices, steady_signs
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.exact_motion import ExactMotion
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
 from taylor_verify.judge.causes.printed import half_units
@@ -46,6 +45,33 @@ _TOO_COARSE: Final = 1e-2
 # The work of a search; a motion without closed form takes as long itself.
 _BUDGET: Final = 400_000.0
 _BUDGET_WITHOUT_CLOSED_FORM: Final = 3_000_000.0
+
+
+class ExactMotion:
+    """The exact motion of a scene with its attitude, and with its centre if it ``has_centre``."""
+
+    def __init__(self, scene: Scene, has_centre: bool) -> None:
+        self._scene = scene
+        track = frozenset({"attitude", *["centre"] * has_centre})
+        self._exact = solution(replace(scene, track=track))
+
+    @property
+    def has_closed_form(self) -> bool:
+        return self._exact.route != "taylor"
+
+    def at(self, elapsed: list[Fraction], has_momenta: bool) -> Motion:
+        """Return the rows at these times since the start, with momenta or velocities. Raises Unsettled."""
+        rows = self._exact.evaluate(elapsed, _DIGITS)
+        q = steady_signs(quaternion_columns(rows["attitude"].astype(float)))
+        c = rows["centre"].astype(float) if "centre" in rows else None
+        return Motion(self._moving(rows, has_momenta), q, c)
+
+    def _moving(self, rows: Mapping[str, Any], has_momenta: bool) -> Any:
+        scene = self._scene
+        v = np.hstack([rows[name].astype(float) for name in MOMENTA[scene.model]])
+        if scene.model == "kirchhoff" and not has_momenta:
+            return v @ np.array(scene.body.energy_matrix, dtype=float).T
+        return v
 
 
 def are_known(body: Body) -> bool:

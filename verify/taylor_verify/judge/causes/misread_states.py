@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.fault import Fault
+from taylor_verify.judge.causes.fit import Fault
 from taylor_verify.judge.causes.written_numbers import Number, rewritten
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State

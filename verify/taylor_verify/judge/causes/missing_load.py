@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.arcs import Arcs, row_to_row
-from taylor_verify.judge.causes.fault import Sizes
+from taylor_verify.judge.causes.fit import Sizes
 from taylor_verify.judge.causes.flow import Floats
 from taylor_verify.records.answers import MissingLoad
 

@@ -14,14 +14,14 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
-from taylor_verify.judge.causes.answer import Answer, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.answer import Answer, Motion, conjugate, matrices, steady_signs
+from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics, in_numbers, in_states
 from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.in_world import in_world
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.proof import may_leave, whole
 from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
@@ -275,7 +275,40 @@ def _in_space(answer: Answer) -> list[Cause]:
     if causes:
         return _beside(convention, causes)
     in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
-    return _beside(convention, in_world(answer, answer.file.v)) or in_world(answer, in_space)
+    return _beside(convention, _in_world(answer, answer.file.v)) or _in_world(answer, in_space)
+
+
+def _in_world(answer: Answer, omega: Floats) -> list[Cause]:
+    """Return the cause of rows of ``omega``, space axes, of a body whose tensor is not turned with it."""
+    world = _in_space_axes(answer, omega)
+    none = answer.right.basis.factors(products=-coriolis_of(answer.right.mass))
+    name = (
+        "the tensor is not turned with the body: its entries for body axes are used in space axes"
+    )
+    for words, changes in (
+        (f"{name}, and there is no gyroscopic term: omega' = I^-1 R M", {"extra": none}),
+        (f"{name}: I omega' = I omega x omega + R M", {}),
+    ):
+        if not world.failed or not world.moving:
+            return []
+        motion = whole(world, world.right.changed(changes))
+        leaves = {} if motion is None else world.leaves(motion)
+        if leaves and max(leaves.values()) <= may_leave(world, world.moving):
+            return [Cause(words, "tensor in space axes", leaves)]
+    return []
+
+
+def _in_space_axes(answer: Answer, omega: Floats) -> Answer:
+    """Return a rigid body's answer with omega, and the equations, in space axes."""
+    turned, first = map(_with_omega_in_space, (answer.truth, answer.start))
+    right = answer.right.changed({"in_world": True, "turns": np.array([1.0, 0.0])})
+    file = Motion(omega, answer.file.q)
+    return replace(answer, right=right, start=first, truth=turned, file=file)
+
+
+def _with_omega_in_space(motion: Motion) -> Motion:
+    assert motion.q is not None
+    return replace(motion, v=np.einsum("nij,nj->ni", matrices(motion.q), motion.v))
 
 
 def _attitudes(answer: Answer) -> Iterator[tuple[str, Answer]]:

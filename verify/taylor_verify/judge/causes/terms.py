@@ -11,8 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.fault import Fault, Sizes, linear
-from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.fit import Family, Fault, Sizes, linear
 from taylor_verify.judge.causes.flow import Floats
 
 _WRONG: Final = (("left out", 0.0), ("with the other sign", -1.0))

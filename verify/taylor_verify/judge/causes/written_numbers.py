@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.fault import Fault
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fault
 from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.other_arguments import NAME, other_arguments
 from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
@@ -24,7 +24,6 @@ from taylor_verify.scenes.loads.tables import Kind
 
 KIND: Final = "number"
 _LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
 # A number below a fraction line makes the one of the other.
 _ANGLES: Final = (pi / 180, 180 / pi)
@@ -61,7 +60,7 @@ def numbers(loads: Loads) -> list[Number]:
 
 
 def faults_of_texts(right: Equations) -> Iterator[Fault]:
-    """Yield degrees and radians exchanged, weight or buoyancy left out, and tables of another kind."""
+    """Yield texts that read something else, hung forces otherwise, and tables of another kind."""
     loads, acting = right.loads, right.acting
     if loads is None or acting is None:
         return
@@ -69,17 +68,22 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
-    for k, hung in enumerate(loads.hung):
-        if not any(hung.force):
-            continue
-        left = with_entry(loads.hung, k, hung._replace(force=ZERO_VECTOR))
-        changes = {"acting": acting.of(replace(loads, hung=left))}
-        yield Fault(f"{HANGING[k]} left out", KIND, changes)
+    for name, other in (*_hung_otherwise(loads), *other_arguments(loads, rewritten)):
+        if next(other.faults(), None) is None:
+            yield Fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
         for kind in (kind for kind in Kind if kind is not table.kind):
             tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
             yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
+
+
+def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    for k, hung in enumerate(loads.hung):
+        for field, words in (("force", "left out"), ("at", "at the origin")):
+            if any(hung.force) and any(getattr(hung, field)):
+                other = with_entry(loads.hung, k, hung._replace(**{field: ZERO_VECTOR}))
+                yield f"{HANGING[k]} {words}", replace(loads, hung=other)
 
 
 def _is_free(number: Number) -> bool:
@@ -213,24 +217,24 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
-    """Yield the factor of all terms that read velocities."""
+    """Yield the factor of all terms that read velocities, and of those with their sizes alone."""
     names = frozenset(_moving_names(loads))
     texts = [entry for _, entries in loads.vectors for entry in entries if isinstance(entry, str)]
-    if sum(bool(_drag_of(names, text)) for text in texts) > 1:
-        name = "factor of all terms with velocities (drag)"
-        yield Number(name, 1.0, partial(_put_drag, loads, names))
+    for words, word in (("terms with velocities (drag)", ""), ("quadratic drag", "abs(")):
+        drag = partial(_drag_of, names, word)
+        if sum(bool(drag(text)) for text in texts) > 1:
+            yield Number(f"factor of all {words}", 1.0, partial(_put_drag, loads, drag))
 
 
-def _drag_of(names: frozenset[str], text: str) -> set[int]:
-    """Return the places of the terms of a text that read one of the names."""
-    parts = [] if " if " in text else terms(text)
-    return {k for k, part in enumerate(parts) if not names.isdisjoint(_NAME.findall(part))}
+def _drag_of(names: frozenset[str], word: str, text: str) -> set[int]:
+    """Return the places of the terms of a text that have a word and read one of the names."""
+    of_text = enumerate([] if " if " in text and not word else terms(text))
+    return {k for k, part in of_text if word in part and not names.isdisjoint(NAME.findall(part))}
 
 
-def _put_drag(loads: Loads, names: frozenset[str], value: float) -> Loads:
+def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Loads:
     def changed(text: str) -> str:
-        drag = _drag_of(names, text)
-        return _weighted(terms(text), drag, value) if drag else text
+        return _weighted(terms(text), drag(text), value) if drag(text) else text
 
     for name, _ in loads.vectors:
         loads = rewritten(loads, changed, name)
@@ -242,6 +246,6 @@ def _moving_names(loads: Loads) -> set[str]:
     names = {f"{letter}{i}" for letter in "uw" for i in (1, 2, 3)}
     for _ in loads.definitions:
         for name, entry in loads.definitions:
-            if isinstance(entry, str) and not names.isdisjoint(_NAME.findall(entry)):
+            if isinstance(entry, str) and not names.isdisjoint(NAME.findall(entry)):
                 names.add(name)
     return names

@@ -1,0 +1,139 @@
+"""Likely causes of answers whose loads read something else than the scene's, and near misses."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from builders.turns import by_turns
+from builders.wrong_dynamics import failure
+
+from taylor_verify.judge.causes.answer import Motion
+from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.material import ExactMotion, material
+from taylor_verify.models.problem import adopt
+from taylor_verify.numbers.precision import rung
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.scene import Scene
+
+SATELLITE = """
+title = "Gravity gradient and a controller"
+model = "euler"
+[body]
+inertia = [[1.2, 0.1, 0.05], [0.1, 0.9, -0.07], [0.05, -0.07, 1.6]]
+moment = [
+  "3*n^2*(o2*(I31*o1 + I32*o2 + I33*o3) - o3*(I21*o1 + I22*o2 + I23*o3)) - 0.2*q1 - 0.05*w1",
+  "3*n^2*(o3*(I11*o1 + I12*o2 + I13*o3) - o1*(I31*o1 + I32*o2 + I33*o3)) - 0.2*q2 - 0.05*w2",
+  "3*n^2*(o1*(I21*o1 + I22*o2 + I23*o3) - o2*(I11*o1 + I12*o2 + I13*o3)) - 0.2*q3 - 0.05*w3",
+]
+[define]
+n = "0.5"
+[space]
+o = ["cos(0.3*t)", "sin(0.3*t)", 0]
+[initial]
+omega = [0.3, -0.5, 0.4]
+attitude = [0.8, 0.4, 0.2, 0.4]
+[time]
+end = 6
+samples = 31
+"""
+VEHICLE = """
+title = "Vehicle in a current"
+model = "kirchhoff"
+[body]
+mass = 2
+inertia = [0.3, 0.7, 0.8]
+added_mass = [0.3, 1.5, 1.4, 0.05, 0.2, 0.2]
+force = ["0.4 - 0.3*abs(u1)*u1 - 0.1*u1", "-0.5*abs(u2)*u2 - 0.1*u2", "-0.6*abs(u3)*u3 - 0.1*u3"]
+couple = ["-0.1*w1", "-0.1*w2", "-0.2*w3"]
+weight = { force = [0, 0, 20], at = [0, 0, 0.05] }
+buoyancy = { force = [0, 0, -20], at = [0.02, 0, 0] }
+current = [0.2, 0.1, 0]
+[initial]
+linear_velocity = [0.9, -0.2, 0.1]
+angular_velocity = [0.1, 0.2, -0.3]
+[time]
+end = 4
+samples = 31
+"""
+
+
+@cache
+def scene(text: str) -> Scene:
+    return read(text, "loads")
+
+
+def names(changed: str, text: str) -> list[str]:
+    """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
+    given = adopt(scene(text), rung("f64"), list(scene(text).clock.instants)).given
+    moved = ExactMotion(scene(changed), has_centre=False).at([*given.clock.elapsed], False)
+    assert moved.q is not None
+    file = Motion(np.round(moved.v, 10), np.round(moved.q, 10))
+    noise = (np.full(moved.v.shape[1], 0.5e-10), 0.5e-10, 0.0)
+    verdicts = [failure(scene(text), name) for name in ("omega", "impulse", "attitude")]
+    answer = material(given, file, False, noise, verdicts)
+    assert answer is not None
+    return [cause.name for cause in explained(answer).causes]
+
+
+def swapped(text: str, *pairs: tuple[str, str]) -> str:
+    """The text with names exchanged, all at once."""
+    for k, (old, _) in enumerate(pairs):
+        text = text.replace(old, f"<{k}>")
+    for k, (_, new) in enumerate(pairs):
+        text = text.replace(f"<{k}>", new)
+    return text
+
+
+LAST = [("*q1", "*q0"), ("*q2", "*q1"), ("*q3", "*q2")]
+FIRST = [("*q1", "*q2"), ("*q2", "*q3"), ("*q3", "*q0")]
+PRODUCTS = [(f"I{i}{k}*", "0*") for i in (1, 2, 3) for k in (1, 2, 3) if i != k]
+GROUND = [(f"u{i}", f"(u{i} + 0.2*r1{i} + 0.1*r2{i})") for i in (1, 2, 3)]
+DOUBLED = [(f"{x}*abs", f"{2 * x}*abs") for x in (0.3, 0.5, 0.6)]
+PLAIN = [("o1", "(cos(0.3*t))"), ("o2", "(sin(0.3*t))"), ("o3", "0")]
+
+
+@pytest.mark.parametrize(
+    ("text", "pairs", "name"),
+    by_turns(
+        [
+            (
+                SATELLITE,
+                LAST,
+                "the loads read the quaternion with the scalar last, which comes first",
+            ),
+            (
+                SATELLITE,
+                FIRST,
+                "the loads read the quaternion with the scalar first, which comes last",
+            ),
+            (SATELLITE, PRODUCTS, "the loads have no products of inertia"),
+            (SATELLITE, PLAIN, "o of [space] is not turned into body axes"),
+            (
+                SATELLITE,
+                [(f"*w{i}", f"*180/pi*w{i}") for i in (1, 2, 3)],
+                "the loads take omega in degrees",
+            ),
+            (
+                VEHICLE,
+                GROUND,
+                "the loads take the velocity over ground, not that through the water",
+            ),
+            (VEHICLE, DOUBLED, "factor of all quadratic drag"),
+            (VEHICLE, [("at = [0.02, 0, 0]", "at = [0, 0, 0]")], "buoyancy at the origin"),
+            (SATELLITE, [*LAST[:2]], None),
+            (SATELLITE, PRODUCTS[:2], None),
+            (VEHICLE, [GROUND[0], DOUBLED[1]], None),
+        ],
+        3,
+        lambda text, pairs, name: (text, name is None),
+    ),
+)
+def test_loads_that_read_something_else_are_named(
+    text: str, pairs: list[tuple[str, str]], name: str | None
+) -> None:
+    """A load that reads another argument has its name; one that does so here and there has none."""
+    body = text[text.index("[body]") : text.index("[initial]")]
+    asked = names(text.replace(body, swapped(body, *pairs)), text)
+    assert asked == ([] if name is None else [name])
