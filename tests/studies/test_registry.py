@@ -268,7 +268,7 @@ def test_every_study_has_a_name_of_its_own() -> None:
     names = [study.name for study in others]
     assert len(set(names)) == len(names)
     place = Path(registry.__file__).parent
-    assert all((place / name / "study.py").is_file() for name in names if name != "smallest")
+    assert all((place / name / "__init__.py").is_file() for name in names if name != "smallest")
     folders = {file.parent.name for file in place.glob("*/study.py")}
     assert folders == set(names) - {"smallest"}
     values = [study.options for study in others if study.options]
