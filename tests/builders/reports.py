@@ -34,19 +34,19 @@ from taylor_verify_reports.controls.defects import DEFECTS
 from taylor_verify_reports.studies import figures, registry, report
 from taylor_verify_reports.studies.claims.page import CLAIMS
 from taylor_verify_reports.studies.controls import measure as sight
-from taylor_verify_reports.studies.controls import study as controls
+from taylor_verify_reports.studies.controls import page as controls
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify_reports.studies.engines.document import write as write_board
 from taylor_verify_reports.studies.engines.entry import entry_list
-from taylor_verify_reports.studies.engines.stored import write as write_board
+from taylor_verify_reports.studies.growth.experiment import followed
 from taylor_verify_reports.studies.growth.page import GROWTH
-from taylor_verify_reports.studies.growth.published import followed
 from taylor_verify_reports.studies.growth.question import Question
 from taylor_verify_reports.studies.hard.document import HARD
 from taylor_verify_reports.studies.portraits.measure import portrait
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import reference
-from taylor_verify_reports.studies.tradeoff.stored import write as write_tradeoff
+from taylor_verify_reports.studies.tradeoff.document import write as write_tradeoff
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.

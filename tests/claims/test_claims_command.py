@@ -17,7 +17,7 @@ from taylor_verify_reports.claims.claim import Claim, Verdict
 from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
 from taylor_verify_reports.studies.claims.page import CLAIMS, page
-from taylor_verify_reports.studies.claims.study import STUDY as PUBLISHED
+from taylor_verify_reports.studies.claims.page import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}

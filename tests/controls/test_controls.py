@@ -23,7 +23,7 @@ from taylor_verify_reports.studies.controls import page as controls
 from taylor_verify_reports.studies.controls import proof
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
 from taylor_verify_reports.studies.controls.measure import RUNG, Twins, sights, study
-from taylor_verify_reports.studies.controls.study import STUDY
+from taylor_verify_reports.studies.controls.page import STUDY
 
 NAMED = {defect.name: defect for defect in DEFECTS}
 TWINS: Twins = {}

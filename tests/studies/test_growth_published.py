@@ -16,13 +16,12 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.growth import experiment as experiments
 from taylor_verify_reports.studies.growth import page as pages
-from taylor_verify_reports.studies.growth import published
 from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity
 from taylor_verify_reports.studies.growth.errors import PHASE, Measured
 from taylor_verify_reports.studies.growth.experiment import course, ensemble_errors, experiment
 from taylor_verify_reports.studies.growth.fit import BIAS, Law
+from taylor_verify_reports.studies.growth.page import STUDY
 from taylor_verify_reports.studies.growth.question import Question
-from taylor_verify_reports.studies.growth.study import STUDY
 
 SHORT = 10**3.5
 
@@ -89,8 +88,8 @@ def test_brouwers_law_to_a_hundred_thousand_periods() -> None:
 @pytest.fixture
 def one_short_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
     axis, generic = load("euler/about-max-axis"), load("euler/generic")
-    monkeypatch.setattr(published, "published", lambda: [Question(axis, rung("f64"), 1e5, 4)])
-    monkeypatch.setattr(published, "long", lambda: [Question(generic, rung("f64"), 1e8, 3)])
+    monkeypatch.setattr(experiments, "published", lambda: [Question(axis, rung("f64"), 1e5, 4)])
+    monkeypatch.setattr(experiments, "long", lambda: [Question(generic, rung("f64"), 1e8, 3)])
 
 
 @pytest.mark.usefixtures("one_short_ensemble")

@@ -34,7 +34,7 @@ from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.hard import measure, reach, search
 from taylor_verify_reports.studies.hard import page as pages
 from taylor_verify_reports.studies.hard.document import HARD, last_value
-from taylor_verify_reports.studies.hard.study import STUDY, store_scenes
+from taylor_verify_reports.studies.hard.page import STUDY, store_scenes
 
 
 def lines(text: str, *words: str) -> list[str]:

@@ -42,7 +42,7 @@ from taylor_verify_reports.studies.controls import page as controls
 from taylor_verify_reports.studies.controls.document import CONTROLS
 from taylor_verify_reports.studies.enclosure.measure import SCENES, widths
 from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
-from taylor_verify_reports.studies.engines import stored as board
+from taylor_verify_reports.studies.engines import document as board
 from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.growth import page as growth
 from taylor_verify_reports.studies.hard.document import HARD
@@ -50,7 +50,7 @@ from taylor_verify_reports.studies.paper.pack import pack
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.site.builder import build
 from taylor_verify_reports.studies.stored import Stored
-from taylor_verify_reports.studies.tradeoff import stored as trades
+from taylor_verify_reports.studies.tradeoff import document as trades
 from taylor_verify_reports.typesetting.paper import images
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -12,12 +12,11 @@ import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.page import page
-from taylor_verify_reports.studies.tradeoff.stored import (
+from taylor_verify_reports.studies.tradeoff.document import (
     Trades,
     write,
 )
-from taylor_verify_reports.studies.tradeoff.study import STUDY
+from taylor_verify_reports.studies.tradeoff.page import STUDY, page
 
 
 @pytest.fixture(scope="module")

@@ -20,9 +20,9 @@ from builders.studies.engines import (
 )
 
 from taylor_verify.plotting.picture import content
-from taylor_verify_reports.studies.engines import page, stored
+from taylor_verify_reports.studies.engines import page
 from taylor_verify_reports.studies.engines.advice import advice
-from taylor_verify_reports.studies.engines.document import EngineRow, Standing
+from taylor_verify_reports.studies.engines.document import EngineRow, Standing, find, write
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list
 from taylor_verify_reports.studies.engines.pictures import energy, sweeps, work
@@ -162,7 +162,7 @@ def test_an_engine_that_loses_a_loaded_motion_is_named() -> None:
 def test_the_page_has_what_was_measured(tmp_path: Path) -> None:
     """The page has every engine with its best step, orders and errors, and the sheet has all rows."""
     document = board()
-    stored.write(tmp_path, document)
+    write(tmp_path, document)
     made = {path.name for path in STUDY.publish(tmp_path).written}
     assert {"engines.md", "engines.csv", "engines-time.svg", "engines-step.svg"} <= made
     assert "engines-energy.svg" in made
@@ -236,7 +236,7 @@ def test_a_picture_has_a_line_for_each_engine() -> None:
 
 def test_no_colour_stands_for_two_engines() -> None:
     """The best two and the worst of each precision have a colour of their own, all others are grey."""
-    published = stored.find(REPORTS)
+    published = find(REPORTS)
     assert published is not None
     drawn = work.panels(published, entry_list(), SCENE, published.pace, 1e6)
     styles = [line.look for panel in drawn for line in panel.lines if not line.look.dashes]

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from taylor_verify_reports.studies.engines import stored
-from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.document import Board, EngineRow, find
 from taylor_verify_reports.studies.engines.entry import BOARDS, entry_list
 from taylor_verify_reports.verbs import board as verb
 
@@ -18,7 +17,7 @@ REPORTS = Path(__file__).resolve().parents[3] / "reports"
 
 @cache
 def board() -> Board:
-    published = stored.find(REPORTS)
+    published = find(REPORTS)
     assert published is not None
     return published
 

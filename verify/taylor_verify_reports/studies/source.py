@@ -18,8 +18,8 @@ from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
 from taylor_verify_reports.studies.controls.document import CONTROLS, Sight
 from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.tradeoff import stored as trades
-from taylor_verify_reports.studies.tradeoff.stored import Trade
+from taylor_verify_reports.studies.tradeoff import document as trades
+from taylor_verify_reports.studies.tradeoff.document import Trade
 
 Document = Mapping[str, Any]
 

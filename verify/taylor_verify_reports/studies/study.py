@@ -1,6 +1,6 @@
 """A study: a measurement, its document below a report folder, its pages and its pictures.
 
-Each folder of `studies` with a module `study` is one study, and `registry` lists all studies. The command
+Each folder of `studies` has one study or more, and `registry` lists all studies. The command
 line, the report with its index, the pictures and the missing data are made by loops over that list.
 """
 

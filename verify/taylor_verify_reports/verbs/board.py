@@ -229,7 +229,9 @@ def _added(options: argparse.Namespace, folder: Path, boards: Sequence[str]) -> 
         _status(runs),
         {"rows": rows, "pages": pages},
         lambda: "\n".join([*map(_line, runs), *pages]),
-        [_SENDING.format(place=folder / own.OWN / engine.name)],
+        [_SENDING.format(place=folder / own.OWN / engine.name)]
+        if any(answer.row.is_judged for answer in runs)
+        else [],
     )
 
 

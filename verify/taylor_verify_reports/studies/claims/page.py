@@ -1,4 +1,4 @@
-"""Page of the ledger: first the corrections to the two texts, then every entry.
+"""The study of the claims: the ledger of both source texts, every entry checked.
 
 It is made from the rows of `claims --json` alone, and is the same on every machine. Their versions are in
 data/claims.json.
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import isfinite
+from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.json_text import complete
@@ -17,6 +18,7 @@ from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.claims.document import ClaimRow, ClaimsStudy, Verdict
 from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 CLAIMS: Final = Stored(ClaimsStudy, "claims", lambda study: study.document())
 
@@ -195,3 +197,36 @@ def _claimed(row: ClaimRow) -> dict[str, Any]:
         "residual_transcribed": residual["transcribed"],
         "mutations": "; ".join(row.mutations),
     }
+
+
+# The study.
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    """Check the whole ledger, and store it only if every entry still has its verdict."""
+    from taylor_verify.judge.provenance import command, processor, versions
+    from taylor_verify.records.provenance import Provenance
+    from taylor_verify_reports.claims.document import ClaimsStudy
+    from taylor_verify_reports.claims.ledger import claims, examined, missed
+    from taylor_verify_reports.claims.numbers import CITED
+
+    asked = claims()
+    with progress.working(f"claims, {len(asked)} entries"):
+        rows = tuple(finding.row() for finding in examined(asked))
+    if faults := missed(rows):
+        return Measured(messages=faults, status=1)
+    made_by = Provenance(versions(), processor(), command())
+    return Measured(CLAIMS.write(folder, ClaimsStudy(made_by, dict(CITED), rows)))
+
+
+STUDY: Final = Study(
+    name="claims",
+    title="every numbered equation of the two source texts, checked; errata in front",
+    duration="a minute",
+    measure=_measure,
+    find=CLAIMS.find,
+    page=lambda study, folder: page(study),
+    sheet=sheet,
+    place="claims.md",
+    needs_heyoka=False,
+)

@@ -1,9 +1,10 @@
-"""Page of the defects that each gate sees, with the sentences that this proves, from stored rows."""
+"""The study of the controls: deliberately broken solvers, and the gates that see their faults."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.json_text import plain
@@ -22,6 +23,7 @@ from taylor_verify_reports.studies.controls.proof import (
     times_bound,
     title,
 )
+from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 # Marks around the short table in a page that is otherwise written by hand.
 BEGIN: Final = "<!-- controls: made by taylor-verify publish; do not edit -->"
@@ -264,3 +266,25 @@ def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
             "twin_verdict": None if twin is None else twin.verdict.value,
             "twin_ratio": None if twin is None else twin.ratio,
         }
+
+
+# The study.
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    from taylor_verify_reports.controls.defects import DEFECTS
+    from taylor_verify_reports.studies.controls.measure import sights, study
+
+    measured = sights(DEFECTS, progress.counting(len(DEFECTS)))
+    return Measured(CONTROLS.write(folder, study(measured)))
+
+
+STUDY: Final = Study(
+    name="controls",
+    title="what each gate sees of solvers that were broken on purpose",
+    duration="a minute",
+    measure=_measure,
+    find=CONTROLS.find,
+    page=lambda study, folder: page(study),
+    sheet=sheet,
+)

@@ -15,7 +15,7 @@ from typing import Final
 from taylor_verify.check import check
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.replacement import replace_files
-from taylor_verify_reports.studies.engines import engine_page, loaded_page, page, stored
+from taylor_verify_reports.studies.engines import document, engine_page, loaded_page, page
 from taylor_verify_reports.studies.engines.answer import Answer, row_of
 from taylor_verify_reports.studies.engines.document import (
     Board,
@@ -201,7 +201,7 @@ def read(folder: Path, name: str) -> tuple[Board | None, EntryList, list[Answer]
     answers, entries = own_answers(folder, name), entry_list(name)
     engines = {answer.row.engine: answer.row.solver for answer in answers}
     more = (Entry(engine, engine, solver) for engine, solver in engines.items())
-    board = stored.find(folder, name)
+    board = document.find(folder, name)
     return board, replace(entries, entry=(*entries.entry, *more)), answers
 
 

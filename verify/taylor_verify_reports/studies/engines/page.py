@@ -15,7 +15,7 @@ from taylor_verify.words.page import made_with, whole
 from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.engines.advice import advice, like
-from taylor_verify_reports.studies.engines.document import Board, EngineRow
+from taylor_verify_reports.studies.engines.document import Board, EngineRow, places
 from taylor_verify_reports.studies.engines.engine_page import place
 from taylor_verify_reports.studies.engines.entry import EntryList, entry_list, list_of
 from taylor_verify_reports.studies.engines.findings import findings
@@ -27,7 +27,6 @@ from taylor_verify_reports.studies.engines.ranking import (
     newest,
     settings,
 )
-from taylor_verify_reports.studies.engines.stored import places
 
 _WHAT: Final = (
     "Each engine turns a free body, and its answer is compared with the exact motion of the same "

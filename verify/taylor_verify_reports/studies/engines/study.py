@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
-from taylor_verify_reports.studies.engines import loaded_page, page, stored
+from taylor_verify_reports.studies.engines import document, loaded_page, page
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import entry_list
@@ -32,7 +32,7 @@ def _measure(
 
     try:
         entries = entry_list(name)
-        board = stored.find(folder, name)
+        board = document.find(folder, name)
         known = [] if board is None else answers_of(board)
     except ValueError as error:
         raise NotMeasured(str(error)) from error
@@ -47,7 +47,7 @@ def _measure(
         if not (anew and (not only or answer.row.engine in only))
     }
     answers = measure(entries, reused, store, progress.say, only, workers)
-    written = stored.write(folder, board_of(answers, workers, name))
+    written = document.write(folder, board_of(answers, workers, name))
     # Until the results are stored, the measurement can be continued.
     store.forget()
     return Measured(written)
@@ -75,7 +75,7 @@ STUDY: Final[Study[Board]] = Study(
     title="physics engines on free motions: which setting is right to how many digits",
     duration="about 20 minutes on two cores once the engines are installed",
     measure=partial(_measure, "engines"),
-    find=stored.find,
+    find=document.find,
     page=page.page,
     sheet=page.sheet,
     parts=lambda board: pages(board, entry_list()),
@@ -91,7 +91,7 @@ def _under_loads(name: str, title: str) -> Study[Board]:
         title=title,
         duration="about 4 minutes on two cores once the engines are installed",
         measure=partial(_measure, name),
-        find=lambda folder: stored.find(folder, name),
+        find=lambda folder: document.find(folder, name),
         page=loaded_page.page,
         sheet=page.sheet,
         needs_heyoka=False,

@@ -1,4 +1,4 @@
-"""Page of errors that grow over decades of time, made from the stored ensembles.
+"""The study of growth: ensembles of starts, followed over decades of time.
 
 growth.json        the published ensembles: of every quantity its root mean squares and the gate
 growth-long.json   the same for the long run, which is made on request
@@ -23,6 +23,7 @@ from taylor_verify_reports.studies.growth.document import (
     Number,
 )
 from taylor_verify_reports.studies.stored import Stored
+from taylor_verify_reports.studies.study import Measured, NotMeasured, Option, Progress, Study
 
 GROWTH: Final = Stored(GrowthStudy, "growth")
 LONG: Final = Stored(GrowthStudy, "growth", stem="growth-long")
@@ -202,3 +203,47 @@ def _grown(run: Ensemble, row: GrowthOfQuantity) -> dict[str, Any]:
         **{name: getattr(row.gate, name, None) for name in ("law", "chance", "false_alarm")},
         "scene_sha256": run.digest,
     }
+
+
+# The study.
+
+
+def _measure(
+    folder: Path, progress: Progress, periods: float | None = None, long: bool = False
+) -> Measured:
+    """Follow the published ensembles, or the long one alone."""
+    from taylor_verify_reports.studies.growth import experiment
+
+    def ended(label: str, done: int, total: int) -> None:
+        progress.say(f"{label}: piece {done} of {total}")
+
+    questions = experiment.long() if long else experiment.published()
+    try:
+        study = experiment.followed(questions, ended, periods)
+    except ValueError as error:
+        raise NotMeasured(str(error)) from error
+    return Measured((LONG if long else GROWTH).write(folder, study))
+
+
+def _periods(text: str) -> float:
+    from taylor_verify.scenes.reading.table import exact_number
+
+    try:
+        return float(exact_number(text))
+    except (OverflowError, ValueError) as error:
+        raise ValueError(f"expected a number of periods, got {text!r}") from error
+
+
+STUDY: Final = Study(
+    name="growth",
+    title="how drift and phase grow over decades of time",
+    duration="ten minutes, all cores; with --long an hour or more",
+    measure=_measure,
+    find=find,
+    page=lambda study, folder: page(study),
+    sheet=sheet,
+    options=(
+        Option("periods", "follow no ensemble for more than N periods", _periods),
+        Option("long", "follow only the ensemble of 100 million periods"),
+    ),
+)

@@ -1,4 +1,4 @@
-"""Page of the hard scenes, made from the stored document alone.
+"""The study of the hard scenes: verdicts, a search for the worst, and the reach of each precision.
 
 A verdict other than `pass` is either expected, with a reason, or a mismatch. The page lists mismatches in
 its summary, and every verdict other than `pass` with its reason.
@@ -6,12 +6,15 @@ its summary, and every verdict other than `pass` with its reason.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.runs import Run, gravest, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -33,6 +36,7 @@ from taylor_verify_reports.studies.hard.document import (
     most_periods,
 )
 from taylor_verify_reports.studies.hard.picture import Line, lines, pictures
+from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
 
 _FOLDER: Final = "extremes/"
 # Mark after the last value that was tried, beyond which the reach may extend.
@@ -300,3 +304,76 @@ def sheet(study: HardStudy) -> str:
 
     # The reasons of the bounds are long texts, and hard.json has them.
     return sheets.gates(study.verdicts, expected, without=("because", "scene_sha256"))
+
+
+# The study.
+
+
+# Runs of a published search in each family, and enough for the first population and one more generation.
+RUNS: Final = 400
+LEAST_RUNS: Final = 10
+
+
+def _measure(folder: Path, progress: Progress, runs: int = 0, seed: int = 1) -> Measured:
+    """Run all extremes and follow the families; with ``runs``, search for the worst scenes before.
+
+    Unexpected verdicts are published too, and marked. Without a search the stored one stays.
+    """
+    from taylor_verify_reports.studies.hard import measure, reach
+
+    earlier, shipped = HARD.find(folder), list[Path]()
+    search, worst = (earlier.search, earlier.worst) if earlier else (None, ())
+    if runs:
+        from taylor_verify.scenes.library import WORST, cases_directory
+        from taylor_verify_reports.studies.hard.search import SEARCHED, search_all
+
+        results = search_all(runs, seed, progress.counting(len(SEARCHED)))
+        search, worst = measure.searched(runs, seed), tuple(one.row() for one in results)
+        texts = {one.family.name: one.scene_text for one in results}
+        shipped = store_scenes(cases_directory() / WORST, texts)
+    with progress.jobs() as job_progress:
+        judgements = measure.extremes(job_progress)
+    rows = reach.measure(progress.counting(len(reach.members())))
+    study = replace(measure.study(judgements, rows), search=search, worst=worst)
+    written = [*HARD.write(folder, study), *shipped]
+    return Measured(written, study.mismatches, judgements.exit_status)
+
+
+def store_scenes(folder: Path, scenes: Mapping[str, str]) -> list[Path]:
+    """Write scene files, TOML by their names, in place of all in ``folder``. Raises OSError."""
+    texts = {f"{name}.toml": text for name, text in scenes.items()}
+    return list(replace_files(folder, texts, stale=folder.glob("*.toml")))
+
+
+def _runs(text: str) -> int:
+    with suppress(ValueError):
+        if int(text) >= LEAST_RUNS:
+            return int(text)
+    raise ValueError(f"expected a whole number of at least {LEAST_RUNS}, got {text}")
+
+
+def _seed(text: str) -> int:
+    with suppress(ValueError):
+        return int(text)
+    raise ValueError(f"expected a whole number, got {text}")
+
+
+STUDY: Final = Study(
+    name="hard",
+    title="hard scenes: their verdicts, the worst found, and how far each precision carries",
+    duration="ten minutes, all cores",
+    measure=_measure,
+    find=HARD.find,
+    page=page,
+    sheet=sheet,
+    draw=pictures,
+    options=(
+        Option(
+            "runs",
+            "search each family for the worst scene with N runs, and replace the shipped ones; "
+            f"{RUNS} are published",
+            _runs,
+        ),
+        Option("seed", "the seed of the search; default: 1", _seed),
+    ),
+)

@@ -16,8 +16,8 @@ from taylor_verify_reports.studies.engines.advice import LOST
 from taylor_verify_reports.studies.engines.ranking import Score
 from taylor_verify_reports.studies.hard.document import ReachFamily, last_value, most_periods
 from taylor_verify_reports.studies.paper.sources import Sources
+from taylor_verify_reports.studies.tradeoff.document import TimedPoint, Trade, cheapest
 from taylor_verify_reports.studies.tradeoff.peers import OUTSIDE, TAYLOR
-from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, cheapest
 
 # An error that most users of an engine would ignore.
 GOOD: Final = 1e-6

@@ -10,8 +10,8 @@ from taylor_verify.words.markdown import code
 from taylor_verify_reports.studies.engines import page as engines_page
 from taylor_verify_reports.studies.hard import picture as hard_picture
 from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, Caption
 from taylor_verify_reports.studies.paper.sources import Sources
+from taylor_verify_reports.studies.paper.table import ENGINES, TRADEOFF, Caption
 from taylor_verify_reports.studies.tradeoff import page as tradeoff_page
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
 from taylor_verify.report.front import BY_RUNG, by_rung
 from taylor_verify.words.cells import NOTHING, figure
@@ -14,15 +15,36 @@ from taylor_verify.words.sheet import sheet
 from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.controls import page as controls_page
 from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.engines import document as engines
 from taylor_verify_reports.studies.engines import page as engines_page
 from taylor_verify_reports.studies.hard import page as hard_page
 from taylor_verify_reports.studies.hard import picture
 from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.paper.caption import ENGINES, TRADEOFF, VERDICTS, Caption
 from taylor_verify_reports.studies.paper.findings import REACHED
 from taylor_verify_reports.studies.paper.sources import Sources
+from taylor_verify_reports.studies.tradeoff import document as tradeoff
+from taylor_verify_reports.studies.tradeoff.document import Trade, cheapest
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, OUTSIDE, TAYLOR, TITLES
-from taylor_verify_reports.studies.tradeoff.stored import Trade, cheapest
+
+VERDICTS: Final = (f"{store.FOLDER}/{store.VERDICTS}",)
+ENGINES: Final = (engines.ENGINES.name, engines.TIMINGS.name)
+TRADEOFF: Final = (tradeoff.NUMBERS.name, tradeoff.TIMINGS.name)
+
+
+@dataclass(frozen=True)
+class Caption:
+    """A sentence in Markdown on the subject, the files of data, and the processor."""
+
+    words: str
+    data: tuple[str, ...]
+    machine: str
+
+    @property
+    def markdown(self) -> str:
+        """The whole caption."""
+        files = ", ".join(map(code, self.data))
+        return f"{self.words} Data: {files}. Machine: {prose(self.machine) or 'unknown'}."
+
 
 _RIVALS: Final = ("scipy DOP853", "scipy LSODA", "scipy RK45", "scipy Radau")
 

@@ -1,4 +1,4 @@
-"""Exact trajectories as CSV and JSON files, with a page on how to read them.
+"""The study of the reference: the exact trajectory of every scene of the standard set, in digits.
 
 NAME.csv      a heading line and a row for every sample time, in decimal text
 loads.csv     the same of all scenes under loads, with the scene as the first column
@@ -12,7 +12,7 @@ example.rs    a program that integrates a body and compares its motion with a re
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any, Final
@@ -23,6 +23,7 @@ from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.words.markdown import code, table
 from taylor_verify.words.page import MADE_BY
 from taylor_verify_reports.studies.stored import SceneDocuments
+from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
 
 FOLDER: Final = "reference"
 # The scenes of a folder that have one sheet together, and its name.
@@ -137,3 +138,55 @@ def _own_sheets(target: Path) -> list[Path]:
         return []
     names = dict.fromkeys(_SHEET.findall(page.read_text(encoding="utf-8")))
     return [target / name for name in names]
+
+
+# The study.
+
+
+def _measure(folder: Path, progress: Progress) -> Measured:
+    from taylor_verify.scenes.library import names
+
+    return Measured(write(folder, _trajectories(names(), progress)))
+
+
+def _lacking(report: Published) -> tuple[str, ...]:
+    """Return the scenes with a sheet whose JSON is missing or outdated."""
+    target = report.folder / FOLDER
+    return tuple(
+        scene for scene in report.outdated_scenes(FOLDER) if (target / sheet_of(scene)).exists()
+    )
+
+
+def _add(folder: Path, scenes: Sequence[str], progress: Progress) -> list[Path]:
+    written: list[Path] = []
+    _trajectories(scenes, progress, lambda one: written.extend(add_json(folder, [one])))
+    return written
+
+
+def _trajectories(
+    scenes: Sequence[str],
+    progress: Progress,
+    keep: Callable[[dict[str, Any]], object] | None = None,
+) -> list[dict[str, Any]]:
+    from taylor_verify_reports.studies.documents import documents
+    from taylor_verify_reports.studies.reference.measure import reference
+
+    return documents(reference, scenes, progress.counting(len(scenes)), keep)
+
+
+STUDY: Final = Study[None](
+    name="reference",
+    title="exact motions in digits, to test other programs with",
+    duration="a minute, all cores",
+    measure=_measure,
+    place=f"{FOLDER}/README.md",
+    needs_heyoka=False,
+    bulk=(
+        Bulk(
+            what="exact trajectories as JSON",
+            patterns=(f"{FOLDER}/*.json",),
+            lacking=_lacking,
+            make=_add,
+        ),
+    ),
+)

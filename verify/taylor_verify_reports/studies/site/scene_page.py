@@ -20,7 +20,7 @@ from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page import packages
 from taylor_verify_reports.studies.reference.page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
-from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade
+from taylor_verify_reports.studies.tradeoff.document import TimedPoint, Trade
 
 # The navigation has no lines for scenes, which are too many; the table of scenes has links to them.
 _ORPHAN: Final = "---\norphan: true\n---"

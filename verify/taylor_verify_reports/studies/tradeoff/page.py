@@ -1,4 +1,4 @@
-"""Page of speed against accuracy, made from the stored measurement alone."""
+"""The study of speed against accuracy: every setting on some scenes, timed in fresh processes."""
 
 from __future__ import annotations
 
@@ -17,8 +17,16 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page import whole
 from taylor_verify.words.sheet import sheet as csv_sheet
 from taylor_verify_reports.studies import figures
+from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
+from taylor_verify_reports.studies.tradeoff.document import (
+    TimedPoint,
+    Trade,
+    Trades,
+    cheapest,
+    load,
+    write,
+)
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
-from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
 from taylor_verify_reports.studies.tradeoff.timing_method import (
     how_it_was_timed,
     remake,
@@ -262,3 +270,32 @@ _FIELDS: Final = (
 def sheet(trades: Trades) -> str:
     """Return a CSV row for every scene and setting, with every digit."""
     return csv_sheet(_FIELDS, (row for trade in trades.trades for row in trade.rows))
+
+
+# The study.
+
+
+def _measure(folder: Path, progress: Progress, outside: bool = False) -> Measured:
+    from taylor_verify_reports.studies.tradeoff.measurement import measurement
+
+    numbers, times = measurement(with_outside=outside, finished=progress.say)
+    return Measured(write(folder, numbers, times))
+
+
+STUDY: Final = Study(
+    name="tradeoff",
+    title="speed against accuracy, every solver, measured once",
+    duration="minutes, a quiet machine; with --outside twenty",
+    measure=_measure,
+    find=load,
+    page=page,
+    sheet=sheet,
+    draw=pictures,
+    options=(
+        Option(
+            "outside",
+            "also measure compiled integrators of other libraries, in turns with all others; each is "
+            "downloaded first",
+        ),
+    ),
+)

@@ -7,8 +7,13 @@ from typing import Final
 
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify_reports.studies.tradeoff.document import UNTIL
-from taylor_verify_reports.studies.tradeoff.stored import TimedPoint, Trade, Trades, cheapest
+from taylor_verify_reports.studies.tradeoff.document import (
+    UNTIL,
+    TimedPoint,
+    Trade,
+    Trades,
+    cheapest,
+)
 
 DIGITS: Final = (6, 9, 12)
 OUTSIDE: Final = "outside "

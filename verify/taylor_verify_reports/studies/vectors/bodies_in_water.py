@@ -2,14 +2,166 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
-from taylor_verify_reports.studies.causes.simulated import rotation
-from taylor_verify_reports.studies.vectors.bodies_under_loads import Draw, Loaded, numbers, texts
+from taylor_verify_reports.studies.causes.kind import Kind
+from taylor_verify_reports.studies.causes.simulated import Law, Rows, integrated, law, rotation
+from taylor_verify_reports.studies.causes.stepping import Make
+from taylor_verify_reports.studies.vectors.bodies_under_loads import (
+    Draw,
+    Loaded,
+    numbers,
+    texts,
+    without_lag,
+)
+
+_PLAIN: Final = ("vehicle", "current")
+_SOLIDS: Final = (*_PLAIN, "steered")
+_MASS: Final = ("added mass", "M_", "mass")
+_CORIOLIS: Final = ("added mass", "Coriolis", "C_", "M_")
+
+
+def _of(change: Callable[[Law, Sample, float], None]) -> Make:
+    """Return the maker of answers by a changed law."""
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        own = law(s)
+        change(own, s, size)
+        return integrated(s, own)
+
+    return make
+
+
+def _masses(factor: float, in_inertia: bool) -> Make:
+    """Return the maker of answers whose added mass has a factor in the Coriolis terms, or everywhere."""
+
+    def change(own: Law, s: Sample, size: float) -> None:
+        mass = s.dry + factor * (s.mass - s.dry)
+        own.coriolis, own.munk = mass, mass[:3].copy()
+        if in_inertia:
+            own.mass = mass
+
+    return _of(change)
+
+
+def _no_coupling(own: Law, s: Sample, size: float) -> None:
+    """Change the momenta alone, as a simulator does whose C is that of a body about its centre."""
+    own.coriolis = s.mass * np.kron(np.eye(2), np.ones((3, 3)))
+    own.munk = own.coriolis[:3].copy()
+
+
+def _scaled(part: Callable[[Floats, Floats], Floats], factor: float) -> Make:
+    """Return the maker of answers in which a part of the load has a factor.
+
+    The part is made of the whole load and of that at rest.
+    """
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        own, load = law(s), s.acting.load
+
+        def changed(t: float, v: Floats, q: Floats, m: Floats) -> Floats:
+            whole, at_rest = load(t, v, q, m), load(t, 0 * v, q, m)
+            return whole + (factor - 1) * part(whole, at_rest)
+
+        own.acting = replace(s.acting, load=changed)
+        return integrated(s, own)
+
+    return make
+
+
+def _drag(whole: Floats, at_rest: Floats) -> Floats:
+    return whole - at_rest
+
+
+def _thrust(whole: Floats, at_rest: Floats) -> Floats:
+    return at_rest * (np.arange(6) < 3)
+
+
+def _righting(whole: Floats, at_rest: Floats) -> Floats:
+    return at_rest * (np.arange(6) > 2)
+
+
+def _over_ground(s: Sample, d: Draw, size: float) -> Rows:
+    rows = integrated(s, law(s))
+    ground = np.array([rotation(q).T @ s.current for q in rows.q])
+    v = rows.v.copy()
+    v[:, :3] += ground
+    return rows._replace(v=v)
+
+
+def _drag_over_ground(s: Sample, d: Draw, size: float) -> Rows:
+    own, load = law(s), s.acting.load
+
+    def changed(t: float, v: Floats, q: Floats, m: Floats) -> Floats:
+        ground = np.concatenate([rotation(q).T @ s.current, np.zeros(3)])
+        return load(t, v + ground, q, m)
+
+    own.acting = replace(s.acting, load=changed)
+    return integrated(s, own)
+
+
+def _slower_motor(s: Sample, d: Draw, size: float) -> Rows:
+    own, rate = law(s), s.acting.rate
+    own.acting = replace(s.acting, rate=lambda t, v, q, m: rate(t, v, q, m) / (1 + size))
+    return integrated(s, own)
+
+
+def _of_energy(change: Callable[[Floats, float], Floats]) -> Make:
+    """Return the maker of answers by another energy of the impulses."""
+
+    def make(s: Sample, d: Draw, size: float) -> Rows:
+        own = law(s)
+        own.mass = np.asarray(np.linalg.inv(change(np.asarray(np.linalg.inv(s.mass)), size)))
+        own.coriolis, own.munk = own.mass.copy(), own.mass[:3].copy()
+        return integrated(s, own)
+
+    return make
+
+
+_coefficient: Final = _of_energy(
+    lambda form, size: form * (1 + size / 4 * np.diag([1, 1, 0, 0, 0, 0]))
+)
+_without_coupling: Final = _of_energy(lambda form, size: form * np.kron(np.eye(2), np.ones((3, 3))))
+
+
+_PUSH: Final = ("force", "load", "thrust")
+_MOMENT: Final = ("weight", "moment", "load", "couple")
+_DRAG: Final = ("drag", "load", "force", "factor")
+WATER_KINDS: Final = (
+    Kind("added mass left out", _MASS, _masses(0.0, in_inertia=True), _PLAIN),
+    Kind("added mass twice", _MASS, _masses(2.0, in_inertia=True), _PLAIN),
+    Kind("C_A left out", _CORIOLIS, _masses(0.0, in_inertia=False), _SOLIDS),
+    Kind("C_A twice", _CORIOLIS, _masses(2.0, in_inertia=False), _SOLIDS),
+    Kind("C_A with the other sign", _CORIOLIS, _masses(-1.0, in_inertia=False), _SOLIDS),
+    Kind("centre of mass left out of C", ("coupling", *_CORIOLIS), _of(_no_coupling), _SOLIDS),
+    Kind("drag left out", _DRAG, _scaled(_drag, 0.0), _SOLIDS),
+    Kind("drag of another size", _DRAG, _scaled(_drag, 1.06), _SOLIDS),
+    Kind("thrust left out", _PUSH, _scaled(_thrust, 0.0), _PLAIN),
+    Kind("thrust with the other sign", _PUSH, _scaled(_thrust, -1.0), _PLAIN),
+    Kind("righting moment left out", _MOMENT, _scaled(_righting, 0.0), ("vehicle",)),
+    Kind("righting moment upside down", (*_MOMENT, "sign"), _scaled(_righting, -1.0), ("vehicle",)),
+    Kind("velocity over ground", ("over ground", "moving frame"), _over_ground, ("current",)),
+    Kind("drag by the velocity over ground", _DRAG, _drag_over_ground, ("current",)),
+    Kind("motor without lag", ("m ", "lag"), without_lag, ("steered",)),
+    Kind("slower motor", ("m ", "rate"), _slower_motor, ("steered",)),
+    Kind("coefficient p of another size", ("a_", "M_", "p "), _coefficient, ("clebsch",)),
+    Kind("coupling left out", ("coupling", "b_", "M_", "q"), _without_coupling, ("clebsch",)),
+)
+# Where nobody need know them: their forms are those of one scene.
+NOT_KNOWN_IN_WATER: Final = (
+    *("drag left out", "drag of another size", "thrust left out", "thrust with the other sign"),
+    *(
+        "righting moment left out",
+        "righting moment upside down",
+        "drag by the velocity over ground",
+    ),
+    *("slower motor", "coefficient p of another size", "coupling left out"),
+)
 
 _NAMES: Final = ("u1", "u2", "u3", "w1", "w2", "w3")
 

@@ -19,20 +19,21 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind
 from taylor_verify_reports.studies.causes.kinds import SIMPLE
 from taylor_verify_reports.studies.causes.simulated import integrated, law
-from taylor_verify_reports.studies.vectors.bodies_under_loads import OWN_STATES, WRITTEN
-from taylor_verify_reports.studies.vectors.expected_words import family, forbidden
-from taylor_verify_reports.studies.vectors.faults_in_water import (
+from taylor_verify_reports.studies.vectors.bodies_in_water import (
     NOT_KNOWN_IN_WATER,
     WATER_KINDS,
 )
-from taylor_verify_reports.studies.vectors.loaded_kinds import (
+from taylor_verify_reports.studies.vectors.bodies_under_loads import (
     FILE_FAULTS,
     LOADED_KINDS,
     NOT_KNOWN,
+    OWN_STATES,
+    WRITTEN,
     Columns,
     FileFault,
     columns_of,
 )
+from taylor_verify_reports.studies.vectors.expected_words import family, forbidden
 from taylor_verify_reports.studies.vectors.questions import Question, questions
 
 COUNT: Final = 300
