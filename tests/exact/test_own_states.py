@@ -229,12 +229,13 @@ def test_a_jump_that_is_not_decided_is_given_up_with_its_time() -> None:
 
 
 def test_what_is_not_chosen_needs_no_value() -> None:
-    """The root of a negative number is not asked for; where it is, its time is said."""
+    """The root of a negative number is not asked for; where it is, it is named with its time and entry."""
     states = 'm = { every = 1, value = "sqrt(w1) if w1 > 0 else 7" }'
     got = motion(about_axes(states, 'moment = ["-1", 0, "m"]'), "1/2")
     assert_near(got, "omega", 0, [-0.5, 0, 3.5])
     states = 'm = { every = 1, value = "sqrt(1/2 - w1)" }'
-    with pytest.raises(Unsettled, match=r"square root may not be positive near t = 1\.0"):
+    where = r"square root may not be positive near t = 1\.0 \(sqrt\(1/2 - w1\) in the value of m\)"
+    with pytest.raises(Unsettled, match=where):
         motion(about_axes(states, 'moment = [1, 0, "m"]'), "2")
 
 

@@ -1,5 +1,6 @@
 """The equations chosen for a body: exactly its own, and with nothing in them that it does not need."""
 
+import pickle
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -290,3 +291,13 @@ def test_rate_that_is_not_finite_is_infinite(bad: float) -> None:
         linearised = Linearised(problem)
         assert linearised.fastest(state) == np.inf
         assert not linearised.is_within(np.array([state]), 1e300)
+
+
+def test_equations_under_loads_take_no_hash_to_another_process() -> None:
+    """Texts have other hashes there, so that a table would not find them."""
+    form = pose(load("loads/heavy-top"), rung("f64")).form
+    number = hash(form)
+    again = pickle.loads(pickle.dumps(form))
+    assert "_hash" not in vars(again.equations)
+    assert again == form
+    assert hash(again) == number

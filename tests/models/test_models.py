@@ -26,7 +26,7 @@ from taylor_verify.models.kirchhoff import (
     velocities,
 )
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.rates import Linearised
+from taylor_verify.models.rates import Linearised, largest_eigenvalue
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Vector
@@ -234,6 +234,19 @@ def test_the_fastest_rate_is_of_order_one_however_far_apart_the_moments_are(rati
     problem = pose(scene, rung("f64"))
     fastest = Linearised(problem).fastest([float(value) for value in problem.initial_momenta])
     assert 2**-3 <= fastest <= 2**2
+
+
+def test_a_rate_that_is_slow_enough_is_decided_as_by_the_best_bound() -> None:
+    """Also where powers of a matrix underflow, or are far smaller than the matrix."""
+    random = np.random.default_rng(43)
+    for spread in (0, 3, 60, 150):
+        J = random.normal(size=(40, 3, 5, 5)) * 10.0 ** random.integers(
+            -spread, spread + 1, size=(40, 3, 5, 5)
+        )
+        for matrices in J:
+            best = largest_eigenvalue(matrices)
+            for enough in best * np.array([0.5, 0.99, 1.01, 2.0, 100.0]):
+                assert (largest_eigenvalue(matrices, enough) <= enough) == (best <= enough)
 
 
 @pytest.mark.parametrize("exponent", [-300, -7, 12, 500])

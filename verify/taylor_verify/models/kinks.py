@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 from taylor_verify.models.form import Form, Named
@@ -32,6 +33,7 @@ class Kink:
         return (int(is_first), int(not is_first))
 
 
+@lru_cache
 def smooth(form: Form) -> tuple[Form, tuple[Kink, ...]]:
     """Return a form without kinks, the parameters of the choice behind its own, and the kinks."""
     equations = form.equations
@@ -51,6 +53,7 @@ def values(form: Form, state: Sequence[Any], parameters: Sequence[Any], time: An
     return equations.values(named)
 
 
+@lru_cache
 def changing(form: Form) -> frozenset[int]:
     """Return the places of the steps that change on the way between two instants."""
     equations = form.equations

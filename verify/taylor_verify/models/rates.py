@@ -16,6 +16,8 @@ from taylor_verify.models.problem import Problem
 
 SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
 _SQUARINGS: Final = 4
+# The 16th root of what underflows is smaller.
+_UNDERFLOW: Final = 2.0**-60
 _NEARLY: Final = 1.2
 # Numbers whose squares add up to this have fourth powers far below the largest double.
 _MODERATE: Final = 2.0**400
@@ -95,19 +97,24 @@ class Linearised:
         return augmented
 
 
-def largest_eigenvalue(J: Floats) -> float:
+def largest_eigenvalue(J: Floats, enough: float = 0.0) -> float:
     """Return a bound of the eigenvalues of all matrices of an array, some tenths too large.
 
     It is |J^16|^(1/16); if that is worse, the eigenvalues are computed. Infinite where J is not finite.
+    A bound that is at most ``enough`` is not made better.
     """
     n = J.shape[-1]
     bound = size = n * _largest(J)
     if not isfinite(size):
         return inf
     power, before = J / size if size else J, bound
+    # What underflows in the powers is then nothing beside what is enough.
+    is_moderate = size * _UNDERFLOW <= enough
     for k in range(_SQUARINGS):
         power, before = power @ power, bound
         bound = size * (n * _largest(power)) ** (0.5 / 2**k)
+        if is_moderate and bound <= enough:
+            return float(bound)
     # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
     return bound if before <= _NEARLY * bound else float(np.abs(np.linalg.eigvals(J)).max())
 

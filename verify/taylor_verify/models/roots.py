@@ -6,9 +6,10 @@ parts are zero all the time. |u| is a kink that an integrator of smooth equation
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from taylor_verify.models.form import Form
 from taylor_verify.models.written import Growing, Written
@@ -31,6 +32,7 @@ class Length:
     power: Fraction = Fraction(1)
 
 
+@lru_cache
 def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
     """Return the places of the steps of which the loads take the length, for each length."""
     equations = form.equations
@@ -40,6 +42,7 @@ def lengths(form: Form) -> tuple[tuple[int, ...], ...]:
     return tuple(sorted({length.parts for length in every if length is not None}))
 
 
+@lru_cache
 def radicands(form: Form) -> tuple[int, ...]:
     """Return the places of the steps of which a root is taken that is no length of known parts."""
     equations = form.equations
@@ -56,12 +59,13 @@ def _is_root(step: Step) -> bool:
     return step.operation == "sqrt"
 
 
-def unsquared(form: Form, zeros: Collection[int] = ()) -> Form:
+@lru_cache
+def unsquared(form: Form, zeros: frozenset[int] = frozenset()) -> Form:
     """Return the form with |u| for each length of one part u; the steps at ``zeros`` are no parts."""
     equations = form.equations
     if not isinstance(equations, Written):
         return form
-    made = _Unsquaring(equations.steps, frozenset(zeros))
+    made = _Unsquaring(equations.steps, zeros)
     return replace(form, equations=equations.anew(made, made.turned))
 
 

@@ -52,8 +52,14 @@ class _InScene(dict[str, Any]):
     def __init__(self, problem: Problem, loads: Loads, state: Vector, elapsed: Fraction) -> None:
         form, units = problem.form, problem.units
         assert isinstance(form.equations, Written)
-        # Texts may read what the equations of a simple body do not have.
-        numbers = {**problem.parameter, **dict(zip(form.states, state, strict=True))}
+        # Texts may read what the equations of a simple body do not have. The numbers of the loads are read
+        # by the momentum of wheels alone.
+        numbers = {
+            name: number
+            for name, number in problem.parameter.items()
+            if form.equations.rotor or name[0] != "g"
+        }
+        numbers |= dict(zip(form.states, state, strict=True))
         numbers |= {**own.numbers(loads, problem.held), "t": elapsed / units.time}
         named = Named({name: held_exactly(value) for name, value in numbers.items()})
         self._inputs, self._loads, self._units = form.equations.inputs(named), loads, units

@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, Final
 
 from taylor_verify.models import own
@@ -52,6 +53,19 @@ class Written:
     own: tuple[str, ...] = ()
     rates: tuple[int, ...] = ()
     rotor: tuple[int, ...] = ()
+
+    def __hash__(self) -> int:
+        # Many tables are asked by equations; a hundred steps take longer than what the tables spare.
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        places = (self.outputs, self.own, self.rates, self.rotor)
+        return hash((self.free, self.steps, places))
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Another process has other hashes of the same texts.
+        return {name: part for name, part in vars(self).items() if name != "_hash"}
 
     def __call__(self, n: Named) -> dict[str, Any]:
         return self._all_rates(n, self.values(n))
@@ -264,15 +278,20 @@ def unit_of(name: str, loads: Loads, units: Units) -> Fraction:
         return Fraction(1)
     if name in loads.continuous:
         return units.own[loads.continuous.index(name)]
-    of_letter = {
-        "t": units.time,
-        "w": 1 / units.time,
-        "u": units.length / units.time,
-        "x": units.impulse,
-        "y": units.momentum,
-        "c": units.centre,
-    }
-    return of_letter.get(name[0], Fraction(1))
+    match name[0]:
+        case "t":
+            return units.time
+        case "w":
+            return 1 / units.time
+        case "u":
+            return units.length / units.time
+        case "x":
+            return units.impulse
+        case "y":
+            return units.momentum
+        case "c":
+            return units.centre
+    return Fraction(1)
 
 
 def drift(current: Vector, units: Units) -> dict[str, Fraction]:

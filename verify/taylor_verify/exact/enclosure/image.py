@@ -76,6 +76,10 @@ class Image:
                 slopes[row, component] = slope
         return Functions([self._point.forward[place][0] for place in places], slopes)
 
+    def step_of(self, end: Domain) -> int | None:
+        """The step of the loads that has no value; None of none."""
+        return None if end.node is None else self._tape.written.get(end.node)
+
     def rational_outputs(self) -> list[Fraction | None]:
         """The outputs that are known to be rational numbers; None for others."""
         return [self._rational[place] for place in self._tape.outputs]
@@ -85,6 +89,8 @@ class Image:
         try:
             value, gradient = self._made(i, operation, box)
         except (Domain, OnJump) as fault:
+            if isinstance(fault, Domain) and fault.node is None:
+                fault.node = i
             self._faults[i] = fault
             value, gradient = arb("nan"), {}
         del self._point.forward[i:], self._hull.forward[i:]

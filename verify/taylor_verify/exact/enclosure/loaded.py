@@ -133,8 +133,9 @@ class LoadedBody:
         piece = self._loads.piece(elapsed, is_later)
         addresses = [f"body.{v}[{i}]" for v in VECTORS[self._loads.model] for i in range(3)]
         addresses += [f"the rate of {name}" for name in self._loads.continuous]
+        addresses += [f"the value of {name}" for name in self._loads.held_values]
         addresses += [f"body.rotor[{i}]" for i in range(3)]
-        outputs = (*piece.outputs, *piece.rates, *piece.rotor)
+        outputs = (*piece.outputs, *piece.rates, *piece.values, *piece.rotor)
         where = next(
             (
                 a

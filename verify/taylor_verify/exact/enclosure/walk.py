@@ -223,7 +223,7 @@ class Walk:
         except Touched:
             raise self._stuck(_TOUCHED) from None
         except Domain as end:
-            raise self._ended(end) from end
+            raise self._ended(end, "" if end.node is None else self._ending()) from end
 
     def _carried(self, step: Step, share: arb | None = None) -> Box:
         spans = self._system.spans
@@ -287,7 +287,7 @@ class Walk:
         except OnJump:
             raise self._stuck(_ON_JUMP) from None
         except Domain as end:
-            raise self._ended(end) from end
+            raise self._ended(end, self._text(image.step_of(end))) from end
 
     # Sizes.
 
@@ -335,8 +335,7 @@ class Walk:
             return None
         return self._unreached(f"{function} has no value or no derivative near")
 
-    def _ended(self, end: Domain) -> Unreached:
-        function = "" if end.node is None else self._ending()
+    def _ended(self, end: Domain, function: str) -> Unreached:
         return self._unreached(f"{end} near", f" ({function})" if function else "")
 
     def _unreached(self, because: str, more: str = "") -> Unreached:
@@ -345,15 +344,17 @@ class Walk:
 
     def _ending(self) -> str:
         """The function at which the motion ends here, and where it is written; empty of none."""
-        system, now, is_later = self._system, self._course.origin + self._now, self._last >= 0
+        now, is_later = self._course.origin + self._now, self._last >= 0
         longest = max(self._lengths, default=abs(self._guess))
-        tape = system.pieces(now, is_later).tape
-        place = ending(tape, self._box.point, now, longest if is_later else -longest)
-        return (
-            ""
-            if place is None or system.step_text is None
-            else system.step_text(now, is_later, place)
-        )
+        tape = self._system.pieces(now, is_later).tape
+        return self._text(ending(tape, self._box.point, now, longest if is_later else -longest))
+
+    def _text(self, place: int | None) -> str:
+        """A step of the loads as text, and where it is written; empty of none."""
+        system, now = self._system, self._course.origin + self._now
+        if place is None or system.step_text is None:
+            return ""
+        return system.step_text(now, self._last >= 0, place)
 
 
 def _larger(first: Sequence[float], second: Sequence[float]) -> tuple[float, ...]:

@@ -31,27 +31,28 @@ class Differenced:
         begin, end = float(problem.begin), float(problem.times[-1])
         self._early = [begin + part * (end - begin) for part in _LOOKS]
 
-    def fastest(self, states: Any, times: Any = ()) -> float:
+    def fastest(self, states: Any, times: Any = (), enough: float = 0.0) -> float:
         """Return the fastest rate at all rows of an array, each at its time; infinite where not finite.
 
-        A state without a time is looked at in several. The unit is radians per unit of time.
+        A state without a time is looked at in several. The unit is radians per unit of time. Where no rate
+        exceeds ``enough``, any bound up to it may be returned.
         """
-        at = times if len(times) else self._early
+        at = np.asarray(times if len(times) else self._early, dtype=float)
         rows = np.atleast_2d(np.asarray(states, dtype=float))
-        rows = np.broadcast_to(rows, (len(at), rows.shape[1]))
         with np.errstate(all="ignore"):
-            bound = largest_eigenvalue(self._jacobians(rows, np.array(list(map(float, at)))))
+            bound = largest_eigenvalue(self._jacobians(rows.T, at), enough)
         return max(bound, SLOWEST) if isfinite(bound) else inf
 
-    def _jacobians(self, rows: Floats, times: Floats) -> Floats:
-        """Return the Jacobian at each row: the rates at all states beside them at once."""
-        count = rows.shape[1]
-        steps = _STEP * np.maximum(1.0, np.abs(rows))
-        # Axes: the row itself and each state that is moved, the rows, and the states.
-        around = np.repeat(rows[None], count + 1, axis=0)
-        around[np.arange(count) + 1, :, np.arange(count)] += steps.T
-        at = np.broadcast_to(times, around.shape[:-1])
-        rates = [rate + 0 * at for rate in self._rates(at, list(np.moveaxis(around, -1, 0)))]
-        whole = np.stack(rates, axis=-1)
-        J: Floats = np.moveaxis((whole[1:] - whole[0]) / steps.T[:, :, None], 0, -1)
+    def _jacobians(self, columns: Floats, times: Floats) -> Floats:
+        """Return the Jacobian at each time: the rates at all states beside them at once."""
+        count = len(columns)
+        # Axes: the states, the row itself and each state that is moved, the rows.
+        around = np.empty((count, count + 1, len(times)))
+        around[:] = columns[:, None]
+        steps = _STEP * np.maximum(1.0, np.abs(around[:, 0]))
+        around.reshape(-1, len(times))[1 :: count + 2] += steps
+        whole = np.empty_like(around)
+        for place, rate in enumerate(self._rates(times, list(around))):
+            whole[place] = rate
+        J: Floats = ((whole[:, 1:] - whole[:, :1]) / steps).transpose(2, 0, 1)
         return J

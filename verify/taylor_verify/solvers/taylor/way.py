@@ -126,10 +126,10 @@ class Way:
         ran = self.run()
         return self._fastest(ran.rows, self._times) if ran.outcome is Outcome.FINISHED else inf
 
-    def _fastest(self, rows: Rows, times: np.ndarray[Any, Any]) -> float:
+    def _fastest(self, rows: Rows, times: np.ndarray[Any, Any], enough: float = 0.0) -> float:
         """Return the fastest rate at some rows, of which loads may read the times."""
         if isinstance(self._linearised, Differenced):
-            return self._linearised.fastest(rows, times)
+            return self._linearised.fastest(rows, times, enough)
         return self._linearised.fastest(rows)
 
     def _went(
@@ -187,7 +187,7 @@ class Way:
         allowed = _SLACK * self._longest / ran.longest if is_whole else rate
         if is_whole and isinstance(self._linearised, Linearised):
             return not self._linearised.is_within(rows, allowed)
-        return not self._fastest(rows, grid[: len(ran.rows)][some]) <= allowed
+        return not self._fastest(rows, grid[: len(ran.rows)][some], allowed) <= allowed
 
     @property
     def _callback(self) -> _Advance | None:
