@@ -10,7 +10,6 @@ from typing import Final, final
 
 from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.damping import NOT_QUADRATIC, Damped, is_solved
-from taylor_verify.exact.functions import WithFunctions
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
@@ -54,8 +53,6 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     where it is missing; ``route="taylor"`` takes Taylor series in any case. A closed form is missing too
     where its kind depends on an equality of irrational numbers that is neither proven nor refuted.
     """
-    if scene.functions:
-        return WithFunctions(scene, solution(scene.moving, route))
     scene = as_written(scene)
     if route == "taylor":
         return TaylorSolution(scene)

@@ -16,7 +16,6 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.loaded import Linearised, truth
-from taylor_verify.exact.functions import functions
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.diagnosis import diagnosed
 from taylor_verify.judge.errors.laws import Laws
@@ -165,20 +164,9 @@ class _Gates:
     def states(self) -> Iterator[Gate]:
         measured = self.measured
         for errors, shift in zip(measured.states, measured.shifts, strict=True):
-            attainable = self._of_function(errors)
-            if attainable is None:
-                attainable = self.floor.of_state(errors)
+            attainable = self.floor.of_state(errors)
             terms = self._terms(errors, attainable, Carried.ORBIT)
             yield Gate(self.run, errors, attainable, terms, shift, measured.is_shifted_whole)
-
-    def _of_function(self, errors: Errors) -> Floats | None:
-        """Return the attainable error of a function of the motion, and None for other states."""
-        for function in functions(self.run.problem.given):
-            if function.name == errors.quantity:
-                (scale,) = errors.parts.values()
-                reached = self.floor.of_values(function, in_mpfr(self.measured.at_nodes), scale)
-                return np.asarray(np.hypot(reached, self.floor.unit_roundoff))
-        return None
 
     def conserved(self) -> Iterator[Gate]:
         """Yield the gates of drifts by rounding the momenta."""

@@ -56,8 +56,7 @@ class Quantity:
 
     Every run of the model ``main_of`` has it, and a scene of the models ``tracked_by`` may ask for it
     besides; one that is neither is in files alone. ``groups`` are the columns in which a solver's state
-    has it. A scene that tracks it tracks what it ``needs`` too. ``unit`` is that of its error. One that
-    ``is_function`` follows from the others at each time and has no equation of its own.
+    has it. A scene that tracks it tracks what it ``needs`` too. ``unit`` is that of its error.
     """
 
     name: str
@@ -67,7 +66,6 @@ class Quantity:
     tracked_by: tuple[str, ...] = ()
     measure: Measure = Measure.VECTORS
     needs: tuple[str, ...] = ()
-    is_function: bool = False
 
 
 @dataclass(frozen=True)

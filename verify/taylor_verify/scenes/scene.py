@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from taylor_verify.records.quantities import (
@@ -58,16 +58,6 @@ class Scene:
     def tracked(self) -> tuple[Quantity, ...]:
         """The state quantities of every answer: omega or impulse, then the frame, then own states."""
         return (*state_quantities(self.model, self.track), *(quantity for quantity, _ in self._own))
-
-    @property
-    def functions(self) -> frozenset[str]:
-        """The tracked quantities that follow from the others at each time."""
-        return frozenset(quantity.name for quantity in self.tracked if quantity.is_function)
-
-    @property
-    def moving(self) -> Scene:
-        """The scene that tracks what has equations of its own, without functions of it."""
-        return replace(self, track=self.track - self.functions) if self.functions else self
 
     @property
     def groups(self) -> tuple[Group, ...]:

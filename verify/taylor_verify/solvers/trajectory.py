@@ -10,7 +10,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from mpmath import mp
@@ -221,45 +221,23 @@ def from_scaled(
     parts = (_vectors(columns, part.name, units.of(part.dimension)) for part in kind.momenta)
     momenta = (tuple(chain.from_iterable(vectors)) for vectors in zip(*parts, strict=True))
     moving = list(map(kind.change(given.body).moving, momenta))
-    quantities: dict[str, Sequence[Sequence[Fraction]]] = {
+    quantities = {
         name: [vector[3 * k : 3 * k + 3] for vector in moving]
         for k, name in enumerate(given.initial.MOVING)
     }
     tracked = _names(problem)
-    for name in tracked:
-        if name in FORMED:
-            quantities[name] = FORMED[name](problem, columns, quantities)
+    if "quaternion" in tracked:
+        quantities["quaternion"] = list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
+    if "centre" in tracked:
+        start = given.initial.parts()["centre"]
+        quantities["centre"] = [
+            tensors.plus(start, c) for c in _vectors(columns, "c", units.centre)
+        ]
     quantities |= _own_states(problem, columns)
     return {
         name: np.array([[held_exactly(entry) for entry in row] for row in vectors], dtype=object)
         for name, vectors in quantities.items()
     }
-
-
-Columns = Mapping[str, Sequence[Fraction]]
-Vectors = Mapping[str, Sequence[Sequence[Fraction]]]
-
-
-def _quaternions(
-    problem: Problem, columns: Columns, quantities: Vectors
-) -> Sequence[Sequence[Fraction]]:
-    del problem, quantities
-    return list(zip(*(columns[f"e{i}"] for i in range(4)), strict=True))
-
-
-def _centres(
-    problem: Problem, columns: Columns, quantities: Vectors
-) -> Sequence[Sequence[Fraction]]:
-    del quantities
-    start = problem.given.initial.parts()["centre"]
-    return [tensors.plus(start, c) for c in _vectors(columns, "c", problem.units.centre)]
-
-
-# How each tracked group is formed from a problem, the columns of its states, and the groups before it.
-FORMED: Final[Mapping[str, Callable[[Problem, Columns, Vectors], Sequence[Sequence[Fraction]]]]] = {
-    "quaternion": _quaternions,
-    "centre": _centres,
-}
 
 
 def _own_states(

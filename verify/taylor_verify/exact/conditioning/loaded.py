@@ -41,15 +41,15 @@ DIGITS: Final = 15
 
 def frame(scene: Scene) -> frozenset[str]:
     """Return attitude and centre as far as the scene tracks them or a written load depends on them."""
-    loads, tracked = scene.body.loads, scene.moving.track
+    loads = scene.body.loads
     if loads is None or not loads.reads_attitude:
-        return tracked
-    return tracked.union(("attitude", "centre") if loads.reads_centre else ("attitude",))
+        return scene.track
+    return scene.track.union(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
 def truth(scene: Scene, digits: int) -> Solution:
     """Return the exact solution; under written loads that which comes with the derivative of its motion."""
-    if scene.functions or scene.body.loads is None or len(scene.clock.elapsed) > MOST_OF_RUN:
+    if scene.body.loads is None or len(scene.clock.elapsed) > MOST_OF_RUN:
         return solution(scene)
     return Linearised(scene, digits)
 

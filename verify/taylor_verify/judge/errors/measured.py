@@ -188,7 +188,7 @@ class Comparison:
         none.
         """
         has_frame = "quaternion" in self.quantities or "attitude" not in self.scene.track
-        return self.scene.moving if has_frame else replace(self.scene, track=frozenset())
+        return self.scene if has_frame else replace(self.scene, track=frozenset())
 
     def _determined(self, start: Motion) -> list[Invariant]:
         """Return the conserved quantities that depend on nothing that the answer lacks."""
@@ -238,13 +238,11 @@ class Comparison:
         return [name for name in names if name in self.quantities]
 
     def _shifts(self, block: Block, errors: Sequence[Errors]) -> list[Shift | None]:
-        """Return the shifts of time; none where no rate is known: of functions, and under written loads."""
+        """Return the shifts of time; none under written loads, whose rates are not known."""
         if self.scene.body.loads is not None:
             return [None] * len(errors)
         scene, truth, answer = block.scene, block.truth, block.answer
-        moving = [each for each in errors if each.quantity not in scene.functions]
-        shifts = iter(time_shifts(scene, self.exact, truth, answer, self.digits, moving))
-        return [None if each.quantity in scene.functions else next(shifts) for each in errors]
+        return time_shifts(scene, self.exact, truth, answer, self.digits, errors)
 
     def _shift_of(self, velocity: VelocityErrors, block: Block) -> Velocity:
         errors, sizes = velocity.joined()

@@ -27,6 +27,7 @@ from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import norms, state_errors
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import (
@@ -152,7 +153,7 @@ def _motion(scene: Scene, digits: int) -> Motion:
     try:
         quantities = solution(scene).evaluate(elapsed, digits)
     except Unsettled:
-        quantities = solution(scene, "taylor").evaluate(elapsed, digits)
+        quantities = TaylorSolution(scene).evaluate(elapsed, digits)
     return Motion(quantities, np.array([mp.zero] * len(elapsed), dtype=object))
 
 

@@ -18,7 +18,6 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path
-from taylor_verify.exact.functions import with_functions
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.rows import cross_matrices
 from taylor_verify.judge.floor.loads import Along
@@ -76,7 +75,7 @@ class Moves:
         z = _exact(along.state[places]) + _exact(errors[:, :d] @ inverse.T)
         names = kind_of(scene.body).moving
         quantities = {name: z[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}
-        if scene.moving.track:
+        if scene.track:
             R = along.attitude[places]
             turned = cross_matrices(errors[:, d : d + 3]) @ R
             quantities["attitude"] = _exact(R) + _exact(turned)
@@ -91,7 +90,7 @@ class Moves:
                 peaks[name] = _exact(largest[places])
             first = last
         zeros = np.array([mp.zero] * len(places), dtype=object)
-        return with_functions(scene, Motion(quantities, zeros, peaks=peaks))
+        return Motion(quantities, zeros, peaks=peaks)
 
     # The response to one number.
 
