@@ -11,13 +11,13 @@ from xml.etree import ElementTree
 import pytest
 
 import taylor_verify
+from taylor_verify.batch.chosen_scenes import select
 from taylor_verify.batch.comparison import read_baseline, shown_verdicts
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     remarks,
     write_junit,
 )
-from taylor_verify.batch.selection import select
 from taylor_verify.records.status import Status
 
 SCENES = ["euler/rest", "euler/generic"]

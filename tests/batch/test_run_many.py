@@ -14,10 +14,10 @@ from builders.executor import Backwards
 from builders.scenes import THREE_INSTANTS
 
 import taylor_verify
+from taylor_verify.batch.chosen_scenes import Selection, select
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
-from taylor_verify.batch.selection import Selection, select
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
@@ -84,7 +84,9 @@ def test_an_interrupted_run_with_an_executor_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, alone: list[Judgement]
 ) -> None:
     """The caller stores each run that ended before an interrupt, and does not run it again."""
-    monkeypatch.setattr("taylor_verify.batch.store.user_cache_path", lambda name: tmp_path / name)
+    monkeypatch.setattr(
+        "taylor_verify.batch.finished_jobs.user_cache_path", lambda name: tmp_path / name
+    )
 
     def interrupt(finished: int, total: int, job: Job | None) -> None:
         if finished == 2:

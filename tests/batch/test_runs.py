@@ -20,7 +20,7 @@ from builders.executor import Backwards
 from builders.processes import PATIENCE
 
 from taylor_verify.batch.failure import Failed
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 
 
 def square(number: int) -> int:

@@ -13,11 +13,11 @@ from typing import Any
 import pytest
 from builders.processes import PATIENCE, interruptible, wait_until
 
+from taylor_verify.batch import finished_jobs as module
 from taylor_verify.batch import judging
-from taylor_verify.batch import store as module
+from taylor_verify.batch.chosen_scenes import select
+from taylor_verify.batch.finished_jobs import unfinished
 from taylor_verify.batch.job import Job
-from taylor_verify.batch.selection import select
-from taylor_verify.batch.store import unfinished
 from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.run import run
 from taylor_verify.solvers.callback import Callback

@@ -19,7 +19,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor import driver
 from taylor_verify.solvers.taylor.cache import CACHE_VARIABLE, heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
-from taylor_verify.solvers.taylor.equations import equations
+from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic
 from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 

@@ -9,7 +9,7 @@ from statistics import median
 from typing import Final
 
 from benches.ratio import Ratio
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 from taylor_verify.tradeoff.timing import in_rounds
 
 # The fewest of which no single one decides the median.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.drawn_course import motion
 from taylor_verify.scenes.reading.reader import load
 
 

@@ -13,7 +13,7 @@ from mpmath import mp
 
 import taylor_verify
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.velocities import velocity
 from taylor_verify.models.problem import adopt

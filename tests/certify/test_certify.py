@@ -17,11 +17,11 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly, CubicHermiteSpline, CubicSpline, PPoly, make_interp_spline
 
 from taylor_verify.certify import bounds, certify
-from taylor_verify.certify.answer import pieces_of
-from taylor_verify.certify.motion import errors_of
+from taylor_verify.certify.dense_answer import pieces_of
+from taylor_verify.certify.enclosed_error import errors_of
 from taylor_verify.cli import main
 from taylor_verify.exact import exact
-from taylor_verify.exact.rows import quaternions
+from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.models.problem import pose_as_stored
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.certificate import Fault, GapKind

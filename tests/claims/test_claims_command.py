@@ -11,7 +11,7 @@ from builders.studies.claims import ROWS, STUDY
 from builders.studies.stored import publish_document
 
 from taylor_verify.cli import main
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.claims import ledger
 from taylor_verify_reports.claims.claim import Claim, Verdict
 from taylor_verify_reports.claims.ledger import claims

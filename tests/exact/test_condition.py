@@ -21,9 +21,9 @@ from builders.scenes import (
 )
 from mpmath import mp, mpf
 
+from taylor_verify.exact.conditioning.by_differences import derivatives
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
-from taylor_verify.exact.conditioning.differences import derivatives
-from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.path_times import many
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.taylor import TaylorSolution

@@ -18,7 +18,7 @@ from taylor_verify.records.faults import Refused
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.parts import entrywise
+from taylor_verify.scenes.named_numbers import entrywise
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, StandIn
 

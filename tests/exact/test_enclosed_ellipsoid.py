@@ -14,18 +14,18 @@ from builders.turns import by_turns
 from flint import arb, ctx
 from mpmath import mp
 
+from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.operations import Bilinear
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import _distance
-from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Irrational, ball
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.parts import entrywise
+from taylor_verify.scenes.named_numbers import entrywise
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import StandIn
 

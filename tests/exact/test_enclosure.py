@@ -14,8 +14,8 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.enclosure import box, step, tube, walk
-from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.loaded import posed
+from taylor_verify.exact.enclosure.node_bounds import Bounds
 from taylor_verify.exact.enclosure.step import Stepper
 from taylor_verify.exact.enclosure.system import column
 from taylor_verify.exact.solution import Unsettled

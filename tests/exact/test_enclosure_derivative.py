@@ -13,8 +13,8 @@ from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 
 from taylor_verify.exact.balls import midpoint
+from taylor_verify.exact.conditioning.by_differences import derivatives
 from taylor_verify.exact.conditioning.condition import transition
-from taylor_verify.exact.conditioning.differences import derivatives
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed

@@ -15,10 +15,10 @@ from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import box, flow, tape
-from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed
+from taylor_verify.exact.enclosure.node_bounds import Bounds
 from taylor_verify.exact.enclosure.step import Step, Stepper
 from taylor_verify.exact.enclosure.system import Piece, System, column
 from taylor_verify.exact.enclosure.tape import Graph, Tape

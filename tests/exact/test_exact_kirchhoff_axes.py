@@ -19,7 +19,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.kirchhoff import quartic
-from taylor_verify.exact.kirchhoff.axes import UPRIGHT, body_about, clebsch_about
+from taylor_verify.exact.kirchhoff.axis_of_revolution import UPRIGHT, body_about, clebsch_about
 from taylor_verify.exact.route import CLOSED_ROUTES, solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.exact.taylor import TaylorSolution

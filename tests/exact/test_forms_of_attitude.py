@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from taylor_verify.exact.attitudes import in_form
+from taylor_verify.exact.attitude_forms import in_form
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers.rotation import rotation_matrix, rotation_rows

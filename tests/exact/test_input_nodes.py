@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.judge.floor import inputs
-from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.judge.floor import rounded_input
+from taylor_verify.judge.floor.rounded_input import input_rounding
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Spin
@@ -36,7 +36,7 @@ def flipping() -> Scene:
 
 def response(scene: Scene, monkeypatch: pytest.MonkeyPatch, nodes: list[int]) -> Any:
     """The response to the input at every sample, looked at where one says."""
-    monkeypatch.setattr(inputs, "looked_at", lambda asked: nodes)
+    monkeypatch.setattr(rounded_input, "looked_at", lambda asked: nodes)
     return input_rounding(scene, F64).at_samples["omega"]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
-from taylor_verify.exact.equations import Equations, exact
+from taylor_verify.exact.quadratic_forms import Equations, exact
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
 from taylor_verify.numbers.tensors import apply, dot
 from taylor_verify.scenes.bodies import RigidBody

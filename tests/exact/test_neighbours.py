@@ -17,10 +17,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
-from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.scenes.motion import Clock, Motion, State

@@ -17,7 +17,7 @@ from taylor_verify.exact.enclosure.loaded import posed
 from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.rows import quaternions
+from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.numbers.irrational import ball

@@ -16,7 +16,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Ellipsoid
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.parts import entrywise
+from taylor_verify.scenes.named_numbers import entrywise
 from taylor_verify.scenes.scene import Scene
 
 TIMES = [Fraction(0), Fraction(7, 3), Fraction(-2)]

@@ -25,7 +25,7 @@ from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.weber import quotients
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS
 from taylor_verify.exact.kirchhoff.weber.curve import curve
-from taylor_verify.exact.kirchhoff.weber.integrals import branch_points
+from taylor_verify.exact.kirchhoff.weber.periods import branch_points
 from taylor_verify.exact.kirchhoff.weber.quotients import WeberBalls
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled

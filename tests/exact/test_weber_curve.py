@@ -14,7 +14,7 @@ from taylor_verify.exact.kirchhoff.weber.characteristics import (
     is_odd,
 )
 from taylor_verify.exact.kirchhoff.weber.curve import curve
-from taylor_verify.exact.kirchhoff.weber.integrals import branch_points, points
+from taylor_verify.exact.kirchhoff.weber.periods import branch_points, points
 from taylor_verify.exact.solution import NoClosedForm
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball

@@ -23,7 +23,7 @@ from builders.worked import DOCS, ROOT, blocks, work
 import taylor_verify
 from taylor_verify.cli import answer
 from taylor_verify.cli.arguments import parse
-from taylor_verify.draw.course import motion
+from taylor_verify.draw.drawn_course import motion
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import NO_CLOSED_FORM
 from taylor_verify.records.status import Status

@@ -6,6 +6,7 @@ import ast
 import functools
 import graphlib
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final
@@ -51,6 +52,62 @@ def _last_name(node: ast.AST) -> str:
             return name
     return ""
 
+
+# What several rooms answer: the kinds of body, both sides of the wall between truth and solvers, a thing
+# and its door, its document or its picture.
+SHARED: Final = frozenset(
+    [
+        "acting",
+        "answer",
+        "answers",
+        "attitudes",
+        "axes",
+        "bodies",
+        "certificate",
+        "check",
+        "closed",
+        "damping",
+        "elements",
+        "ellipsoid",
+        "events",
+        "faults",
+        "field",
+        "functions",
+        "general",
+        "gyrostat",
+        "immersed",
+        "initial",
+        "invariants",
+        "jacobi",
+        "judgement",
+        "kinks",
+        "loaded",
+        "loads",
+        "manufactured",
+        "missing_load",
+        "native",
+        "orbit",
+        "parts",
+        "pieces",
+        "provenance",
+        "question",
+        "rates",
+        "readings",
+        "registry",
+        "regime",
+        "report",
+        "rigid",
+        "rounding",
+        "run",
+        "scene",
+        "states",
+        "store",
+        "sweep",
+        "tables",
+        "units",
+        "written",
+    ]
+)
 
 # The rules: each takes (module name, source text) and yields what is wrong, with its place
 
@@ -165,6 +222,14 @@ def circle(graph: grimp.ImportGraph) -> list[str]:
     except graphlib.CycleError as error:
         return [*error.args[1]]
     return []
+
+
+def test_one_name_has_one_meaning() -> None:
+    """Files of one name are one question in several rooms; the last line of a traceback tells which."""
+    files = Counter(
+        p.name for p in (SOURCES / "taylor_verify").rglob("*.py") if p.parent.parent != SOURCES
+    )
+    assert {name.removesuffix(".py") for name, n in files.items() if n > 1} <= {"__init__", *SHARED}
 
 
 def test_no_import_circle() -> None:

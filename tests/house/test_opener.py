@@ -24,10 +24,10 @@ READING = {
 # Modules that open something else, and what it is.
 OTHERS = {
     "batch/lock.py": "the lock of a folder",
-    "batch/store.py": "the text of this package, programs, and files of the user's cache that it writes",
+    "batch/finished_jobs.py": "the text of this package, programs, and files that it writes",
     "cli/ci.py": "the summary of a step, to which it writes",
     "cli/streams.py": "the null device",
-    "draw/page.py": "the template of this package",
+    "draw/moving_page.py": "the template of this package",
     "judge/provenance.py": "the processor, by Linux",
     "records/replacement.py": "files that it writes",
     "scenes/expected.py": "expectations of this package",

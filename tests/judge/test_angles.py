@@ -12,14 +12,14 @@ import pytest
 from builders.trajectories import QUATERNION, VECTORS, exact_columns, rows_of
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.conventions.angles import with_angles
-from taylor_verify.judge.conventions.readings import readings, rotations
-from taylor_verify.judge.conventions.search import conventions
-from taylor_verify.judge.floor.angles import with_angles_rounded
-from taylor_verify.judge.floor.inputs import InputRounding
+from taylor_verify.judge.conventions.angle_meanings import with_angles
+from taylor_verify.judge.conventions.convention_search import conventions
+from taylor_verify.judge.conventions.meanings import readings, rotations
+from taylor_verify.judge.floor.gimbal import with_angles_rounded
+from taylor_verify.judge.floor.rounded_input import InputRounding
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.columns.assigned import request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column
 

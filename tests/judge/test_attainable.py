@@ -20,7 +20,7 @@ from mpmath import mp
 
 from taylor_verify.exact.conditioning import condition
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
-from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution

@@ -26,8 +26,8 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.mpfr import in_mpfr, precision
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.values import as_mpf, exact
 
 ROWS = 61

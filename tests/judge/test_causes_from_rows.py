@@ -15,7 +15,7 @@ from builders.wrong_dynamics import failure, turned
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material_of_file
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World

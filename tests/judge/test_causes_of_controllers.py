@@ -12,8 +12,8 @@ from builders.turns import by_turns
 from builders.wrong_dynamics import failure
 
 from taylor_verify import check, exact
-from taylor_verify.judge.causes.answer import Motion
-from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.float_answer import Motion
+from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung

@@ -30,7 +30,7 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.files.judgement import FileJudgement
-from taylor_verify.judge.floor.inputs import input_rounding
+from taylor_verify.judge.floor.rounded_input import input_rounding
 from taylor_verify.models.problem import adopt, pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung

@@ -15,7 +15,7 @@ import pytest
 
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor.attainable import orbit_of, radians
-from taylor_verify.judge.floor.steps import (
+from taylor_verify.judge.floor.counted_steps import (
     STEPS_PER_RADIAN,
     STEPS_PER_SECOND,
     WIDENING,

@@ -31,10 +31,10 @@ from builders.trajectories import (
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
-from taylor_verify.judge.conventions.axes import AXES, Frames
+from taylor_verify.judge.conventions.axis_orders import AXES, Frames
+from taylor_verify.judge.conventions.convention_search import conventions
 from taylor_verify.judge.conventions.fits import EXPLAINS
-from taylor_verify.judge.conventions.readings import readings, rotations
-from taylor_verify.judge.conventions.search import conventions
+from taylor_verify.judge.conventions.meanings import readings, rotations
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung

@@ -11,7 +11,7 @@ import pytest
 from builders.verdicts import row
 from mpmath import mpf
 
-from taylor_verify.judge.conventions.readings import readings
+from taylor_verify.judge.conventions.meanings import readings
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.files.coverage import Extent
 from taylor_verify.judge.floor.carrying import Carrying, carrying

@@ -15,10 +15,10 @@ from builders.turns import by_turns
 from builders.wrong_dynamics import failure
 
 import taylor_verify
-from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.answers import explained
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.changed_scene import changed_scene
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material_of_file
 from taylor_verify.judge.causes.written_numbers import numbers
 from taylor_verify.judge.conventions.fits import Conventions

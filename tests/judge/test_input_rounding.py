@@ -9,8 +9,8 @@ import pytest
 from builders.scenes import CLEBSCH, GENERAL, TENSOR, asked_at, sample_scene
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.floor import inputs
-from taylor_verify.judge.floor.inputs import InputRounding, input_rounding
+from taylor_verify.judge.floor import rounded_input
+from taylor_verify.judge.floor.rounded_input import InputRounding, input_rounding
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.motion import Spin
@@ -23,9 +23,9 @@ F64 = rung("f64")
 def test_draws_give_the_sum_of_single_moves(body: Body, monkeypatch: pytest.MonkeyPatch) -> None:
     """The mean square of eight draws is the sum of squares, but for its scatter of a half."""
     scene = sample_scene(body, "attitude")
-    assert len(inputs._numbers(scene)) > inputs._MOST_DRAWS
+    assert len(rounded_input._numbers(scene)) > rounded_input._MOST_DRAWS
     drawn = input_rounding(scene, F64).at_samples
-    monkeypatch.setattr(inputs, "_MOST_DRAWS", 1000)
+    monkeypatch.setattr(rounded_input, "_MOST_DRAWS", 1000)
     each = input_rounding(scene, F64).at_samples
     assert set(drawn) == set(each)
     for name, sizes in each.items():
@@ -38,7 +38,7 @@ def times_alone(*instants: Fraction) -> InputRounding:
     """The response to roundings of these times, of a scene whose numbers are not moved."""
     scene = asked_at("euler/generic", *instants)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(inputs, "_moved", lambda scene, rung: iter(()))
+        patch.setattr(rounded_input, "_moved", lambda scene, rung: iter(()))
         return input_rounding(scene, F64)
 
 
@@ -81,7 +81,7 @@ def test_times_are_one_number_more() -> None:
 def test_the_words_say_what_was_moved() -> None:
     """The numbers of body and start are counted."""
     scene = asked_at("euler/generic", Fraction(3, 2))
-    count = len(inputs._numbers(scene))
+    count = len(rounded_input._numbers(scene))
     words = f"each of the {count} numbers of body and start that are not zero"
     assert input_rounding(scene, F64).moved.removesuffix(", and every time") == words
 
@@ -91,7 +91,7 @@ def test_what_symmetry_makes_equal_counts_once() -> None:
     # The coupling of the general one has no symmetry, and two zeros.
     bodies = {RigidBody(TENSOR): 6 + 3, CLEBSCH: 6 + 5, GENERAL: 6 + 7 + 6 + 5}
     for body, count in bodies.items():
-        assert len(inputs._numbers(sample_scene(body))) == count
+        assert len(rounded_input._numbers(sample_scene(body))) == count
 
 
 def changes(scene: Scene) -> list[list[int]]:
@@ -106,7 +106,7 @@ def changes(scene: Scene) -> list[list[int]]:
     here, u = read(scene), F64.unit_roundoff
     return [
         [int((b / a - 1) / u) for a, b in zip(here, read(there), strict=True)]
-        for there in inputs._moved(scene, F64)
+        for there in rounded_input._moved(scene, F64)
     ]
 
 

@@ -21,7 +21,7 @@ from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
 
 from taylor_verify import check
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR
+from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_CONVENTIONS
 from taylor_verify.judge.load_notes import NOTHING_CONSERVED
 from taylor_verify.numbers.precision import rung

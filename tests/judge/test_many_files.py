@@ -28,7 +28,7 @@ from taylor_verify.records.schema import schema
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.files.step import (
+from taylor_verify.solvers.files.stated_step import (
     FileStep,
     Source,
     knob_of,

@@ -12,10 +12,10 @@ from builders.trajectories import exact_columns, file_judgement, scalar_last, wr
 import taylor_verify
 from taylor_verify.judge.errors.measured import Block, Comparison, Measured
 from taylor_verify.judge.errors.state import Errors
-from taylor_verify.judge.files.rows import FileRows
+from taylor_verify.judge.files.file_rows import FileRows
 from taylor_verify.judge.gated import Gate
+from taylor_verify.judge.judged_rows import Run
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.rows import Run
 from taylor_verify.records.record import Record
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile

@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler
+from taylor_verify.models.fastest_rate import Linearised
 from taylor_verify.models.form import Form
 from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.immersed import axis_of_symmetry
@@ -26,7 +27,6 @@ from taylor_verify.models.kirchhoff import (
     kirchhoff_equations,
 )
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody

@@ -18,7 +18,7 @@ from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Body, Ellipsoid, ImmersedBody
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.parts import Part, Parted, Shape, Value, entrywise
+from taylor_verify.scenes.named_numbers import Part, Parted, Shape, Value, entrywise
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify_reports.studies.portraits.equations import equations

@@ -17,6 +17,7 @@ from taylor_verify.models.euler import (
     heinbockel_moment,
     momentum_rate,
 )
+from taylor_verify.models.fastest_rate import Linearised, largest_eigenvalue
 from taylor_verify.models.form import Form
 from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
 from taylor_verify.models.kirchhoff import (
@@ -26,7 +27,6 @@ from taylor_verify.models.kirchhoff import (
     velocities,
 )
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.rates import Linearised, largest_eigenvalue
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Vector
@@ -35,7 +35,7 @@ from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.loads.loads import Entry
 from taylor_verify.scenes.motion import Impulse, Spin
-from taylor_verify.scenes.parts import Dimension
+from taylor_verify.scenes.named_numbers import Dimension
 from taylor_verify.scenes.reading.reader import load
 
 PER_INERTIA = Dimension(-1, -2, 0)

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import taylor_verify
+from taylor_verify.batch.chosen_scenes import select
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
-from taylor_verify.batch.selection import select
 from taylor_verify.cli import main
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.precisions import LADDER

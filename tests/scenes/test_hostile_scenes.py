@@ -10,7 +10,6 @@ import pytest
 from builders.scenes import LISTED_INSTANTS
 
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading import clock
 from taylor_verify.scenes.reading.reader import MOST_BYTES, load, read
 
 # Seconds of the processor that a scene of a hundred kilobytes may take.
@@ -62,7 +61,7 @@ def test_names_that_no_file_has_are_refused(name: str) -> None:
 
 def test_instants_are_no_more_than_samples(monkeypatch: pytest.MonkeyPatch) -> None:
     """`at` holds as many instants as `samples` may ask for, and no more."""
-    monkeypatch.setattr(clock, "MOST_SAMPLES", 1000)
+    monkeypatch.setattr(time_table, "MOST_SAMPLES", 1000)
     listed = "[" + ",".join(map(str, range(1, 1002))) + "]"
     (fault,) = refusal(LISTED_INSTANTS.replace(INSTANTS, listed)).faults
     assert fault == "expected at most 1000 numbers, got 1001 @ time.at"

@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 import taylor_verify
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, with_causes
+from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, with_causes
 from taylor_verify.judge.causes.material import are_known
 from taylor_verify.numbers.tensors import Vector, diagonal
 from taylor_verify.scenes.bodies import Body, RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
-from taylor_verify.scenes.parts import NUMBER, Part, Shape
+from taylor_verify.scenes.named_numbers import NUMBER, Part, Shape
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
 

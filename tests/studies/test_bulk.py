@@ -84,7 +84,7 @@ def test_what_was_made_before_an_interrupt_stays(
         ended(asked[0], work(asked[0]))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("taylor_verify.batch.runs.run_all", interrupted)
+    monkeypatch.setattr("taylor_verify.batch.work.run_all", interrupted)
     monkeypatch.setattr("taylor_verify_reports.studies.documents.run_all", interrupted)
     for kind, lacks in missing(report).lacking[1:]:
         with pytest.raises(KeyboardInterrupt):

@@ -21,7 +21,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.ensemble import Ensemble, Lane, batch_width
 from taylor_verify.solvers.taylor.way import longest_step
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, from_scaled
-from taylor_verify.tradeoff.starts import nearby
+from taylor_verify.tradeoff.random_starts import nearby
 
 # More than one batch of any processor, and no multiple of a power of two.
 LANES = 19

@@ -14,7 +14,7 @@ import pytest
 from builders.reports import every_portrait, portrait_without_run
 
 from taylor_verify.cli import main
-from taylor_verify.draw.course import FIGURES
+from taylor_verify.draw.drawn_course import FIGURES
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.file_names import of_scene

@@ -36,9 +36,9 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.store import load, write
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.report import tables
+from taylor_verify.report import published_tables
 from taylor_verify.words.cells import NOTHING, figure
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.report import publish
 
 
@@ -219,7 +219,7 @@ def test_what_is_no_longer_made_goes_and_what_is_not_ours_stays(report: Path) ->
     write(report, MIXED, [replace(RECORD, rung="f32")])
     written = publish(report)
     mine = {tables / "mine.md", tables / "mine.csv"}
-    assert {*tables.iterdir(), report / "README.md"} == {*written, *mine}
+    assert {*published_tables.iterdir(), report / "README.md"} == {*written, *mine}
     assert {file.name for file in records.iterdir()} == {
         "mine.json",
         "euler-generic.taylor.f32.json",
@@ -241,7 +241,7 @@ def test_publishing_imports_no_physics(report: Path) -> None:
         [sys.executable, "-c", program, str(report)], capture_output=True, text=True, check=True
     )
     loaded = set(ran.stdout.split())
-    assert "taylor_verify.report.tables" in loaded
+    assert "taylor_verify.report.published_tables" in loaded
     assert loaded.isdisjoint({"heyoka", "mpmath", "flint", "numpy", "gmpy2"})
     own = {name for name in loaded if name.startswith("taylor_verify")}
     below = {tuple(name.split(".")[:2]) for name in own if "." in name}
@@ -431,7 +431,7 @@ def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) ->
 
 def test_every_status_has_its_meaning_and_its_gravity() -> None:
     """A verdict of any kind can be explained and compared with another one."""
-    assert set(tables._MEANINGS) == set(Status) == set(GRAVITY)
+    assert set(published_tables._MEANINGS) == set(Status) == set(GRAVITY)
 
 
 @given(st.floats(min_value=1e-300, max_value=1e300))

@@ -32,7 +32,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.library import EXTREMES, names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
 from taylor_verify_reports.studies import registry, report

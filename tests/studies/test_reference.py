@@ -22,7 +22,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.documents import document as document_of
 from taylor_verify_reports.studies.reference import page as reference_files
 from taylor_verify_reports.studies.reference.measure import DIGITS, reference

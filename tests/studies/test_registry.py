@@ -17,7 +17,7 @@ from taylor_verify.cli import main
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies import bulk, registry
 from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.engines.study import STUDY as ENGINES

@@ -26,15 +26,15 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.taylor.driver import Taylor
-from taylor_verify.solvers.taylor.names import at_tolerance
+from taylor_verify.solvers.taylor.settings import at_tolerance
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.accuracy import Accuracy, Truth
 from taylor_verify.tradeoff.attainability import least_error
 from taylor_verify.tradeoff.point import Point, point
+from taylor_verify.tradeoff.random_starts import STARTS, nearby
 from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.tradeoff.setting import Setting, settings
 from taylor_verify.tradeoff.solves import Timed, cold_caches
-from taylor_verify.tradeoff.starts import STARTS, nearby
 from taylor_verify.tradeoff.trade_off import (
     front,
     trade_off,

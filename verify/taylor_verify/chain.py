@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import Any
 
 from taylor_verify import types
-from taylor_verify.judge.causes.answers import with_causes
+from taylor_verify.judge.causes.likely import with_causes
 from taylor_verify.judge.files.judgement import judge_file
 from taylor_verify.judge.files.stored import with_note_of_answer
 from taylor_verify.judge.judgement import Judgement, judgement, unjudged

@@ -98,12 +98,12 @@ def run_many(
     from dataclasses import replace
     from pathlib import Path
 
+    from taylor_verify.batch.chosen_scenes import Selection, select
     from taylor_verify.batch.compared import earlier
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import judge_all
     from taylor_verify.batch.lock import alone_in
     from taylor_verify.batch.report import ReportNotWritten
-    from taylor_verify.batch.selection import Selection, select
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.report.folder import write_report
     from taylor_verify.solvers.registry import as_solver

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from concurrent.futures import Executor as Executor
 
+    from taylor_verify.batch.chosen_scenes import Selection as Selection
     from taylor_verify.batch.judgements import Judgements as Judgements
     from taylor_verify.batch.judging import Progress as Progress
-    from taylor_verify.batch.selection import Selection as Selection
     from taylor_verify.certify.certificate import Certificate as Certificate
     from taylor_verify.exact.event_times import Events as Events
     from taylor_verify.judge.events import EventsJudgement as EventsJudgement
@@ -50,7 +50,7 @@ else:
         "Refused": "taylor_verify.records.faults",
         "Rung": "taylor_verify.numbers.precision",
         "Scene": "taylor_verify.scenes.scene",
-        "Selection": "taylor_verify.batch.selection",
+        "Selection": "taylor_verify.batch.chosen_scenes",
         "Setting": "taylor_verify.tradeoff.setting",
         "Solver": "taylor_verify.solvers.solver",
         "SweepSummary": "taylor_verify.records.sweep",

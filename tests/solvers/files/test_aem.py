@@ -14,7 +14,7 @@ from builders.recordings import OMEGA, QUATERNION, Columns
 from builders.trajectories import columns_at, conjugate
 
 import taylor_verify
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.judge.velocities import velocities
 from taylor_verify.numbers import rotation
 from taylor_verify.records.faults import Refused

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.answered import MisshapenAnswer, answer_of
+from taylor_verify.solvers.files.columns.assigned import request
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
-from taylor_verify.solvers.files.columns.request import request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.objects import trajectory

@@ -22,10 +22,10 @@ from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
+from taylor_verify.solvers.files.columns.assigned import request
+from taylor_verify.solvers.files.columns.column_units import in_brackets, known_units
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.names import GROUPS, SPELLINGS, Spelling
-from taylor_verify.solvers.files.columns.request import request
-from taylor_verify.solvers.files.columns.units import in_brackets, known_units
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns, read
 from taylor_verify.solvers.files.formats.column import Column
 

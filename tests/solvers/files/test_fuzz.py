@@ -27,7 +27,7 @@ from scipy.spatial.transform import Rotation
 
 import taylor_verify
 from taylor_verify import exact, load
-from taylor_verify.judge.causes.answers import Explained
+from taylor_verify.judge.causes.likely import Explained
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.files import judgement

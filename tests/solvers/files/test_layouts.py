@@ -25,7 +25,7 @@ from taylor_verify.records.faults import Refused
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import request
+from taylor_verify.solvers.files.columns.assigned import request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 
 LAYOUTS = tomllib.loads((Path(__file__).parent / "layouts.toml").read_text("utf-8"))["layout"]

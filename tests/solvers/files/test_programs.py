@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from builders.trajectories import QUATERNION, VECTORS, columns_at, rows_of
 
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.bodies import ImmersedBody

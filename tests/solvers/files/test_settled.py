@@ -13,7 +13,7 @@ import pytest
 from builders.trajectories import QUATERNION, columns_at, rows_of
 
 import taylor_verify
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene

@@ -26,7 +26,7 @@ from mpmath import mp
 
 from taylor_verify.cli import main
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.judge.velocities import momenta, velocities

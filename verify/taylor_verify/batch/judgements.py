@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, overload
 
+from taylor_verify.batch.chosen_scenes import Selection
 from taylor_verify.batch.comparison import Comparison
 from taylor_verify.batch.expectations import Agreement, compare_with_expectations
-from taylor_verify.batch.selection import Selection
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import LeftOut, LikelyCause
 from taylor_verify.records.json_text import complete

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from taylor_verify.batch.failure import Failed, failing
+from taylor_verify.batch.finished_jobs import unfinished
 from taylor_verify.batch.job import Job
-from taylor_verify.batch.runs import run_all
-from taylor_verify.batch.store import unfinished
+from taylor_verify.batch.work import run_all
 from taylor_verify.solvers.registry import PYTHON
 
 if TYPE_CHECKING:

@@ -54,9 +54,9 @@ def certify(
     ValueError
         For a tolerance that is no positive finite number.
     """
-    from taylor_verify.certify.answer import pieces_of
     from taylor_verify.certify.bounds import certificate_of
-    from taylor_verify.certify.units import check_conventions
+    from taylor_verify.certify.dense_answer import pieces_of
+    from taylor_verify.certify.other_conventions import check_conventions
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.models.problem import pose_as_stored
     from taylor_verify.numbers.precision import rung

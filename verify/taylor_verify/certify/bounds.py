@@ -10,9 +10,7 @@ from typing import Final
 from flint import ctx
 
 from taylor_verify.certify.certificate import Certificate
-from taylor_verify.certify.faults import Nodes, findings, nodes_of
-from taylor_verify.certify.largest import Largest, largest
-from taylor_verify.certify.motion import (
+from taylor_verify.certify.enclosed_error import (
     QUATERNION,
     ROTATION,
     Errors,
@@ -21,6 +19,8 @@ from taylor_verify.certify.motion import (
     errors_of,
     measured_of,
 )
+from taylor_verify.certify.interpolant_faults import Nodes, findings, nodes_of
+from taylor_verify.certify.largest import Largest, largest
 from taylor_verify.certify.pieces import Pieces
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.stopping import Coarse

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.certify.motion import Interval
+from taylor_verify.certify.enclosed_error import Interval
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.batch.selection import read_all
+from taylor_verify.batch.chosen_scenes import read_all
 from taylor_verify.cli.answer import WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
 from taylor_verify.numbers.precision import rung

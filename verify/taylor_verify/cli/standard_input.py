@@ -15,7 +15,7 @@ from taylor_verify.cli.answer import WrongCall
 from taylor_verify.cli.inputs import read_scene
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import Request, request
+from taylor_verify.solvers.files.columns.assigned import Request, request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 from taylor_verify.solvers.files.formats.column import BYTES
 

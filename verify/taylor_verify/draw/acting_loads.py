@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from taylor_verify.draw.view import Numbers
-from taylor_verify.exact.rows import quaternions
+from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Held

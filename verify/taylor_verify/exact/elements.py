@@ -13,11 +13,11 @@ from typing import Final
 
 from mpmath import mp
 
+from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.damping import NOT_QUADRATIC, is_solved
 from taylor_verify.exact.element import Element, Elements
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NO_CLOSED_FORM
-from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Undecided
 from taylor_verify.scenes.scene import Scene
 

@@ -11,6 +11,7 @@ from typing import Any, Final
 from flint import arb, ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.balls import midpoint, upper
 from taylor_verify.exact.enclosure.along import Part, parts
 from taylor_verify.exact.enclosure.course import Course
@@ -22,7 +23,6 @@ from taylor_verify.exact.enclosure.stopping import Coarse, Unreached
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.printed import number_with_digits
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.reading.event import Event, event_of

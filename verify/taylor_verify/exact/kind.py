@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from taylor_verify.exact.equations import Equations
 from taylor_verify.exact.invariant import Invariant
+from taylor_verify.exact.quadratic_forms import Equations
 from taylor_verify.exact.units import Units
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector

@@ -11,11 +11,11 @@ from typing import Any, Final, Protocol
 import numpy as np
 from mpmath import libmp, mp, mpf
 
-from taylor_verify.exact.attitudes import in_form
+from taylor_verify.exact.as_written import as_written
+from taylor_verify.exact.attitude_forms import in_form
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
-from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Irrational, Undecided
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.rotation import rotation_matrix

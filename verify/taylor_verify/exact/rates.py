@@ -14,9 +14,9 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.equations import Floats, Scaled
+from taylor_verify.exact.quadratic_forms import Floats, Scaled
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import cross_matrices
+from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.exact.units import Units
 from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.scenes.motion import Motion

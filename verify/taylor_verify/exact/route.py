@@ -8,12 +8,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, final
 
+from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.balls import Enclosed
 from taylor_verify.exact.damping import NOT_QUADRATIC, Damped, is_solved
 from taylor_verify.exact.registry import function_at, kind_of
 from taylor_verify.exact.solution import NoClosedForm, Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.exact.written import as_written
 from taylor_verify.numbers.irrational import Undecided
 from taylor_verify.records.faults import brief
 from taylor_verify.scenes.motion import Motion

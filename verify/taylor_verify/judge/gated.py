@@ -24,10 +24,10 @@ from taylor_verify.judge.errors.shift import Shift
 from taylor_verify.judge.errors.state import Errors, Floats
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.attainable import Floor, floor
-from taylor_verify.judge.floor.inputs import InputRounding
-from taylor_verify.judge.floor.steps import Steps
+from taylor_verify.judge.floor.counted_steps import Steps
+from taylor_verify.judge.floor.rounded_input import InputRounding
 from taylor_verify.judge.gates import Finding, index_of_largest, judge
-from taylor_verify.judge.rows import Run
+from taylor_verify.judge.judged_rows import Run
 from taylor_verify.records.reason import Carried, InputShare, Reason, RoundoffFloor
 from taylor_verify.records.record import GateRecord, four_digits
 from taylor_verify.records.status import Status

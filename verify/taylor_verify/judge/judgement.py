@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.floor.steps import count_steps
+from taylor_verify.judge.first_row import initial_verdict
+from taylor_verify.judge.floor.counted_steps import count_steps
 from taylor_verify.judge.gated import gates_of
-from taylor_verify.judge.initial import initial_verdict
-from taylor_verify.judge.rows import Run, run_record, verdict_on
+from taylor_verify.judge.judged_rows import Run, run_record, verdict_on
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung

@@ -8,14 +8,14 @@ from fractions import Fraction
 from typing import Any, Final, final
 
 from taylor_verify.models.algebra import minus, times
-from taylor_verify.models.choice import Choice
+from taylor_verify.models.fewest_operations import Choice
 from taylor_verify.models.form import Equations, Named
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import DAMPING, Body
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.parts import Part, Value
+from taylor_verify.scenes.named_numbers import Part, Value
 
 _LETTER: Final = Part("d", DAMPING.shape, DAMPING.dimension)
 

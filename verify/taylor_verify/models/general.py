@@ -16,7 +16,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.written import Written
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.parts import Shape
+from taylor_verify.scenes.named_numbers import Shape
 
 _ATTITUDE = ("e0", "e1", "e2", "e3")
 _CENTRE = ("c1", "c2", "c3")

@@ -12,8 +12,8 @@ from fractions import Fraction
 from typing import Any, Final, final
 
 from taylor_verify.models.algebra import add, apply, cross
-from taylor_verify.models.choice import Choice
 from taylor_verify.models.euler import euler_equations
+from taylor_verify.models.fewest_operations import Choice
 from taylor_verify.models.form import Equations, Named, labelled
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.rigid import Rigid, chosen_equations
@@ -23,7 +23,7 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.parts import MOMENTUM, Part, Shape, Value
+from taylor_verify.scenes.named_numbers import MOMENTUM, Part, Shape, Value
 
 _RIGID: Final = Rigid()
 

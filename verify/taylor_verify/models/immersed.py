@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import final
 
-from taylor_verify.models.choice import Choice, Numbers
+from taylor_verify.models.fewest_operations import Choice, Numbers
 from taylor_verify.models.form import Equations
 from taylor_verify.models.kirchhoff import (
     CLEBSCH_DIFFERENCES,
@@ -25,7 +25,7 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify.scenes.parts import IMPULSE, MOMENTUM, Part, Shape, Value
+from taylor_verify.scenes.named_numbers import IMPULSE, MOMENTUM, Part, Shape, Value
 
 _LETTERS = {"linear": "A", "coupling": "B", "angular": "C", "force": "X", "couple": "L"}
 

@@ -10,7 +10,7 @@ from taylor_verify.models.mechanics import components
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.units import Units
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.parts import Part, Value
+from taylor_verify.scenes.named_numbers import Part, Value
 
 
 class Rounding(Protocol):

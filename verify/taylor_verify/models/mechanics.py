@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, TypeVar
 
-from taylor_verify.models.choice import Choice
+from taylor_verify.models.fewest_operations import Choice
 from taylor_verify.models.form import Equations
 from taylor_verify.models.units import Units
 from taylor_verify.numbers import tensors
@@ -21,7 +21,7 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.parts import Part, Shape, Value
+from taylor_verify.scenes.named_numbers import Part, Shape, Value
 
 B = TypeVar("B", bound=Body)
 S = TypeVar("S", bound=State)

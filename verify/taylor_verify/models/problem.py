@@ -16,8 +16,8 @@ from typing import Any, NoReturn
 
 from taylor_verify.models import own, written
 from taylor_verify.models.acting import Acting
-from taylor_verify.models.choice import Choice, constant_states_sentence
 from taylor_verify.models.evaluated import wheels
+from taylor_verify.models.fewest_operations import Choice, constant_states_sentence
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.frame import unit_quaternion
 from taylor_verify.models.letters import counted, each, named, numbers_of

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Final, final
 
-from taylor_verify.models.choice import Choice, Numbers
 from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equations
+from taylor_verify.models.fewest_operations import Choice, Numbers
 from taylor_verify.models.form import Equations
 from taylor_verify.models.mechanics import Change, Mechanics
 from taylor_verify.models.units import Units, binary, largest, root, size
@@ -19,7 +19,7 @@ from taylor_verify.numbers.precision import Rung, floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape, Value
+from taylor_verify.scenes.named_numbers import MOMENT, MOMENTUM, Dimension, Part, Shape, Value
 
 _PRODUCTS: Final = ("K12", "K13", "K23")
 _DEVIATIONS: Final = {"D11": "K11 - K33", "D22": "K22 - K33"}

@@ -10,7 +10,7 @@ from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import Rung, floor_log2
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion
-from taylor_verify.scenes.parts import Part, Shape, Value, entrywise
+from taylor_verify.scenes.named_numbers import Part, Shape, Value, entrywise
 
 
 class NotRepresentable(Exception):

@@ -14,7 +14,7 @@ from functools import cached_property
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
-from taylor_verify.scenes.parts import Dimension, Part, Value, entrywise
+from taylor_verify.scenes.named_numbers import Dimension, Part, Value, entrywise
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from taylor_verify.records.json_text import finite
 from taylor_verify.records.runs import runs
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import in_roundoffs, over_attainable, word
-from taylor_verify.words.sheet import sheet
+from taylor_verify.words.csv_sheet import sheet
 
 _FIELDS: Final = (
     "scene",

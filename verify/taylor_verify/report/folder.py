@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.report import csv_tables, tables
+from taylor_verify.report import csv_tables, published_tables
 from taylor_verify.report.front import front
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 
 if TYPE_CHECKING:
     from taylor_verify.batch.judgements import Judgements
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 FRONT: Final = "README.md"
 GATES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
-    "tables/gates.md": tables.gates,
+    "tables/gates.md": published_tables.gates,
     "tables/gates.csv": csv_tables.gates,
 }
 """Makers of the tables with the reason of every verdict, by their paths."""
 TABLES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
-    "tables/accuracy.md": tables.accuracy,
-    "tables/conserved.md": tables.conserved,
+    "tables/accuracy.md": published_tables.accuracy,
+    "tables/conserved.md": published_tables.conserved,
     **GATES,
 }
 """Makers of all tables of verdicts, by their paths."""
@@ -52,7 +52,7 @@ def index(place: Path, verdicts: Sequence[Verdict], besides: Iterable[Page] = ()
     A README.md that this program did not make is not among them.
     """
     besides = list(besides)
-    texts = {f"tables/{FRONT}": tables.readme(verdicts, besides)}
+    texts = {f"tables/{FRONT}": published_tables.readme(verdicts, besides)}
     if not (place / FRONT).exists() or first_line(place / FRONT) == MADE_BY:
         texts[FRONT] = front(verdicts, besides)
     return texts

@@ -13,7 +13,7 @@ from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import NOTHING, figure, in_roundoffs, main_error, ratio, worst
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify.words.page import counts, made_with, whole
+from taylor_verify.words.page_parts import counts, made_with, whole
 
 if TYPE_CHECKING:
     from taylor_verify.words.entry import Page

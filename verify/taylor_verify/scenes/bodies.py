@@ -13,7 +13,16 @@ from taylor_verify.numbers.tensors import ZERO_MATRIX, ZERO_VECTOR, Matrix, Vect
 from taylor_verify.scenes.ellipsoid import Inertias, inertias
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.motion import Impulse, Spin, State
-from taylor_verify.scenes.parts import FORCE, MOMENT, RATE, Dimension, Part, Parted, Shape, Value
+from taylor_verify.scenes.named_numbers import (
+    FORCE,
+    MOMENT,
+    RATE,
+    Dimension,
+    Part,
+    Parted,
+    Shape,
+    Value,
+)
 from taylor_verify.scenes.stand_in import stand_in
 
 DAMPING: Final = Part("damping", Shape.NUMBER, RATE)

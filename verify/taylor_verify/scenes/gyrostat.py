@@ -11,7 +11,7 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.motion import Spin
-from taylor_verify.scenes.parts import MOMENT, MOMENTUM, Dimension, Part, Shape
+from taylor_verify.scenes.named_numbers import MOMENT, MOMENTUM, Dimension, Part, Shape
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,16 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import Instants
-from taylor_verify.scenes.parts import IMPULSE, LENGTH, MOMENTUM, NUMBER, RATE, Part, Parted, Shape
+from taylor_verify.scenes.named_numbers import (
+    IMPULSE,
+    LENGTH,
+    MOMENTUM,
+    NUMBER,
+    RATE,
+    Part,
+    Parted,
+    Shape,
+)
 
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 IDENTITY: Quaternion = (Fraction(1), Fraction(0), Fraction(0), Fraction(0))

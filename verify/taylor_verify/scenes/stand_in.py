@@ -12,7 +12,7 @@ from typing import Any, Final, Self
 
 from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.numbers.precision import rounded
-from taylor_verify.scenes.parts import Value, entrywise
+from taylor_verify.scenes.named_numbers import Value, entrywise
 
 STAND_IN_BITS: Final = 400
 """120 digits, beyond every precision of a solver."""

@@ -17,7 +17,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.faults import Refused, cut
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.objects import trajectory
-from taylor_verify.solvers.files.rotations import bare
+from taylor_verify.solvers.files.rotation_objects import bare
 
 
 class MisshapenAnswer(ValueError):

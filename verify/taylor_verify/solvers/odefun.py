@@ -17,8 +17,8 @@ from mpmath import mp
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung, held_exactly
+from taylor_verify.solvers.between_switches import piece_by_piece
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, raised
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows

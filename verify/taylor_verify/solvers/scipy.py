@@ -21,8 +21,8 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.reading.positive import positive
+from taylor_verify.solvers.between_switches import piece_by_piece
 from taylor_verify.solvers.options import options
-from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Lack, Solver, float64_alone, raised
 from taylor_verify.solvers.straight_line import Counted, Endless
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows

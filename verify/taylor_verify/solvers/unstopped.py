@@ -15,7 +15,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.stretch import holding, taking
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector
-from taylor_verify.solvers.pieces import held_at_start, legs
+from taylor_verify.solvers.between_switches import held_at_start, legs
 from taylor_verify.solvers.straight_line import Counting, Rates, straight_line
 
 

@@ -20,9 +20,9 @@ from taylor_verify.tradeoff.accuracy import Truths
 from taylor_verify.tradeoff.attainability import left_out, narrowest
 from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.point import Point
+from taylor_verify.tradeoff.random_starts import nearby
 from taylor_verify.tradeoff.setting import Setting, settings
 from taylor_verify.tradeoff.solves import SEED
-from taylor_verify.tradeoff.starts import nearby
 from taylor_verify.tradeoff.trade_off import TradeOff, sound_points, trade_off
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.case import Case, Remark, cases
 from taylor_verify.words.cells import CELLS, NOTHING, judged
 from taylor_verify.words.markdown import bold, code, prose, table
-from taylor_verify.words.page import counts
+from taylor_verify.words.page_parts import counts
 
 # GitHub takes 1 MiB from a step, and drops a larger summary.
 _MOST_BYTES: Final = 1_000_000

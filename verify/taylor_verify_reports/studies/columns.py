@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
+from taylor_verify.words.csv_sheet import sheet
 from taylor_verify.words.markdown import table
-from taylor_verify.words.sheet import sheet
 
 Row = TypeVar("Row")
 Columns = tuple[tuple[str, Callable[[Row], str]], ...]

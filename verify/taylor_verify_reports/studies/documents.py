@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from taylor_verify.batch.failure import Failed, failing
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 
 if TYPE_CHECKING:
     from taylor_verify.scenes.scene import Scene

@@ -14,7 +14,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import index
 from taylor_verify.scenes import library
 from taylor_verify.words.entry import Page
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.registry import STUDIES, others
 

@@ -16,8 +16,8 @@ from tempfile import TemporaryDirectory
 
 from platformdirs import user_cache_path
 
+from taylor_verify.batch.finished_jobs import package_digest
 from taylor_verify.batch.lock import alone_in
-from taylor_verify.batch.store import package_digest
 from taylor_verify.records.replacement import replace_files
 
 

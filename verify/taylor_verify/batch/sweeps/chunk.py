@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 from taylor_verify.batch.failure import fault
-from taylor_verify.batch.store import package_digest
+from taylor_verify.batch.finished_jobs import package_digest
 from taylor_verify.batch.sweeps.questions import Question, Questions
 from taylor_verify.chain import judge_scene
 from taylor_verify.judge.tolerances import Tolerances

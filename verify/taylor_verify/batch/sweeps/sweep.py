@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from taylor_verify.batch.failure import Failed
+from taylor_verify.batch.finished_jobs import package_digest, program_digests
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.lock import alone_in
-from taylor_verify.batch.runs import run_stream
-from taylor_verify.batch.store import package_digest, program_digests
 from taylor_verify.batch.sweeps.chunk import Chunk, Judged, explain, judge
 from taylor_verify.batch.sweeps.dataset import (
     MANIFEST,
@@ -28,8 +27,9 @@ from taylor_verify.batch.sweeps.dataset import (
     read_manifest,
 )
 from taylor_verify.batch.sweeps.questions import Drawn, Questions, is_whole, questions
-from taylor_verify.batch.sweeps.report import SUMMARY_NAMES, write_summary
 from taylor_verify.batch.sweeps.summary import WORST, summary, with_causes, with_files
+from taylor_verify.batch.sweeps.sweep_files import SUMMARY_NAMES, write_summary
+from taylor_verify.batch.work import run_stream
 from taylor_verify.judge.provenance import packages
 from taylor_verify.judge.tolerances import Tolerance, Tolerances, tolerances
 from taylor_verify.numbers.precision import Rung

@@ -24,13 +24,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.differences import settled
-from taylor_verify.exact.conditioning.flow import Flow, Steps
+from taylor_verify.exact.conditioning.by_differences import settled
+from taylor_verify.exact.conditioning.linearised import Flow, Steps
 from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled

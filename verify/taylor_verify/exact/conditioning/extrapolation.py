@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.quadratic_forms import Floats
 
 FINE: Final = (2, 4, 6, 8, 10, 12, 14)
 """Numbers of parts of a step of order 14."""

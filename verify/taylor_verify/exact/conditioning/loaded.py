@@ -18,14 +18,14 @@ import numpy as np
 from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.conditioning.flow import Flow, Steps, products
+from taylor_verify.exact.conditioning.linearised import Flow, Steps, products
 from taylor_verify.exact.conditioning.path_times import MOST_OF_RUN, times_of_run
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.enclosure.walk import Row
-from taylor_verify.exact.equations import Floats
 from taylor_verify.exact.proving import Times
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, Solution

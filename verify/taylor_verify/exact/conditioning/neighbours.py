@@ -27,13 +27,13 @@ import gmpy2
 import numpy as np
 
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
-from taylor_verify.exact.conditioning.flow import Flow, applied
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.conditioning.linearised import Flow, applied
 from taylor_verify.exact.invariant import Array
 from taylor_verify.exact.kind import Kind
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import applied as mapped
-from taylor_verify.exact.rows import cross_matrices, turned
+from taylor_verify.exact.row_arithmetic import applied as mapped
+from taylor_verify.exact.row_arithmetic import cross_matrices, turned
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 

@@ -18,11 +18,11 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.extrapolation import FINE, ROUGH, extrapolated
-from taylor_verify.exact.conditioning.flow import Flow, Steps, applied, products
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.conditioning.linearised import Flow, Steps, applied, products
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.rows import cross_matrices
+from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.scene import Scene
 

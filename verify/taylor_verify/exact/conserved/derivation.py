@@ -24,7 +24,7 @@ from taylor_verify.exact.conserved.polynomial import (
     reduced,
     symbols_of,
 )
-from taylor_verify.exact.equations import Equations, Exact
+from taylor_verify.exact.quadratic_forms import Equations, Exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers import rotation
 from taylor_verify.numbers.tensors import Matrix, Vector

@@ -16,7 +16,7 @@ from taylor_verify.exact.conserved.potential import Potential
 from taylor_verify.exact.conserved.wheels import with_wheels
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import nonzero, norms, size
+from taylor_verify.exact.row_arithmetic import nonzero, norms, size
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Vector, identity
 from taylor_verify.scenes.motion import Motion

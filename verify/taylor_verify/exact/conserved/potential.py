@@ -19,7 +19,7 @@ import numpy as np
 from taylor_verify.exact.conserved.derivation import Derivation
 from taylor_verify.exact.conserved.polynomial import Polynomial, multiplied, terms
 from taylor_verify.exact.invariant import Array
-from taylor_verify.exact.rows import cross
+from taylor_verify.exact.row_arithmetic import cross
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, ROTATION
 from taylor_verify.scenes.motion import Motion

@@ -10,7 +10,7 @@ from taylor_verify.exact.conserved.derivation import Derivation
 from taylor_verify.exact.conserved.polynomial import TooLong, terms
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import applied, largest, norms, ones, squares, turned
+from taylor_verify.exact.row_arithmetic import applied, largest, norms, ones, squares, turned
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.motion import Motion

@@ -13,9 +13,9 @@ from typing import Final
 
 from flint import arb, arb_poly, ctx
 
-from taylor_verify.exact.enclosure.bounds import Bounds, value_at
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.kinks import Kink
+from taylor_verify.exact.enclosure.node_bounds import Bounds, value_at
 from taylor_verify.exact.enclosure.operations import ZERO, Domain
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.step import Step

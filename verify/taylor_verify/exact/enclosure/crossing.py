@@ -15,9 +15,9 @@ from typing import Final, NamedTuple
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.enclosure.bounds import Bounds, minimum, value_at
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
+from taylor_verify.exact.enclosure.node_bounds import Bounds, minimum, value_at
 from taylor_verify.exact.enclosure.operations import ZERO
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.tube import BOUND_BITS

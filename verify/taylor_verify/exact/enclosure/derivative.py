@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx
 
-from taylor_verify.exact.enclosure.bounds import Bounds
+from taylor_verify.exact.enclosure.node_bounds import Bounds
 from taylor_verify.exact.enclosure.operations import ONE, ZERO, Part, State
 
 

@@ -16,10 +16,10 @@ from typing import Final
 
 from flint import arb, arb_mat
 
-from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent, identity
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.derivative import Jacobian, jacobian
+from taylor_verify.exact.enclosure.node_bounds import Bounds
 from taylor_verify.exact.enclosure.system import intervals, magnitudes
 from taylor_verify.exact.enclosure.tube import Tube, accumulated
 

@@ -23,7 +23,7 @@ from taylor_verify.exact.enclosure.operations import (
 )
 
 if TYPE_CHECKING:
-    from taylor_verify.exact.enclosure.bounds import Bounds
+    from taylor_verify.exact.enclosure.node_bounds import Bounds
     from taylor_verify.exact.enclosure.series import Series
 
 

@@ -29,7 +29,7 @@ from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import floor_log2
 
 if TYPE_CHECKING:
-    from taylor_verify.exact.enclosure.bounds import Bounds
+    from taylor_verify.exact.enclosure.node_bounds import Bounds
     from taylor_verify.exact.enclosure.series import Series
 
 ZERO, ONE = arb(0), arb(1)

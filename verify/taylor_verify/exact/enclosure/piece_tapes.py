@@ -14,7 +14,7 @@ from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.operations import Time
 from taylor_verify.exact.enclosure.system import natural
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, total
-from taylor_verify.exact.equations import Exact, exact
+from taylor_verify.exact.quadratic_forms import Exact, exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Piece

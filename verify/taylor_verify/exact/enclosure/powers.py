@@ -22,7 +22,7 @@ from taylor_verify.exact.enclosure.operations import (
 from taylor_verify.numbers.irrational import ball
 
 if TYPE_CHECKING:
-    from taylor_verify.exact.enclosure.bounds import Bounds
+    from taylor_verify.exact.enclosure.node_bounds import Bounds
     from taylor_verify.exact.enclosure.series import Series
 
 

@@ -10,12 +10,12 @@ from typing import Final
 
 from flint import arb, ctx
 
-from taylor_verify.exact.enclosure.bounds import Bounds
 from taylor_verify.exact.enclosure.box import Box, exponent
 from taylor_verify.exact.enclosure.coefficients import Rows
 from taylor_verify.exact.enclosure.crossing import least_length, plan
 from taylor_verify.exact.enclosure.flow import Flow, flow
 from taylor_verify.exact.enclosure.kinks import Kink
+from taylor_verify.exact.enclosure.node_bounds import Bounds
 from taylor_verify.exact.enclosure.series import Series
 from taylor_verify.exact.enclosure.system import Piece, System
 from taylor_verify.exact.enclosure.tape import Tape

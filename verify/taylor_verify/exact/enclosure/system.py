@@ -17,7 +17,7 @@ from flint import arb, arb_mat
 
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.tape import Graph, Sum, Tape, vanishes
-from taylor_verify.exact.equations import Equations
+from taylor_verify.exact.quadratic_forms import Equations
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.states import Instant
 

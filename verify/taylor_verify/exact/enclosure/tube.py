@@ -27,7 +27,7 @@ from flint import arb, arb_mat
 from taylor_verify.exact.enclosure.system import column, magnitudes
 
 if TYPE_CHECKING:
-    from taylor_verify.exact.enclosure.bounds import Bounds
+    from taylor_verify.exact.enclosure.node_bounds import Bounds
 
 BOUND_BITS: Final = 64
 

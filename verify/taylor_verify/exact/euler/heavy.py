@@ -22,7 +22,12 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.carried import Back, carried
-from taylor_verify.exact.kirchhoff.axes import Axes, at_rest_in_space, clebsch_about, out_of
+from taylor_verify.exact.kirchhoff.axis_of_revolution import (
+    Axes,
+    at_rest_in_space,
+    clebsch_about,
+    out_of,
+)
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.regime import regime
 from taylor_verify.exact.solution import NoClosedForm, Number, Solution, Time

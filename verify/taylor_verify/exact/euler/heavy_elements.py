@@ -15,8 +15,8 @@ from mpmath import mp
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.euler.heavy import Top, TopRegime, top_of
 from taylor_verify.exact.euler.libration import Pitch, pitch_of
+from taylor_verify.exact.kirchhoff.any_solid import own_elements, recurring
 from taylor_verify.exact.kirchhoff.closed import case
-from taylor_verify.exact.kirchhoff.general import own_elements, recurring
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm
 from taylor_verify.scenes.scene import Scene

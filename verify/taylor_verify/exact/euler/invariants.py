@@ -8,7 +8,7 @@ Written from the definitions and independent of the equations of motion.
 from __future__ import annotations
 
 from taylor_verify.exact.invariant import Array, Invariant
-from taylor_verify.exact.rows import applied, dot, largest, norms, ones, squares, turned
+from taylor_verify.exact.row_arithmetic import applied, dot, largest, norms, ones, squares, turned
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.gyrostat import Gyrostat

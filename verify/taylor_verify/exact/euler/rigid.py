@@ -10,11 +10,11 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Final, TypeVar, final
 
-from taylor_verify.exact.equations import Equations, cross, exact, mapped
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
-from taylor_verify.exact.rows import applied, norms
+from taylor_verify.exact.quadratic_forms import Equations, cross, exact, mapped
+from taylor_verify.exact.row_arithmetic import applied, norms
 from taylor_verify.exact.units import Units, exponent, halved, largest
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector

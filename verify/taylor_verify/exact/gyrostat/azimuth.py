@@ -18,8 +18,8 @@ from typing import Any, Final, NamedTuple
 from flint import acb, arb
 
 from taylor_verify.exact.balls import balls
+from taylor_verify.exact.gyrostat.curve_point import PointMap
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.gyrostat.point import PointMap
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.rotation import cross, rotation_matrix, scalar_product

@@ -9,6 +9,7 @@ from typing import Final
 from flint import arb, ctx
 from mpmath import mp, mpf
 
+from taylor_verify.exact.as_written import as_rationals
 from taylor_verify.exact.balls import Undecidable, midpoint
 from taylor_verify.exact.element import Element, Elements, settled
 from taylor_verify.exact.gyrostat.closed import free_gyrostat
@@ -17,7 +18,6 @@ from taylor_verify.exact.gyrostat.sigma import best_azimuth
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.lattice import lattice
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
-from taylor_verify.exact.written import as_rationals
 from taylor_verify.scenes.scene import Scene
 
 _CONSERVED: Final = (

@@ -26,9 +26,9 @@ from taylor_verify.exact.gyrostat.azimuth import (
     poles,
     rate_at_start,
 )
+from taylor_verify.exact.gyrostat.curve_point import PointMap, point_map
+from taylor_verify.exact.gyrostat.momentum_function import momentum_form
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.gyrostat.point import PointMap, point_map
-from taylor_verify.exact.gyrostat.velocity import momentum_form
 from taylor_verify.exact.lattice import Lattice, lattice
 from taylor_verify.exact.solution import Time
 from taylor_verify.numbers.irrational import ball

@@ -19,8 +19,8 @@ from typing import Final
 from mpmath import mp, mpf
 
 from taylor_verify.exact.element import Element, Elements, settled
+from taylor_verify.exact.kirchhoff.any_solid import conserved, recurring
 from taylor_verify.exact.kirchhoff.carrier import Carrier
-from taylor_verify.exact.kirchhoff.general import conserved, recurring
 from taylor_verify.exact.kirchhoff.jacobi import NutatingBody
 from taylor_verify.exact.kirchhoff.quartic import (
     Nutation,

@@ -16,7 +16,7 @@ from taylor_verify.exact.euler import jacobi as tops
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.gyrostat.sigma import top_rotation
 from taylor_verify.exact.kirchhoff import jacobi, weierstrass
-from taylor_verify.exact.kirchhoff.axes import at_rest_in_space, clebsch_about, out_of
+from taylor_verify.exact.kirchhoff.axis_of_revolution import at_rest_in_space, clebsch_about, out_of
 from taylor_verify.exact.kirchhoff.displaced import centred
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, multiple
 from taylor_verify.exact.kirchhoff.plane import Plane, in_plane, of_revolution, planar

@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 
 from taylor_verify.exact.carried import Back
-from taylor_verify.exact.equations import exact
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid
+from taylor_verify.exact.quadratic_forms import exact
 from taylor_verify.exact.solution import Number, Time
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text

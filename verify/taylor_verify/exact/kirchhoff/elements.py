@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import Final
 
 from taylor_verify.exact.element import Elements
-from taylor_verify.exact.kirchhoff import clebsch_elements, general
-from taylor_verify.exact.kirchhoff.axes import Axes
+from taylor_verify.exact.kirchhoff import any_solid, clebsch_elements
+from taylor_verify.exact.kirchhoff.axis_of_revolution import Axes
 from taylor_verify.exact.kirchhoff.closed import Case, case
 from taylor_verify.exact.kirchhoff.quartic import Nutation
 from taylor_verify.exact.kirchhoff.solid import solid
@@ -39,7 +39,7 @@ def elements(scene: Scene, digits: int) -> Elements:
                 result = _beside(result, f"y{axes.number}")
     else:
         kind = NO_CLOSED_FORM if whole is None else whole.regime
-        result = general.elements(scene, impulses, kind, digits)
+        result = any_solid.elements(scene, impulses, kind, digits)
     solved = whole or impulses
     words = () if solved is None else solved.reduced.words
     return replace(result, sentences=(*_reductions(words), *result.sentences))

@@ -11,13 +11,13 @@ from typing import Final, final
 
 import numpy as np
 
-from taylor_verify.exact.equations import Equations, cross, exact, nothing
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.kind import Kind
-from taylor_verify.exact.kirchhoff.axes import clebsch_about
+from taylor_verify.exact.kirchhoff.axis_of_revolution import clebsch_about
 from taylor_verify.exact.kirchhoff.integrable import fourth_integral
 from taylor_verify.exact.kirchhoff.invariants import F2, FG, X_SPACE, Y_SPACE, along, axial, energy
-from taylor_verify.exact.rows import norms
+from taylor_verify.exact.quadratic_forms import Equations, cross, exact, nothing
+from taylor_verify.exact.row_arithmetic import norms
 from taylor_verify.exact.units import Units, exponent, halved, largest, later
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector

@@ -23,7 +23,7 @@ import numpy as np
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from taylor_verify.exact.kirchhoff.solid import solid
-from taylor_verify.exact.rows import Array, norms
+from taylor_verify.exact.row_arithmetic import Array, norms
 from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes.bodies import ImmersedBody

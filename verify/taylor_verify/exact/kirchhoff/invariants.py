@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.exact.invariant import Array, Invariant
-from taylor_verify.exact.rows import (
+from taylor_verify.exact.row_arithmetic import (
     applied,
     cross,
     cross_matrices,

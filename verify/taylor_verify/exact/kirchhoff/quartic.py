@@ -14,7 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from taylor_verify.exact.kirchhoff.axes import UPRIGHT, Axes, body_about
+from taylor_verify.exact.kirchhoff.axis_of_revolution import UPRIGHT, Axes, body_about
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.irrational import Irrational
 from taylor_verify.numbers.tensors import dot

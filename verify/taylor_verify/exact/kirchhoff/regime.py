@@ -11,7 +11,7 @@ from typing import Any, Final
 from flint import arb, ctx
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.kirchhoff.axes import clebsch_about
+from taylor_verify.exact.kirchhoff.axis_of_revolution import clebsch_about
 from taylor_verify.exact.kirchhoff.quartic import Nutation, derivative, repeated_root, value
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.real_roots import polynomial, real_roots

@@ -27,7 +27,7 @@ from typing import final
 from mpmath import mp, mpc, mpf
 
 from taylor_verify.exact.frames import Frame, applied, product, start_frame, transposed
-from taylor_verify.exact.kirchhoff.axes import Axes
+from taylor_verify.exact.kirchhoff.axis_of_revolution import Axes
 from taylor_verify.scenes.motion import Impulse
 
 Axial = tuple[mpc, mpf]  # (v1 + i v2, v3) of a vector v in body axes

@@ -25,7 +25,7 @@ from typing import Any, Final, final
 from flint import acb, arb, arb_mat
 
 from taylor_verify.exact.balls import Enclosed, Enclosure, ball_matrix, balls, balls_of
-from taylor_verify.exact.kirchhoff.course import Pole, QuarticCourse, course
+from taylor_verify.exact.kirchhoff.nutation import Pole, QuarticCourse, course
 from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.lattice import Lattice, Periods
 from taylor_verify.exact.solution import Time

@@ -10,9 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Places
-from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import STAGES, Floats, Rates, flow
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.float_answer import Answer, Places
+from taylor_verify.judge.causes.many_flows import STAGES, Floats, Rates, flow
 from taylor_verify.scenes.instants import evenly
 
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.

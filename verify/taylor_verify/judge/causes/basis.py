@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.many_flows import Floats
 
 EPSILON: Final = np.array(
     [

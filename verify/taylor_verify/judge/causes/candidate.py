@@ -8,10 +8,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
-from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.fit import Family
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.words.causes import with_numbers
 
 # A change below this part of its natural size is none.

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads

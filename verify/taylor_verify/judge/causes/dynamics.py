@@ -11,17 +11,11 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
-from taylor_verify.judge.causes.bodies import (
-    families_of_bodies,
-    faults_of_added_mass,
-    faults_of_bodies,
-)
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
-from taylor_verify.judge.causes.course import Courses
-from taylor_verify.judge.causes.equations import Changes
+from taylor_verify.judge.causes.changed_course import Courses
+from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
@@ -33,8 +27,14 @@ from taylor_verify.judge.causes.fit import (
     gauss_newton,
     orthonormal,
 )
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
+from taylor_verify.judge.causes.other_bodies import (
+    families_of_bodies,
+    faults_of_added_mass,
+    faults_of_bodies,
+)
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice

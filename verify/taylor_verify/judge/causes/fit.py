@@ -8,10 +8,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.arcs import Arcs, Evidence
-from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import CAPS
 
 # Part of each number's scale for a central difference.

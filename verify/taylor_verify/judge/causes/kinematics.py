@@ -10,11 +10,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row
 from taylor_verify.judge.causes.candidate import Candidate, Cause
-from taylor_verify.judge.causes.dynamics import Search
-from taylor_verify.judge.causes.equations import (
+from taylor_verify.judge.causes.changed_equations import (
     AFTER,
     Changes,
     Equations,
@@ -22,10 +20,12 @@ from taylor_verify.judge.causes.equations import (
     rotations,
     to_space,
 )
+from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.fit import Family, Fault, linear
-from taylor_verify.judge.causes.flow import Floats, flow
-from taylor_verify.judge.causes.methods import UPDATES
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
+from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
+from taylor_verify.judge.causes.replayed_methods import UPDATES
 from taylor_verify.judge.causes.replays import replay
 from taylor_verify.scenes.instants import evenly
 

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.exact.route import solution
-from taylor_verify.judge.causes.answer import Answer, Motion, matrices, steady_signs
 from taylor_verify.judge.causes.budget import Budget
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices, steady_signs
+from taylor_verify.judge.causes.last_place import half_units
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
-from taylor_verify.judge.causes.printed import half_units
 from taylor_verify.judge.causes.proof import LEAVES
-from taylor_verify.judge.conventions.axes import quaternion_columns
+from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.conventions.fits import Conventions
-from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.judge.conventions.meanings import readings, rotations
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.problem import Problem, adopt
 from taylor_verify.numbers.precision import Rung

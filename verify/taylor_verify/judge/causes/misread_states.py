@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.fit import Fault
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.written_numbers import Number, rewritten
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State

@@ -9,10 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.arcs import Arcs, row_to_row
 from taylor_verify.judge.causes.fit import Sizes
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.records.answers import MissingLoad
 
 _ROUNDS: Final = 3

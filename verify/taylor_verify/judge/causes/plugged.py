@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.records.plugins import Plugin, plugins
 from taylor_verify.scenes.scene import Scene

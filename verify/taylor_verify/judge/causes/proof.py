@@ -12,10 +12,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, enough_steps, moved
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.instants import evenly
 
 # A function from the states of all rows but the last (sets, components, arcs) to those one row later.

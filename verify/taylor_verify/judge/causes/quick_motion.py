@@ -10,10 +10,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.material import are_known, equations_of
-from taylor_verify.judge.conventions.axes import quaternion_columns
-from taylor_verify.judge.conventions.readings import rotations
+from taylor_verify.judge.conventions.axis_orders import quaternion_columns
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.records.quantities import MOMENTA
 from taylor_verify.scenes.scene import Scene
 

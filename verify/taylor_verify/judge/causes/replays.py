@@ -13,20 +13,20 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion
 from taylor_verify.judge.causes.arcs import Arcs, parts_of
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, orthonormal
-from taylor_verify.judge.causes.flow import Floats
-from taylor_verify.judge.causes.methods import (
+from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.proof import whole
+from taylor_verify.judge.causes.replayed_methods import (
     METHODS,
     OF_MOMENTUM,
     Method,
     with_unit_attitude,
     with_updates,
 )
-from taylor_verify.judge.causes.proof import whole
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16

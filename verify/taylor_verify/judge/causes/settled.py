@@ -9,12 +9,12 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
-from taylor_verify.judge.causes.bodies import entries, nearest_factor, structure
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
-from taylor_verify.judge.causes.equations import Changes
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.other_bodies import entries, nearest_factor, structure
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.words.causes import with_numbers

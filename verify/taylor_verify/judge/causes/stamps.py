@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats, flow
 
 _FEWEST: Final = 6
 _ROUNDS: Final = 5

@@ -7,11 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, Places
 from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import CAPS, may_leave, whole
 
 # A defect of so many roundings, and of this part of the largest one, is a jump.

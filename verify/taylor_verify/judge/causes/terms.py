@@ -10,9 +10,9 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis, coriolis_of
-from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Fault, Sizes, linear
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.many_flows import Floats
 
 _WRONG: Final = (("left out", 0.0), ("with the other sign", -1.0))
 _OFTEN_WRONG: Final = (*_WRONG, ("twice", 2.0))

@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fault
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_arguments import NAME, other_arguments
 from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
 from taylor_verify.numbers.tensors import ZERO_VECTOR

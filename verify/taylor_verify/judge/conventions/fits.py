@@ -8,8 +8,8 @@ from fractions import Fraction
 from math import log10
 from typing import Final
 
-from taylor_verify.judge.conventions.axes import Frames
-from taylor_verify.judge.conventions.readings import Reading, readings
+from taylor_verify.judge.conventions.axis_orders import Frames
+from taylor_verify.judge.conventions.meanings import Reading, readings
 from taylor_verify.judge.conventions.worlds import World
 
 # A convention explains an error if at most this part remains: the remainder is the solver's error.

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
-from taylor_verify.judge.conventions.axes import Frames
+from taylor_verify.judge.conventions.axis_orders import Frames
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.scene import Scene

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.errors.compared import Compared, Floats, Shifted
+from taylor_verify.judge.errors.shifted import Compared, Floats, Shifted
 
 # The neglected part must be at most this part of the remaining error.
 _NEGLIGIBLE: Final = 1 / 16

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.flow import Flow
+from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping

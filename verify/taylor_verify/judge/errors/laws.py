@@ -16,7 +16,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.condition import Path
-from taylor_verify.exact.rows import applied
+from taylor_verify.exact.row_arithmetic import applied
 from taylor_verify.judge.errors.state import Errors, Floats, in_doubles, norms, or_one
 from taylor_verify.judge.floor.loads import Along
 from taylor_verify.models.evaluated import evaluated

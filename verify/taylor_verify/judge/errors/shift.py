@@ -19,7 +19,7 @@ import numpy as np
 
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import courses
-from taylor_verify.judge.errors.compared import Compared, Floats, Run, Shifted
+from taylor_verify.judge.errors.shifted import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.reason import Kind, TimeShift
 from taylor_verify.scenes.instants import evenly

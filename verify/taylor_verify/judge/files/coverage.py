@@ -15,7 +15,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Final
 
-from taylor_verify.judge.rows import verdict_on
+from taylor_verify.judge.judged_rows import verdict_on
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import (

@@ -16,12 +16,12 @@ import numpy as np
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answers import NOT_LOOKED_FOR, Explained, causes_of_file
+from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, Explained, causes_of_file
 from taylor_verify.judge.causes.material import are_known
-from taylor_verify.judge.conventions.angles import with_angles
+from taylor_verify.judge.conventions.angle_meanings import with_angles
+from taylor_verify.judge.conventions.convention_search import MOST_SPANS, conventions
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions, Finding
-from taylor_verify.judge.conventions.readings import space_axes
-from taylor_verify.judge.conventions.search import MOST_SPANS, conventions
+from taylor_verify.judge.conventions.meanings import space_axes
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.judge.files.coverage import (
     Extent,
@@ -32,17 +32,17 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
+from taylor_verify.judge.files.file_rows import FileRows, first_flaw
 from taylor_verify.judge.files.parts import in_parts
-from taylor_verify.judge.files.rows import FileRows, first_flaw
 from taylor_verify.judge.files.stored import storing, with_file_kinds
-from taylor_verify.judge.floor.angles import with_angles_rounded
-from taylor_verify.judge.floor.inputs import input_rounding
-from taylor_verify.judge.floor.steps import Steps
+from taylor_verify.judge.first_row import initial_verdict
+from taylor_verify.judge.floor.counted_steps import Steps
+from taylor_verify.judge.floor.gimbal import with_angles_rounded
+from taylor_verify.judge.floor.rounded_input import input_rounding
 from taylor_verify.judge.gated import Gate, gates_of
-from taylor_verify.judge.initial import initial_verdict
+from taylor_verify.judge.judged_rows import Run, run_record
 from taylor_verify.judge.judgement import Judgement, unjudged
 from taylor_verify.judge.load_notes import breaks_of, load_notes
-from taylor_verify.judge.rows import Run, run_record
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.printed import relative_unit
+from taylor_verify.judge.causes.last_place import relative_unit
 from taylor_verify.judge.conventions.fits import Finding
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.judgement import Judgement

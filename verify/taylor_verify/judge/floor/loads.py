@@ -17,7 +17,7 @@ import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import quaternions
+from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.models.functions import functions_of
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import Loads

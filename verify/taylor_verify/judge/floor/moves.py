@@ -19,7 +19,7 @@ from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.rows import cross_matrices
+from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.judge.floor.loads import Along
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.scenes.motion import Motion

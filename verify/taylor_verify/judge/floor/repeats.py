@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
-from taylor_verify.exact.conditioning.flow import applied
+from taylor_verify.exact.conditioning.linearised import applied
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers.precision import floor_log2

@@ -22,7 +22,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import summary
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.solvers.files.file import TrajectoryFile
-from taylor_verify.solvers.files.step import (
+from taylor_verify.solvers.files.stated_step import (
     STEP_COLUMNS,
     FileStep,
     Source,

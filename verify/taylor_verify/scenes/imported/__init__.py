@@ -21,8 +21,8 @@ from taylor_verify.scenes.imported import mjcf, sdf, urdf
 from taylor_verify.scenes.imported.attributes import Reading
 from taylor_verify.scenes.imported.gazebo import surrounded
 from taylor_verify.scenes.imported.link import Candidate, Format
+from taylor_verify.scenes.imported.scene_text import scene_text
 from taylor_verify.scenes.imported.tree import Node, read_document
-from taylor_verify.scenes.imported.written import scene_text
 
 _FORMATS: Final[Mapping[str, Format]] = {
     form.root: form for form in (urdf.FORMAT, sdf.FORMAT, mjcf.FORMAT)

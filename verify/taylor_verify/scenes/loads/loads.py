@@ -13,7 +13,7 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes.loads.grammar import Fault
 from taylor_verify.scenes.loads.piece import Piece, PieceReader
-from taylor_verify.scenes.loads.rounding import finished
+from taylor_verify.scenes.loads.rounded_steps import finished
 from taylor_verify.scenes.loads.states import Continuous, Held, Instant, State, instants
 from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Table

@@ -19,7 +19,7 @@ from taylor_verify.numbers.irrational import PI
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body, ImmersedBody
 from taylor_verify.scenes.motion import State
-from taylor_verify.scenes.parts import Shape, Value
+from taylor_verify.scenes.named_numbers import Shape, Value
 from taylor_verify.scenes.reading.attitude import attitude
 from taylor_verify.scenes.reading.table import Number, Table, exact_number, quantity
 from taylor_verify.scenes.stand_in import STAND_IN_BITS, stand_in, written

@@ -23,7 +23,7 @@ from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
 from taylor_verify.scenes.motion import Clock
-from taylor_verify.scenes.reading.measured import columns
+from taylor_verify.scenes.reading.csv_columns import columns
 from taylor_verify.scenes.reading.table import (
     Number,
     Table,

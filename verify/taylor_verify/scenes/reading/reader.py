@@ -29,13 +29,13 @@ from taylor_verify.scenes.loads.manufactured import Manufactured
 from taylor_verify.scenes.loads.states import State as Own
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
-from taylor_verify.scenes.reading.clock import clock
 from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.initial import VELOCITIES, impulses, place, state, turning
 from taylor_verify.scenes.reading.loads import immersed_loads, loaded, rigid_loads
 from taylor_verify.scenes.reading.manufactured import manufactured
 from taylor_verify.scenes.reading.states import own_states
 from taylor_verify.scenes.reading.table import Table
+from taylor_verify.scenes.reading.time_table import clock
 from taylor_verify.scenes.scene import Scene
 
 T = TypeVar("T")

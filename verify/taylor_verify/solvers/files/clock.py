@@ -19,11 +19,11 @@ import numpy as np
 
 from taylor_verify.records.faults import Faults, cut
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.choice import Candidates
+from taylor_verify.solvers.files.columns.column_units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.spelling import Spelling
-from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.formats.column import Column, shown
 from taylor_verify.solvers.files.formats.epochs import is_epoch, seconds_in_log
 from taylor_verify.solvers.values import exact

@@ -23,19 +23,19 @@ from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
+from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
-from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.columns.scalar import Start
 from taylor_verify.solvers.files.columns.selection import select
+from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.numbered import usual_names
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
 from taylor_verify.solvers.files.parts import Parts
 from taylor_verify.solvers.files.planar import with_zeros
-from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.files.single_precision import are_single_precision
-from taylor_verify.solvers.files.step import FileStep, step_inside
+from taylor_verify.solvers.files.stated_step import FileStep, step_inside
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 

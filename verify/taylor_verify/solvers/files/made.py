@@ -7,7 +7,7 @@ from typing import Any, final
 
 import numpy as np
 
-from taylor_verify.solvers.files.rows import Floats, Rows
+from taylor_verify.solvers.files.compact_rows import Floats, Rows
 from taylor_verify.solvers.values import Value
 
 # From the numbers of a row of each source, all of them finite, to the numbers of the row that is made.

@@ -9,8 +9,8 @@ from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import is_fraction
+from taylor_verify.solvers.files.columns.assigned import Request, is_ours
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.request import Request, is_ours
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.values import Value, exact
 

@@ -17,12 +17,12 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.faults import Faults, Refused, brief, cut
 from taylor_verify.records.quantities import COLUMNS, TRACKED, state_groups
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.request import Request
 from taylor_verify.solvers.files.file import TrajectoryFile, from_columns
 from taylor_verify.solvers.files.formats.column import Column, check_size
 from taylor_verify.solvers.files.own_states import own_columns
-from taylor_verify.solvers.files.rotations import bare, groups_of, is_rotation
+from taylor_verify.solvers.files.rotation_objects import bare, groups_of, is_rotation
 from taylor_verify.solvers.trajectory import Trajectory
 
 # A form of the attitude, in radians or with a unit behind its name: zyx_deg.

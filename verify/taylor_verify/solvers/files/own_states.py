@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from taylor_verify.records.faults import Faults, cut
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.solvers.files.columns.request import Request
+from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.selection import Taken
 from taylor_verify.solvers.files.formats.column import Column
 

@@ -15,6 +15,7 @@ import numpy as np
 from taylor_verify.records.faults import Faults, cut
 from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.selection import Taken
+from taylor_verify.solvers.files.compact_rows import Rows, check_numbers, entries_at, written_digits
 from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.present import (
     Flags,
@@ -24,7 +25,6 @@ from taylor_verify.solvers.files.present import (
     rows_note,
     rows_of_groups,
 )
-from taylor_verify.solvers.files.rows import Rows, check_numbers, entries_at, written_digits
 
 Places = np.ndarray[Any, np.dtype[np.intp]]
 # One row is no trajectory.

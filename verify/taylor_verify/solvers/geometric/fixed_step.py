@@ -24,6 +24,7 @@ import numpy as np
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.solvers.between_switches import piece_by_piece
 from taylor_verify.solvers.geometric.kicks import Kicks, Unreached
 from taylor_verify.solvers.geometric.vectors import (
     Matrix,
@@ -33,7 +34,6 @@ from taylor_verify.solvers.geometric.vectors import (
     into,
     product,
 )
-from taylor_verify.solvers.pieces import piece_by_piece
 from taylor_verify.solvers.solver import Solver, float64_alone, made_without
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
 

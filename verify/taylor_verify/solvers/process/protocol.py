@@ -27,7 +27,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.numbers.precision import Rung, double_text, hexadecimal
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.parts import Value
+from taylor_verify.scenes.named_numbers import Value
 from taylor_verify.solvers.process.exact_text import exact_text
 from taylor_verify.solvers.process.loads import states, written_loads
 from taylor_verify.solvers.values import exact, named_once

@@ -13,8 +13,8 @@ from mpmath import mp
 from taylor_verify.models.form import Form
 from taylor_verify.models.functions import FLOATS, functions_of
 from taylor_verify.models.kinks import Kink, changing, smooth, values
+from taylor_verify.models.lengths import lengths, radicands
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.roots import lengths, radicands
 from taylor_verify.models.written import Written
 from taylor_verify.numbers.precision import Rung, held_exactly, power_of_two
 from taylor_verify.solvers.straight_line import straight_line

@@ -10,9 +10,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.models.fastest_rate import SLOWEST, largest_eigenvalue
 from taylor_verify.models.functions import functions_of
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.rates import SLOWEST, largest_eigenvalue
 from taylor_verify.solvers.straight_line import straight_line
 
 _STEP: Final = 2.0**-20

@@ -22,16 +22,16 @@ import numpy as np
 
 from taylor_verify.models.form import Form
 from taylor_verify.models.kinks import Kink
+from taylor_verify.models.lengths import lengths, radicands, unsquared
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.roots import lengths, radicands, unsquared
 from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
-from taylor_verify.solvers.pieces import piece_by_piece
+from taylor_verify.solvers.between_switches import piece_by_piece
 from taylor_verify.solvers.solver import Solver, refused
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.crossings import Lengths, crossings, missed, smoothed
-from taylor_verify.solvers.taylor.equations import equations
+from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory

@@ -22,13 +22,13 @@ from typing import Any, Final, final
 
 import numpy as np
 
+from taylor_verify.models.fastest_rate import Linearised
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.driver import compiled, pays
-from taylor_verify.solvers.taylor.equations import equations
+from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import MOST_RADIANS, longest_step, most_steps, outcome_of
 from taylor_verify.solvers.trajectory import Outcome

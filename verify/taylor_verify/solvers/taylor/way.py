@@ -12,8 +12,8 @@ from typing import Any, Final, NamedTuple, final
 
 import numpy as np
 
+from taylor_verify.models.fastest_rate import Linearised
 from taylor_verify.models.problem import Problem
-from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.taylor.differenced import Differenced
 from taylor_verify.solvers.taylor.numbers import arithmetic

@@ -26,9 +26,9 @@ Verdicts = Sequence[Verdict]
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     """Run the standard set on every rung, as `run --out` does."""
+    from taylor_verify.batch.chosen_scenes import select
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import judge_all
-    from taylor_verify.batch.selection import select
 
     selection = select()
     with progress.jobs() as bar:
@@ -61,7 +61,7 @@ def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tu
     from taylor_verify.batch.failure import Failed
     from taylor_verify.batch.job import Job
     from taylor_verify.batch.judging import run_job
-    from taylor_verify.batch.runs import run_all
+    from taylor_verify.batch.work import run_all
 
     rungs: dict[str, list[str]] = {}
     for run in lacking:

@@ -12,8 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Motion, steady_signs
-from taylor_verify.judge.causes.answers import explained
+from taylor_verify.judge.causes.float_answer import Motion, steady_signs
+from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material, material_of_attitudes
 from taylor_verify.judge.judgement import unjudged
 from taylor_verify.models.problem import adopt

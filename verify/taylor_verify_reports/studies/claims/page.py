@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.json_text import complete
+from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify.words.page import whole
-from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.claims.document import ClaimRow, ClaimsStudy, Verdict
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.study import Measured, Progress, Study

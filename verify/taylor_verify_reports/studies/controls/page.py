@@ -11,9 +11,9 @@ from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
 from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify.words.page import traced, whole
-from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify.words.page_parts import traced, whole
 from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
 from taylor_verify_reports.studies.controls.proof import (
     MAIN,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bullets, code, prose, table
-from taylor_verify.words.page import whole
+from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies.engines.document import STATES, Board, EngineRow, Standing
 from taylor_verify_reports.studies.engines.entry import EntryList
 from taylor_verify_reports.studies.engines.ranking import EngineSetting, digits, settings

@@ -8,7 +8,7 @@ from typing import Final
 
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bullets, prose, table
-from taylor_verify.words.page import whole
+from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies.engines.advice import advice
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.entry import EntryList

@@ -13,7 +13,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from taylor_verify.batch.pool import available_cores
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.scenes.reading.reader import load as load_scene
 from taylor_verify.solvers.engines.engine import PREFIX, Outside, prepare

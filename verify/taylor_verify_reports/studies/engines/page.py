@@ -10,9 +10,9 @@ from typing import Any, Final
 
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bullets, code, prose, table
-from taylor_verify.words.page import made_with, whole
-from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify.words.page_parts import made_with, whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.engines.advice import advice, like
 from taylor_verify_reports.studies.engines.document import Board, EngineRow, places

@@ -10,7 +10,7 @@ from typing import Any, Final, final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.judge.causes.answers import with_causes
+from taylor_verify.judge.causes.likely import with_causes
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import rung as rung_named

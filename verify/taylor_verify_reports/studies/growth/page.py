@@ -13,7 +13,7 @@ from typing import Any, Final
 from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure, judged
 from taylor_verify.words.markdown import bold, bullets, code, prose
-from taylor_verify.words.page import made_on, whole
+from taylor_verify.words.page_parts import made_on, whole
 from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
 from taylor_verify_reports.studies.growth.document import (
     EXACT,

@@ -10,14 +10,14 @@ from math import ceil, floor, log10, pi
 from typing import Final
 
 from taylor_verify.exact.elements import elements
+from taylor_verify.models.fastest_rate import Linearised
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.rates import Linearised
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.registry import TAYLOR
-from taylor_verify.solvers.taylor.names import tolerance
-from taylor_verify.tradeoff.starts import nearby
+from taylor_verify.solvers.taylor.settings import tolerance
+from taylor_verify.tradeoff.random_starts import nearby
 
 # A hundred periods are thousands of steps. Then roundings have become a random walk, and oscillations
 # within a period are small beside it.

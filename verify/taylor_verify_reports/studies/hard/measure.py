@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final
 
+from taylor_verify.batch.chosen_scenes import select
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Progress, judge_all
-from taylor_verify.batch.selection import select
 from taylor_verify.judge.provenance import command, processor, versions
 from taylor_verify.records import store
 from taylor_verify.records.provenance import Machine, Provenance

@@ -21,7 +21,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.report import csv_tables as sheets
 from taylor_verify.words.cells import NOTHING, figure, judged, peak, reason, word, worst_ratio
 from taylor_verify.words.markdown import bold, bullets, code, prose
-from taylor_verify.words.page import counts, roundoffs, traced, whole
+from taylor_verify.words.page_parts import counts, roundoffs, traced, whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.columns import Columns, lay_out
 from taylor_verify_reports.studies.hard.document import (

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled

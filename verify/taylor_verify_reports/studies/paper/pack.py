@@ -16,7 +16,7 @@ from taylor_verify.plotting.picture import Picture, save
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.records.store import versions
 from taylor_verify.words.markdown import prose
-from taylor_verify.words.page import packages
+from taylor_verify.words.page_parts import packages
 from taylor_verify_reports.studies import figures, registry
 from taylor_verify_reports.studies.paper.findings import FINDINGS
 from taylor_verify_reports.studies.paper.illustration import pictures

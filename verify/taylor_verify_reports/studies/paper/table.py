@@ -10,8 +10,8 @@ from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
 from taylor_verify.report.front import BY_RUNG, by_rung
 from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.csv_sheet import sheet
 from taylor_verify.words.markdown import code, plain, prose, table
-from taylor_verify.words.sheet import sheet
 from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.controls import page as controls_page
 from taylor_verify_reports.studies.controls.document import CONTROLS

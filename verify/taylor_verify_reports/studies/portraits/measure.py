@@ -12,7 +12,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Final
 
-from taylor_verify.draw.course import DIGITS, motion, span
+from taylor_verify.draw.drawn_course import DIGITS, motion, span
 from taylor_verify.exact.printed import document, shortest_text
 from taylor_verify.exact.route import solution
 from taylor_verify.explain.explanation import explanation

@@ -21,7 +21,7 @@ from taylor_verify.records import file_names
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.words.markdown import code, table
-from taylor_verify.words.page import MADE_BY
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.stored import SceneDocuments
 from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
 

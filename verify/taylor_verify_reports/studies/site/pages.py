@@ -11,7 +11,7 @@ from taylor_verify.batch.pool import LocalPool, available_cores
 from taylor_verify.draw import file_errors
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.moving import moving
-from taylor_verify.draw.page import page
+from taylor_verify.draw.moving_page import page
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import gravest

@@ -17,7 +17,7 @@ from taylor_verify.records.runs import Run, gravest
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
-from taylor_verify.words.page import packages
+from taylor_verify.words.page_parts import packages
 from taylor_verify_reports.studies.reference.page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
 from taylor_verify_reports.studies.tradeoff.document import TimedPoint, Trade

@@ -19,7 +19,7 @@ from importlib.metadata import PackageNotFoundError, version
 from math import inf
 from typing import Final
 
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 from taylor_verify.judge.provenance import machine, packages
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.scenes.bodies import RigidBody

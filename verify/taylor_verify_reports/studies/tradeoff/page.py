@@ -13,9 +13,9 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff import work_precision
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify.words.page import whole
-from taylor_verify.words.sheet import sheet as csv_sheet
+from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
 from taylor_verify_reports.studies.tradeoff.document import (

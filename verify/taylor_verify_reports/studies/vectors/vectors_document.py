@@ -8,7 +8,7 @@ from dataclasses import asdict
 from functools import partial
 from typing import Any, Final
 
-from taylor_verify.batch.runs import run_all
+from taylor_verify.batch.work import run_all
 from taylor_verify_reports.studies.study import Progress
 from taylor_verify_reports.studies.vectors.questions import answered, questions
 from taylor_verify_reports.studies.vectors.wrong_answers import COUNT, TOLERANCE, wrong_answer

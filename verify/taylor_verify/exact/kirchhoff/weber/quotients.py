@@ -25,7 +25,7 @@ from taylor_verify.exact.balls import Enclosed, Enclosure, Undecidable, balls, m
 from taylor_verify.exact.kirchhoff.integrable import CYCLIC
 from taylor_verify.exact.kirchhoff.weber.characteristics import HALF_PERIODS, at_branches
 from taylor_verify.exact.kirchhoff.weber.curve import REGIME, Curve
-from taylor_verify.exact.kirchhoff.weber.integrals import Jacobian, branch_points, jacobian
+from taylor_verify.exact.kirchhoff.weber.periods import Jacobian, branch_points, jacobian
 from taylor_verify.exact.solution import Time, Unsettled
 from taylor_verify.numbers.irrational import ball
 

@@ -22,8 +22,8 @@ from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.scalar import Start, angles, rotations
 from taylor_verify.solvers.files.columns.selection import ATTITUDES, Selection
 from taylor_verify.solvers.files.columns.spelling import Turn
+from taylor_verify.solvers.files.compact_rows import Floats, Rows
 from taylor_verify.solvers.files.made import MadeRows
-from taylor_verify.solvers.files.rows import Floats, Rows
 
 Groups = Mapping[str, Rows]
 # Rationals, or NaN.

@@ -11,11 +11,11 @@ from functools import cached_property
 from typing import Final
 
 from taylor_verify.records.faults import cut
+from taylor_verify.solvers.files.columns.column_units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.spelling import Spelling
-from taylor_verify.solvers.files.columns.units import OWN, Unit, in_brackets
 
 _TO_SPACE: Final = "body axes to space axes"
 MOST_NAMED: Final = 8

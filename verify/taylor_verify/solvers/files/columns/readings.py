@@ -12,9 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Final, NamedTuple
 
-from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
-from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
-from taylor_verify.solvers.files.columns.units import (
+from taylor_verify.solvers.files.columns.column_units import (
     OWN,
     Unit,
     as_suffix,
@@ -22,6 +20,8 @@ from taylor_verify.solvers.files.columns.units import (
     letters,
     plain,
 )
+from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
 from taylor_verify.solvers.files.formats.column import Column
 
 _BRACKETS: Final = re.compile(r"(?P<name>.*\S)\s*[\[({](?P<inside>[^\[\](){}]*)[\])}]")

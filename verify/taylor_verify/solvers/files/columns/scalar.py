@@ -15,7 +15,7 @@ import numpy as np
 from taylor_verify.models.frame import rotation
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.rows import Floats, Rows
+from taylor_verify.solvers.files.compact_rows import Floats, Rows
 
 # A reading whose turn is so much nearer to that of the angular velocity than the other one is taken.
 _NEARER: Final = 4

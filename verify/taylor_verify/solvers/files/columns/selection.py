@@ -17,6 +17,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from taylor_verify.records.faults import Faults, cut
+from taylor_verify.solvers.files.columns.assigned import Request, asked_columns
 from taylor_verify.solvers.files.columns.choice import (
     MOST_NAMED,
     Candidates,
@@ -24,14 +25,13 @@ from taylor_verify.solvers.files.columns.choice import (
     Rank,
     shown_names,
 )
+from taylor_verify.solvers.files.columns.column_units import OWN, known_units
 from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.request import Request, asked_columns
 from taylor_verify.solvers.files.columns.spelling import Turn
-from taylor_verify.solvers.files.columns.units import OWN, known_units
 from taylor_verify.solvers.files.formats.column import Column
-from taylor_verify.solvers.files.step import STEP_COLUMNS
+from taylor_verify.solvers.files.stated_step import STEP_COLUMNS
 
 # Printed by `publish reference` beside the motion, or a statement of the step: no part of the motion.
 _SILENT: Final = ("radius", *STEP_COLUMNS)

@@ -19,8 +19,8 @@ from typing import Any, Final
 from taylor_verify.models.algebra import apply, dot, transpose
 from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.solvers.files.columns.column_units import DEGREE
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.files.formats.ccsds import Segment, is_turning, segment
 from taylor_verify.solvers.files.formats.column import Column, Table, alike
 from taylor_verify.solvers.files.formats.content import Content

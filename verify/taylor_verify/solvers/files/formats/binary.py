@@ -31,7 +31,7 @@ from taylor_verify.solvers.files.formats.column import (
     refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 _READERS: Final = {
     (1, 0): np.lib.format.read_array_header_1_0,

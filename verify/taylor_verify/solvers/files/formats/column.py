@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.records.limit import Limit
-from taylor_verify.scenes.reading.clock import MOST_SAMPLES
+from taylor_verify.scenes.reading.time_table import MOST_SAMPLES
 
 ROWS: Final = Limit(MOST_SAMPLES, "rows", "no scene has more samples")
 VALUES: Final = Limit(

@@ -15,7 +15,7 @@ from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import CHUNK_BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 # Deflate, shuffle, Fletcher's checksum, szip, nbit and scale-offset are HDF5's own; LZF is h5py's.
 _PACKING: Final = {1, 4, 5, 6, 32000}

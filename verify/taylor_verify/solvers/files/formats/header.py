@@ -15,8 +15,8 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Final, NamedTuple
 
+from taylor_verify.solvers.files.columns.column_units import DIMENSION, in_brackets
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.units import DIMENSION, in_brackets
 from taylor_verify.solvers.files.formats.column import COLUMNS, Column
 from taylor_verify.solvers.files.formats.epochs import is_epoch
 from taylor_verify.solvers.values import is_number

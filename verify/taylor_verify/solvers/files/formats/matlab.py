@@ -21,7 +21,7 @@ from taylor_verify.solvers.files.formats import hdf5, version4
 from taylor_verify.solvers.files.formats.arrays import Array, table
 from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 _HEADER: Final = 128
 # The last bytes of the header tell the order of all bytes; those before are the version.

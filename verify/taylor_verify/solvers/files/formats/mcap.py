@@ -21,7 +21,7 @@ from taylor_verify.solvers.files.formats import messages
 from taylor_verify.solvers.files.formats.column import BYTES, CHUNK_BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.messages import MESSAGE_BYTES, Topic
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 _OF_NO_SIZE: Final = re.compile(rb"\[[\s<=]*0+\s*\]")
 _MESSAGES: Final = Limit(20_000_000, "messages", "a minute of reading, all topics together")

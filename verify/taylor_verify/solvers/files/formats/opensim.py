@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.faults import cut, refusal
+from taylor_verify.solvers.files.columns.column_units import DIMENSION, OWN
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.units import DIMENSION, OWN
 from taylor_verify.solvers.files.formats import delimited
 from taylor_verify.solvers.files.formats.column import Column, Table, check_size, refuse_part
 from taylor_verify.solvers.files.formats.content import Content

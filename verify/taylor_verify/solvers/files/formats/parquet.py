@@ -22,7 +22,7 @@ from taylor_verify.solvers.files.formats.column import (
 )
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.memory import bounded_memory
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 # Sixty characters of a number, and as many bytes more as some remarks have.
 _WIDEST: Final = 64

@@ -20,7 +20,7 @@ from taylor_verify.records.regular_file import regular_file
 from taylor_verify.solvers.files.formats import ccsds, echo, rosbag
 from taylor_verify.solvers.files.formats.column import BYTES, ROWS, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
-from taylor_verify.solvers.files.formats.package import install, needed
+from taylor_verify.solvers.files.formats.missing_library import install, needed
 
 
 class Format(NamedTuple):

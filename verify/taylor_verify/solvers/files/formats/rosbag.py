@@ -24,7 +24,7 @@ from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.database import Database, database
 from taylor_verify.solvers.files.formats.messages import Topic
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 _METADATA: Final = "metadata.yaml"
 _METADATA_BYTES: Final = Limit(2**22, "bytes", "a thousand topics take a megabyte")

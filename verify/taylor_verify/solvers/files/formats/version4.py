@@ -17,7 +17,7 @@ import numpy as np
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.arrays import Array
 from taylor_verify.solvers.files.formats.column import COLUMNS
-from taylor_verify.solvers.files.formats.package import unbroken
+from taylor_verify.solvers.files.formats.missing_library import unbroken
 
 _HEADER: Final = 20
 # The thousands of the type say the order of bytes, the tens the numbers, the ones what the matrix is.

@@ -14,16 +14,22 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
-from taylor_verify.judge.causes.answer import Answer, Motion, conjugate, matrices, steady_signs
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import dynamics, in_numbers, in_states
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import (
+    Answer,
+    Motion,
+    conjugate,
+    matrices,
+    steady_signs,
+)
+from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.kinematics import kinematics
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import may_leave, whole
-from taylor_verify.judge.causes.readings import FACTORS, SIGNED, axes, readings
-from taylor_verify.judge.causes.rows import are_saved_twice, wrong_rows
+from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
 
 # An attitude so many times better than omega refutes every equation.

@@ -13,12 +13,12 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, angles, conjugate, matrices
-from taylor_verify.judge.causes.answer import product as times
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer, angles, conjugate, matrices
+from taylor_verify.judge.causes.float_answer import product as times
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import LEAVES
-from taylor_verify.judge.conventions.axes import quaternion_columns
+from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 
 _ROUNDINGS: Final = 10.0
 _PART: Final = 1e-6

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.basis import EPSILON, Basis, basis, coriolis_of
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.loads.loads import Loads

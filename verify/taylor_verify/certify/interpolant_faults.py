@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.certify.motion import QUATERNION, Errors, Interval, Measured
+from taylor_verify.certify.enclosed_error import QUATERNION, Errors, Interval, Measured
 from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.records.certificate import Fault, InterpolantFinding
 

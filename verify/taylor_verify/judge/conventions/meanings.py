@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.judge.conventions.axes import Axes, Frames
+from taylor_verify.judge.conventions.axis_orders import Axes, Frames
 from taylor_verify.judge.errors.state import norms
 from taylor_verify.numbers.rotation import rotation_rows
 from taylor_verify.records.quantities import GROUPS

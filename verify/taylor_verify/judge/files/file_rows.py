@@ -14,7 +14,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.fits import Conventions
-from taylor_verify.judge.conventions.readings import Reading
+from taylor_verify.judge.conventions.meanings import Reading
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.velocities import has_velocities, momenta
 from taylor_verify.models.problem import adopt

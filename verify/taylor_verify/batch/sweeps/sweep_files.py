@@ -17,7 +17,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCase
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import code, prose, table
-from taylor_verify.words.page import traced
+from taylor_verify.words.page_parts import traced
 
 WORST: Final = "worst"
 _NAMES: Final = tuple(each.name for each in fields(Quantiles))

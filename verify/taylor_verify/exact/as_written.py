@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TypeVar
 
-from taylor_verify.scenes.parts import Parted, entrywise, numbers
+from taylor_verify.scenes.named_numbers import Parted, entrywise, numbers
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.scenes.stand_in import StandIn, stand_in, written
 

@@ -9,8 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.solvers.files.columns.column_units import DEGREE
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.units import DEGREE
 from taylor_verify.solvers.values import Value
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models.frame import attitude_rate
 from taylor_verify.numbers import rotation
 

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.causes.answer import Answer
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.cause_search import causes_of
 from taylor_verify.judge.causes.changed_scene import changed_scene
+from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.material import (
     are_known,
     material_of_file,
@@ -22,7 +23,6 @@ from taylor_verify.judge.causes.material import (
 from taylor_verify.judge.causes.missing_load import missing_load
 from taylor_verify.judge.causes.plugged import plugged_causes
 from taylor_verify.judge.causes.proof import may_leave
-from taylor_verify.judge.causes.search import causes_of
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem

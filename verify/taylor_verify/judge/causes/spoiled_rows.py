@@ -7,9 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, Places
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
+from taylor_verify.judge.causes.many_flows import Floats
 
 _BAD: Final = 30.0
 # A simulator has errors of its own: those below this part of the largest one.

@@ -10,9 +10,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
-from taylor_verify.judge.causes.equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Fault, Sizes, linear
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
 _SAME: Final = 1e-9

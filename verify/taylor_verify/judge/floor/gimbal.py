@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.floor.inputs import InputRounding
+from taylor_verify.judge.floor.rounded_input import InputRounding
 from taylor_verify.records.quantities import CONSERVED_QUANTITIES
 from taylor_verify.solvers.files.columns.forms import SEQUENCES
 from taylor_verify.solvers.files.file import TrajectoryFile

@@ -16,18 +16,18 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
+from taylor_verify.judge.conventions.axis_vectors import vectors
+from taylor_verify.judge.conventions.convention_search import attitudes_at, beginnings
 from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Finding
-from taylor_verify.judge.conventions.readings import rotations
-from taylor_verify.judge.conventions.search import attitudes_at, beginnings
-from taylor_verify.judge.conventions.vectors import vectors
+from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.numbers import rotation
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.columns.column_units import DEGREE
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
-from taylor_verify.solvers.files.columns.units import DEGREE
+from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.made import MadeRows
-from taylor_verify.solvers.files.rows import Rows
 from taylor_verify.solvers.values import Value
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -41,7 +41,7 @@ from taylor_verify.judge.velocities import has_velocities, velocity
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.parts import Part, Shape, Value
+from taylor_verify.scenes.named_numbers import Part, Shape, Value
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -14,10 +14,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from taylor_verify.records.faults import Faults, cut, near
+from taylor_verify.solvers.files.columns.column_units import Unit, in_brackets
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.names import COMPONENTS, GROUPS, KNOWN
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.columns.units import Unit, in_brackets
 from taylor_verify.solvers.files.formats.column import Column
 
 # Pairs of a name of ours and a name of the file's.

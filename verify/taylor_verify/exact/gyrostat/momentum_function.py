@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
+from taylor_verify.exact.gyrostat.curve_point import OnCircle, point_map
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.gyrostat.point import OnCircle, point_map
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.rotation import scalar_product
 from taylor_verify.numbers.tensors import Vector, cross, dot

@@ -10,10 +10,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.answer import Answer, Motion, steady_signs
 from taylor_verify.judge.causes.arcs import Evidence, moved, parts_of
-from taylor_verify.judge.causes.equations import Changes, Equations
-from taylor_verify.judge.causes.flow import Floats
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.float_answer import Answer, Motion, steady_signs
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models import own
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant

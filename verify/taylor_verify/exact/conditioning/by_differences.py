@@ -15,13 +15,13 @@ from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
-from taylor_verify.exact.conditioning.flow import Flow, Steps
+from taylor_verify.exact.conditioning.linearised import Flow, Steps
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.damping import decayed
-from taylor_verify.exact.equations import Floats
+from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.rows import cross_matrices
+from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr

@@ -10,8 +10,8 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.budget import Budget
-from taylor_verify.judge.causes.equations import Equations
-from taylor_verify.judge.causes.flow import Floats, flow
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.models.frame import rotation
 from taylor_verify.numbers import rotation as rotations
 from taylor_verify.scenes.instants import evenly

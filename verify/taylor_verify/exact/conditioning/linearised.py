@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from taylor_verify.exact.conditioning.momentum import momentum
-from taylor_verify.exact.equations import Floats, Scaled, exact, in_units
+from taylor_verify.exact.quadratic_forms import Floats, Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector

@@ -27,7 +27,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.causes.quick_motion import quick_motion
-from taylor_verify.judge.conventions.axes import Frames, renamings
+from taylor_verify.judge.conventions.axis_orders import Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
     EXPLAINS,
@@ -38,7 +38,7 @@ from taylor_verify.judge.conventions.fits import (
     findings_of,
     simplest,
 )
-from taylor_verify.judge.conventions.readings import readings, rotations
+from taylor_verify.judge.conventions.meanings import readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
@@ -47,7 +47,7 @@ from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
-from taylor_verify.solvers.files.step import step_of_rows
+from taylor_verify.solvers.files.stated_step import step_of_rows
 
 Array = np.ndarray[Any, Any]
 Floats = np.ndarray[Any, np.dtype[np.float64]]

@@ -17,7 +17,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import NOTHING, judged, peak, verdict_table, worst_ratio
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify.words.page import counts, page, roundoffs, sections, unscored
+from taylor_verify.words.page_parts import counts, page, roundoffs, sections, unscored
 
 if TYPE_CHECKING:
     from taylor_verify.words.entry import Page
