@@ -10,6 +10,7 @@ import pytest
 from builders.scenes import LISTED_INSTANTS
 
 from taylor_verify.records.faults import Refused
+from taylor_verify.scenes.reading import time_table
 from taylor_verify.scenes.reading.reader import MOST_BYTES, load, read
 
 # Seconds of the processor that a scene of a hundred kilobytes may take.
