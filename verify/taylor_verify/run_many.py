@@ -36,7 +36,7 @@ def run_many(
     ----------
     scenes
         Scenes, paths, names of shipped scenes, or folders of these (``extremes``), or a single one; a
-        scene named twice is run once. None is the standard set. A `batch.selection.Selection` says what
+        scene named twice is run once. None is the standard set. A `batch.chosen_scenes.Selection` says what
         will be run, what is left out, and what is doubtful, before anything runs.
     solver
         A solver, its name or a callable, as that of `run`. A callable is sent to the processes: one that is

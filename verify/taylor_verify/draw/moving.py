@@ -39,7 +39,7 @@ _DIGITS: Final = 4
 
 
 def moving(document: Document) -> dict[str, Any]:
-    """Return all that the script of a moving page reads; ``document`` is that of draw.course.motion.
+    """Return all that the script of a moving page reads; ``document`` is that of draw.drawn_course.motion.
 
     Attitudes are quaternions, scalar first. Raises NotDrawn for a body that does not move.
     """

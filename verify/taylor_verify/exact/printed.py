@@ -49,7 +49,7 @@ def document(
     vector by its norm, the rounding of the printed digits included, except those that are zero throughout,
     and that of an own state by the largest norm that it has had. The row at the start is the initial state
     itself. If some times are not reached, ``because`` says why, and ``rows`` has the other times.
-    ``attitude`` is its form: a matrix, or one of exact.attitudes.
+    ``attitude`` is its form: a matrix, or one of exact.attitude_forms.
     """
     elapsed = [time - scene.clock.start for _, time in times]
     because = None

@@ -1,6 +1,6 @@
 """First and second time derivatives of an exact motion, from its own equations.
 
-The equations are those of exact.equations, z' = c + L z + z.Q z/2, so that z'' = L z' + z.Q z'. No
+The equations are those of exact.quadratic_forms, z' = c + L z + z.Q z/2, so that z'' = L z' + z.Q z'. No
 difference of two motions is taken.
 """
 

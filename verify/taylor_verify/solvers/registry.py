@@ -47,7 +47,7 @@ _TOLERANT = tuple(f"scipy:{method}?rtol=NUMBER&atol=NUMBER" for method in _SCIPY
 _ODEFUN = ("mpmath:odefun?tol=NUMBER&degree=NUMBER",)
 
 FAMILIES = (
-    Family("taylor?", "taylor.names", TAYLOR, _TAYLOR, "heyoka", "taylor"),
+    Family("taylor?", "taylor.settings", TAYLOR, _TAYLOR, "heyoka", "taylor"),
     Family("geometric:", "geometric.methods", "geometric:METHOD?step=NUMBER", _STEPPED),
     Family("scipy:", "scipy", "scipy:METHOD", _TOLERANT, "scipy", "scipy"),
     Family("mpmath:", "odefun", "mpmath:odefun", _ODEFUN),

@@ -129,7 +129,7 @@ def with_angles(
 ) -> tuple[TrajectoryFile, Finding | None]:
     """Return the file with its attitude as its numbers explain it, and what was found; None for nothing.
 
-    Raises what judge.conventions.search.conventions does.
+    Raises what judge.conventions.convention_search.conventions does.
     """
     numbers = _numbers(file)
     if numbers is None:

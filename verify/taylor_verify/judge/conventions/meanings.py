@@ -1,7 +1,7 @@
 """Possible meanings of a group of columns, each a map to the scene's conventions.
 
 v_space = R v_body; q is R's quaternion, scalar first. A renaming of axes applies to all groups of a file
-(judge.conventions.axes), and every reading includes such a renaming. A reading works on NumPy arrays of
+(judge.conventions.axis_orders), and every reading includes such a renaming. A reading works on NumPy arrays of
 floats and of mpf.
 """
 
