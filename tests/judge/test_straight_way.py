@@ -91,7 +91,10 @@ def test_a_right_file_passes_few_functions_and_no_search(tmp_path: Path) -> None
     first, last = "check.py: check", "judge/files/stored.py: with_file_kinds"
     assert (way.functions[0], way.functions[-1]) == (first, last)
     assert len(way.functions) <= MOST
-    searching = [Path("judge", "conventions", "search.py"), Path("judge", "causes", "search.py")]
+    searching = [
+        Path("judge", "conventions", "convention_search.py"),
+        Path("judge", "causes", "cause_search.py"),
+    ]
     assert not way.rooms & {str(room) for room in searching}
     assert not any("causes" in name or "conventions" in name for name in way.receive)
 
@@ -100,7 +103,7 @@ def test_a_file_that_does_not_fit_is_searched(tmp_path: Path) -> None:
     """Another convention makes a row fail, so that it is searched for, and named."""
     file = write_csv(tmp_path / "mine.csv", scalar_last(exact_columns(SCENE)))
     way = Way(file)
-    searching = str(Path("judge", "conventions", "search.py"))
+    searching = str(Path("judge", "conventions", "convention_search.py"))
 
     def until_searching(frame: FrameType, event: str, returned: Any) -> None:
         way(frame, event, returned)

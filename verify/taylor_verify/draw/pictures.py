@@ -31,8 +31,8 @@ KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
 def pictures(document: Document, names: Sequence[str] = ()) -> dict[str, Picture]:
     """Return the pictures of these names, or all that the scene has.
 
-    ``document`` is the motion (draw.drawn_course.motion); ``names`` are those of `draw --only`. Raises NotDrawn
-    for unknown names and for pictures that the scene does not have, with all faults at once.
+    ``document`` is the motion (draw.drawn_course.motion); ``names`` are those of `draw --only`. Raises
+    NotDrawn for unknown names and for pictures that the scene does not have, with all faults at once.
     """
     if not names:
         return dict(_all(document))

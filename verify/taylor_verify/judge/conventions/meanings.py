@@ -1,8 +1,8 @@
 """Possible meanings of a group of columns, each a map to the scene's conventions.
 
 v_space = R v_body; q is R's quaternion, scalar first. A renaming of axes applies to all groups of a file
-(judge.conventions.axis_orders), and every reading includes such a renaming. A reading works on NumPy arrays of
-floats and of mpf.
+(judge.conventions.axis_orders), and every reading includes such a renaming. A reading works on NumPy
+arrays of floats and of mpf.
 """
 
 from __future__ import annotations

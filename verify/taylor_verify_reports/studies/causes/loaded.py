@@ -131,7 +131,7 @@ class Controller:
 
     @property
     def acting(self) -> Acting:
-        """The same in numbers: own states are the values on their way, the one in use last."""
+        """The same in numbers: own states are the values on their way; the last one is in use."""
         size = 3 * (self.delay + 1)
 
         def taken(t: float, v: Floats, q: Floats, own: Floats) -> Floats:

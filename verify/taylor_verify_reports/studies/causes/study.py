@@ -7,7 +7,6 @@ from typing import Final
 
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
-from taylor_verify_reports.studies.unfinished import Parts, unfinished
 
 # The repository does not hold the page.
 _PAGE: Final = "local/causes.md"
@@ -18,6 +17,7 @@ def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
     """Write the confusion table, and below it each false sentence; go on after an interrupt."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
     from taylor_verify_reports.studies.causes.measure import Named, measured, page
+    from taylor_verify_reports.studies.unfinished import Parts, unfinished
 
     finished, answers = progress.counting(len(KINDS)), list[Named]()
     with unfinished(STUDY.name, folder) as place:
