@@ -131,7 +131,7 @@ class Controller:
 
     @property
     def acting(self) -> Acting:
-        """The same in numbers: own states are the values on their way; the last one is in use."""
+        """Texts in numbers: own states are the values that wait, and behind them the one that acts."""
         size = 3 * (self.delay + 1)
 
         def taken(t: float, v: Floats, q: Floats, own: Floats) -> Floats:

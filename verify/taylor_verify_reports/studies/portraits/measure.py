@@ -1,6 +1,6 @@
 """Portrait of a shipped scene: everything that its page shows, as one plain document.
 
-    document["course"]["omega"]      the motion at dense times (draw.drawn_course.motion), for pictures
+    document["course"]["omega"]      the motion at dense times (by draw.drawn_course), for pictures
     document["values"]["rows"]       the motion at ten times, in 30 digits, for comparisons
 
 Every number is that of the scene's own rational values, except in ``explain``, which describes a run on
