@@ -33,7 +33,7 @@ class Field:
 
 
 def drawn(seed: int) -> Field:
-    """One to four equations with sums, products, quotients, powers, functions and the time."""
+    """Draw one to four equations with sums, products, quotients, powers, functions and the time."""
     draw = Random(seed)
     names = ["x", "y", "u", "v"][: draw.randint(1, 4)]
     begin = Fraction(draw.randint(-8, 8), 4)

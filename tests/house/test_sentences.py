@@ -1,4 +1,4 @@
-"""One place for sentences: who else would write the numbers of a verdict would say another thing."""
+"""Sizes of verdicts are written in one place, so that all doors say the same digits."""
 
 from __future__ import annotations
 

@@ -180,7 +180,7 @@ def test_the_changed_scene_moves_as_the_file(name: str, scene: str) -> None:
 
 
 def test_a_key_that_two_faults_change_is_printed_once() -> None:
-    """One force and one couple have the faults of a load's text and of the Coriolis terms."""
+    """A force and a couple say the faults of a load's text and of the Coriolis terms."""
     text = (CASES / "bluerov.toml").read_text()
     dragged = text.replace("[body]\n", '[body]\nforce = ["-4*u1", 0, 0]\n')
     right = compared("br_linear_drag", read_scene(dragged, "dragged"), STATES).right

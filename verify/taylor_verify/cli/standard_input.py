@@ -20,7 +20,7 @@ from taylor_verify.solvers.files.file import TrajectoryFile, read
 from taylor_verify.solvers.files.formats.column import BYTES
 
 NAME: Final = "-"
-# The ending of a file by its first bytes; text is known apart below.
+# The ending of a file by its first bytes; text is recognised below.
 _ENDINGS: Final[Mapping[bytes, str]] = {
     b"PAR1": ".parquet",
     b"PK\x03\x04": ".npz",

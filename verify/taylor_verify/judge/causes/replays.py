@@ -33,8 +33,8 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, which are this many roundings at least.
 _LEAVES: Final = 0.02
 _CLEAR: Final = 30.0
-# The steps of an arc by which the error of a method is measured; how many times
-# finer steps are measured again; of explicit and implicit ones the most.
+# The steps of an arc by which the error of a method is measured, and how many times finer ones are measured
+# again; of explicit and implicit ones the most.
 _FINE: Final = 16
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
