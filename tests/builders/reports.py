@@ -31,22 +31,23 @@ from taylor_verify.run import run
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.defects import DEFECTS
-from taylor_verify_reports.studies import figures, registry, report
-from taylor_verify_reports.studies.claims.page import CLAIMS
-from taylor_verify_reports.studies.controls import measure as sight
-from taylor_verify_reports.studies.controls import page as controls
-from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify_reports.studies import figures, registry
+from taylor_verify_reports.studies import published_report as report
+from taylor_verify_reports.studies.claims_page import CLAIMS
+from taylor_verify_reports.studies.controls import broken_runs as sight
+from taylor_verify_reports.studies.controls import controls_page as controls
+from taylor_verify_reports.studies.controls.sight import CONTROLS, ControlsStudy
 from taylor_verify_reports.studies.engines.document import write as write_board
 from taylor_verify_reports.studies.engines.entry import entry_list
 from taylor_verify_reports.studies.growth.experiment import followed
-from taylor_verify_reports.studies.growth.page import GROWTH
+from taylor_verify_reports.studies.growth.growth_page import GROWTH
 from taylor_verify_reports.studies.growth.question import Question
-from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.portraits.measure import portrait
-from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.reference import page as reference_files
-from taylor_verify_reports.studies.reference.measure import reference
-from taylor_verify_reports.studies.tradeoff.document import write as write_tradeoff
+from taylor_verify_reports.studies.hard.hard_scenes import HARD
+from taylor_verify_reports.studies.portraits.portrait import portrait
+from taylor_verify_reports.studies.portraits.stored_portraits import PORTRAITS
+from taylor_verify_reports.studies.reference import reference_page as reference_files
+from taylor_verify_reports.studies.reference.exact_table import reference
+from taylor_verify_reports.studies.tradeoff.trades import write as write_tradeoff
 
 RUNGS: Final = ("f32", "f64", "f80", "f128", "mp237")
 # Three bodies in vacuum, of which one is loaded, and two in a fluid with their paths.
@@ -82,7 +83,7 @@ def portrait_without_run(scene: str) -> dict[str, Any]:
     """Return a portrait whose run is left out: the rest does not depend on it, and it takes longest."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            "taylor_verify_reports.studies.portraits.measure.explanation",
+            "taylor_verify_reports.studies.portraits.portrait.explanation",
             lambda scene, rung: {"cost": {"seconds": 1.0}},
         )
         return portrait(load(scene))

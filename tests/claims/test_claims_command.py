@@ -16,8 +16,8 @@ from taylor_verify_reports.claims import ledger
 from taylor_verify_reports.claims.claim import Claim, Verdict
 from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
-from taylor_verify_reports.studies.claims.page import CLAIMS, page
-from taylor_verify_reports.studies.claims.page import STUDY as PUBLISHED
+from taylor_verify_reports.studies.claims_page import CLAIMS, page
+from taylor_verify_reports.studies.claims_page import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
 KEYS = {"id", "statement", "verdict", "correction", "residual"}

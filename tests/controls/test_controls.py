@@ -16,14 +16,14 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR, INITIAL, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify_reports.controls.answers import ANSWERS
+from taylor_verify_reports.controls.broken_answers import ANSWERS
 from taylor_verify_reports.controls.defect import Defect
 from taylor_verify_reports.controls.defects import DEFECTS
-from taylor_verify_reports.studies.controls import page as controls
+from taylor_verify_reports.studies.controls import controls_page as controls
 from taylor_verify_reports.studies.controls import proof
-from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
-from taylor_verify_reports.studies.controls.measure import RUNG, Twins, sights, study
-from taylor_verify_reports.studies.controls.page import STUDY
+from taylor_verify_reports.studies.controls.broken_runs import RUNG, Twins, sights, study
+from taylor_verify_reports.studies.controls.controls_page import STUDY
+from taylor_verify_reports.studies.controls.sight import CONTROLS, ControlsStudy, Sight
 
 NAMED = {defect.name: defect for defect in DEFECTS}
 TWINS: Twins = {}
@@ -244,7 +244,7 @@ def test_every_cell_says_what_the_verdict_says() -> None:
 
 def table_lines(text: str, title: str) -> list[list[str]]:
     """The cells of the lines on one defect in the tables of figures."""
-    figures = text.partition("## What each gate sees and misses")[0]
+    figures = text.partition("## The defects, and why")[0]
     lines = [line for line in figures.splitlines() if line.startswith("|")]
     cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
     return [row for row in cells if row[0] == title]

@@ -19,8 +19,7 @@ from taylor_verify.draw import missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.components import series
 from taylor_verify.draw.drawn_course import lengthened, motion, turns
-from taylor_verify.draw.moving import moving
-from taylor_verify.draw.moving_page import page
+from taylor_verify.draw.moving import moving, page
 from taylor_verify.draw.pictures import KINDS, pictures
 from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.plotting.picture import plotting

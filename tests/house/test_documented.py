@@ -29,7 +29,7 @@ from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.library import cases_directory, find, names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.reading.table import Table
-from taylor_verify_reports.claims.document import Verdict as ClaimVerdict
+from taylor_verify_reports.claims.claim_row import Verdict as ClaimVerdict
 
 PACKAGE = Path(taylor_verify.__file__).parent
 COMMAND_LINE = DOCS / "command-line.md"
@@ -226,7 +226,7 @@ CALLS = [n for n in taylor_verify.__all__ if inspect.isfunction(getattr(taylor_v
 # These return a dictionary, whose keys are those of --json.
 PLAIN = {"explain"}
 # The words of these stand in a table of docs/verdicts.md.
-WORDS_ELSEWHERE = {"taylor_verify_reports.claims.document.Verdict"}
+WORDS_ELSEWHERE = {"taylor_verify_reports.claims.claim_row.Verdict"}
 
 
 @pytest.mark.parametrize("call", CALLS)

@@ -27,7 +27,7 @@ OTHERS = {
     "batch/finished_jobs.py": "the text of this package, programs, and files that it writes",
     "cli/ci.py": "the summary of a step, to which it writes",
     "cli/streams.py": "the null device",
-    "draw/moving_page.py": "the template of this package",
+    "draw/moving.py": "the template of this package",
     "judge/provenance.py": "the processor, by Linux",
     "records/replacement.py": "files that it writes",
     "scenes/expected.py": "expectations of this package",

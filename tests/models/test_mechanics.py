@@ -21,7 +21,7 @@ from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.named_numbers import Part, Parted, Shape, Value, entrywise
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify_reports.studies.portraits.equations import equations
+from taylor_verify_reports.studies.portraits.latex_equations import equations
 
 # A scene of each kind of body.
 SCENES = ("euler/full-tensor", "kirchhoff/general-body", "euler/gyrostat")

@@ -20,11 +20,13 @@ from matplotlib.figure import Figure
 
 from taylor_verify.draw import file_errors
 from taylor_verify.plotting import log_axes
-from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.picture import Picture, plotting, save
 from taylor_verify.plotting.style import (
+    INK,
     KINDS,
     PAGE_WIDTH,
+    PAPER,
+    QUIET,
     kind_of,
     look_of,
     look_of_rung,

@@ -85,7 +85,7 @@ def test_what_was_made_before_an_interrupt_stays(
         raise KeyboardInterrupt
 
     monkeypatch.setattr("taylor_verify.batch.work.run_all", interrupted)
-    monkeypatch.setattr("taylor_verify_reports.studies.documents.run_all", interrupted)
+    monkeypatch.setattr("taylor_verify_reports.studies.stored.run_all", interrupted)
     for kind, lacks in missing(report).lacking[1:]:
         with pytest.raises(KeyboardInterrupt):
             list(kind.make(report, lacks, Progress()))
@@ -140,7 +140,7 @@ def test_a_report_is_packed_the_same_every_time(report: Path, tmp_path: Path) ->
     for place in (report / "local" / "mine.csv", report / ".hidden"):
         place.write_text("mine", encoding="utf-8")
     first, sums = archive.pack(report, tmp_path / "a", "name")
-    (report / "tables" / "README.md").touch()
+    (report / "README.md").touch()
     second, _ = archive.pack(report, tmp_path / "b", "name")
     content = first.read_bytes()
     assert content == second.read_bytes()

@@ -16,7 +16,7 @@ from taylor_verify_reports.studies.causes.kind import right
 from taylor_verify_reports.studies.causes.kinds import KINDS
 from taylor_verify_reports.studies.causes.loaded import LOADED, any_sample
 from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
-from taylor_verify_reports.studies.unfinished import Parts
+from taylor_verify_reports.studies.finished_parts import Parts
 
 
 def test_sound_methods_are_kinds() -> None:

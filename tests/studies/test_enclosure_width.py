@@ -12,10 +12,13 @@ from builders.scenes import GENERAL, one_instant, vector
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.plotting.picture import plotting, save
 from taylor_verify.scenes.motion import Impulse
-from taylor_verify_reports.studies.enclosure import study as pictures
-from taylor_verify_reports.studies.enclosure.document import EnclosureStudy, WidthRow
-from taylor_verify_reports.studies.enclosure.measure import widths
-from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
+from taylor_verify_reports.studies import enclosure_width as pictures
+from taylor_verify_reports.studies.enclosure_width import (
+    ENCLOSURE,
+    EnclosureStudy,
+    WidthRow,
+    widths,
+)
 
 MADE = EnclosureStudy(
     140,

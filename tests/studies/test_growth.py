@@ -11,7 +11,6 @@ from scipy import stats
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.student import student
-from taylor_verify_reports.studies.growth.document import EXACT
 from taylor_verify_reports.studies.growth.fit import (
     BIAS,
     BOUNDED,
@@ -26,6 +25,7 @@ from taylor_verify_reports.studies.growth.fit import (
     growth,
     word,
 )
+from taylor_verify_reports.studies.growth.grown import EXACT
 
 Draw = Callable[[np.random.Generator, int], np.ndarray]
 

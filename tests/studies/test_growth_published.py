@@ -15,12 +15,12 @@ from taylor_verify.records.json_text import complete, converted
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.growth import experiment as experiments
-from taylor_verify_reports.studies.growth import page as pages
-from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity
+from taylor_verify_reports.studies.growth import growth_page as pages
 from taylor_verify_reports.studies.growth.errors import PHASE, Measured
 from taylor_verify_reports.studies.growth.experiment import course, ensemble_errors, experiment
 from taylor_verify_reports.studies.growth.fit import BIAS, Law
-from taylor_verify_reports.studies.growth.page import STUDY
+from taylor_verify_reports.studies.growth.grown import Ensemble, GrowthOfQuantity
+from taylor_verify_reports.studies.growth.growth_page import STUDY
 from taylor_verify_reports.studies.growth.question import Question
 
 SHORT = 10**3.5

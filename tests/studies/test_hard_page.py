@@ -31,10 +31,11 @@ from taylor_verify.cli import main
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.hard import measure, reach, search
-from taylor_verify_reports.studies.hard import page as pages
-from taylor_verify_reports.studies.hard.document import HARD, last_value
-from taylor_verify_reports.studies.hard.page import STUDY, store_scenes
+from taylor_verify_reports.studies.hard import extremes as measure
+from taylor_verify_reports.studies.hard import hard_page as pages
+from taylor_verify_reports.studies.hard import reach, search
+from taylor_verify_reports.studies.hard.hard_page import STUDY, store_scenes
+from taylor_verify_reports.studies.hard.hard_scenes import HARD, last_value
 
 
 def lines(text: str, *words: str) -> list[str]:
@@ -125,7 +126,7 @@ def test_the_command_fails_at_a_mismatch(
         finished("axis 1e-1")
         return REACH
 
-    monkeypatch.setattr("taylor_verify_reports.studies.hard.measure.judge_all", answered)
+    monkeypatch.setattr("taylor_verify_reports.studies.hard.extremes.judge_all", answered)
     monkeypatch.setattr(reach, "measure", followed)
     HARD.write(tmp_path, study())
     call = ["publish", "hard", "--from", str(tmp_path), "--json"]

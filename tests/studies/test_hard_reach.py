@@ -16,7 +16,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify_reports.studies.hard import reach
-from taylor_verify_reports.studies.hard.document import ReachRow
+from taylor_verify_reports.studies.hard.hard_scenes import ReachRow
 from taylor_verify_reports.studies.hard.members import (
     FOLLOWED,
     QUARTERS,

@@ -9,8 +9,8 @@ from pathlib import Path
 from builders import reports
 from builders.studies.hard import study as hard_study
 
-from taylor_verify_reports.studies.growth import page as growth
-from taylor_verify_reports.studies.hard.document import HARD
+from taylor_verify_reports.studies.growth import growth_page as growth
+from taylor_verify_reports.studies.hard.hard_scenes import HARD
 
 
 @cache

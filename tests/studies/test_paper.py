@@ -13,7 +13,8 @@ from builders import reports
 
 from taylor_verify.cli import main
 from taylor_verify_reports.studies import bulk
-from taylor_verify_reports.studies.paper import findings, pack
+from taylor_verify_reports.studies.paper import pack
+from taylor_verify_reports.studies.paper import paper_findings as findings
 from taylor_verify_reports.studies.paper.sources import Sources, read
 from taylor_verify_reports.typesetting.paper import images
 

@@ -23,8 +23,8 @@ from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify_reports.studies.portraits.equations import equations
-from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.portraits.latex_equations import equations
+from taylor_verify_reports.studies.portraits.stored_portraits import PORTRAITS
 
 ROOT = Path(__file__).resolve().parents[2]
 # Portraits of all scenes take most of a minute.

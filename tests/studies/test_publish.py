@@ -36,10 +36,10 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.store import load, write
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.report import published_tables
+from taylor_verify.report import index_page
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.page_parts import MADE_BY
-from taylor_verify_reports.studies.report import publish
+from taylor_verify_reports.studies.published_report import publish
 
 
 @pytest.fixture
@@ -234,7 +234,7 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     """
     program = (
         "import sys, taylor_verify; light = set(sys.modules);"
-        "from taylor_verify_reports.studies.report import publish; publish(sys.argv[1]);"
+        "from taylor_verify_reports.studies.published_report import publish; publish(sys.argv[1]);"
         "print(*set(sys.modules) - light)"
     )
     ran = subprocess.run(
@@ -250,8 +250,12 @@ def test_publishing_imports_no_physics(report: Path) -> None:
     # The names of the shipped scenes, and none of them.
     of_scenes = {name for name in own if name.startswith("taylor_verify.scenes.")}
     assert of_scenes == {"taylor_verify.scenes.library"}
-    assert "taylor_verify_reports.claims.document" in own
-    assert not [name for name in own if name.endswith((".measure", ".measurement"))]
+    assert "taylor_verify_reports.claims.claim_row" in own
+    assert not [
+        name
+        for name in own
+        if name.endswith((".extremes", ".broken_runs", ".measure", ".measurement"))
+    ]
 
 
 # The front page.
@@ -264,7 +268,7 @@ def front_page(report: Path) -> str:
 def test_every_link_of_the_front_page_leads_somewhere(report: Path) -> None:
     """Each file and folder that it links to is there; what is not there is not linked to."""
     links = re.findall(r"\]\((?!https?:)([^)#]+)", front_page(report))
-    assert "tables/README.md" in links
+    assert "tables/accuracy.md" in links
     assert [link for link in links if not (report / link).exists()] == []
     assert "reference" not in links
 
@@ -396,7 +400,8 @@ def test_the_sheet_holds_a_row_for_every_verdict(report: Path) -> None:
 
 
 def pages(report: Path) -> Iterable[str]:
-    return [file.read_text(encoding="utf-8") for file in (report / "tables").glob("*.md")]
+    files = [report / "README.md", *(report / "tables").glob("*.md")]
+    return [file.read_text(encoding="utf-8") for file in files]
 
 
 def test_every_page_names_its_maker_and_says_how_to_remake_it(report: Path) -> None:
@@ -405,7 +410,7 @@ def test_every_page_names_its_maker_and_says_how_to_remake_it(report: Path) -> N
     for text in pages(report):
         assert text.splitlines()[0] == MADE_BY
         end = text.partition("## To remake this")[2]
-        for needed in ("`make verify`", "`reports/local/`", "`make reports`", "heyoka 7.13.0"):
+        for needed in ("`make verify`", "`reports/local", "`make reports`", "heyoka 7.13.0"):
             assert needed in end
 
 
@@ -431,7 +436,7 @@ def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) ->
 
 def test_every_status_has_its_meaning_and_its_gravity() -> None:
     """A verdict of any kind can be explained and compared with another one."""
-    assert set(published_tables._MEANINGS) == set(Status) == set(GRAVITY)
+    assert set(index_page._MEANINGS) == set(Status) == set(GRAVITY)
 
 
 @given(st.floats(min_value=1e-300, max_value=1e300))

@@ -35,22 +35,21 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.claims.ledger import claims
 from taylor_verify_reports.claims.numbers import CITED
-from taylor_verify_reports.studies import registry, report
+from taylor_verify_reports.studies import claims_page, registry
+from taylor_verify_reports.studies import published_report as report
 from taylor_verify_reports.studies.bulk import patterns
-from taylor_verify_reports.studies.claims import page as claims_page
-from taylor_verify_reports.studies.controls import page as controls
-from taylor_verify_reports.studies.controls.document import CONTROLS
-from taylor_verify_reports.studies.enclosure.measure import SCENES, widths
-from taylor_verify_reports.studies.enclosure.study import ENCLOSURE
+from taylor_verify_reports.studies.controls import controls_page as controls
+from taylor_verify_reports.studies.controls.sight import CONTROLS
+from taylor_verify_reports.studies.enclosure_width import ENCLOSURE, SCENES, widths
 from taylor_verify_reports.studies.engines import document as board
 from taylor_verify_reports.studies.engines.entry import BOARDS
-from taylor_verify_reports.studies.growth import page as growth
-from taylor_verify_reports.studies.hard.document import HARD
+from taylor_verify_reports.studies.growth import growth_page as growth
+from taylor_verify_reports.studies.hard.hard_scenes import HARD
 from taylor_verify_reports.studies.paper.pack import pack
-from taylor_verify_reports.studies.reference import page as reference_files
+from taylor_verify_reports.studies.reference import reference_page as reference_files
 from taylor_verify_reports.studies.site.builder import build
 from taylor_verify_reports.studies.stored import Stored
-from taylor_verify_reports.studies.tradeoff import document as trades
+from taylor_verify_reports.studies.tradeoff import trades
 from taylor_verify_reports.typesetting.paper import images
 
 ROOT = Path(__file__).resolve().parents[2]

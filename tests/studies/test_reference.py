@@ -23,9 +23,9 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.page_parts import MADE_BY
-from taylor_verify_reports.studies.documents import document as document_of
-from taylor_verify_reports.studies.reference import page as reference_files
-from taylor_verify_reports.studies.reference.measure import DIGITS, reference
+from taylor_verify_reports.studies.reference import reference_page as reference_files
+from taylor_verify_reports.studies.reference.exact_table import DIGITS, reference
+from taylor_verify_reports.studies.stored import document as document_of
 
 # A second or less each; with attitude, centre and a full tensor among them.
 CHEAP = (

@@ -15,8 +15,8 @@ import pytest
 from builders import reports
 
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify_reports.studies.reference import page as reference_files
-from taylor_verify_reports.studies.reference.measure import reference
+from taylor_verify_reports.studies.reference import reference_page as reference_files
+from taylor_verify_reports.studies.reference.exact_table import reference
 
 MOMENTS = ("1", "2", "3")
 

@@ -176,9 +176,10 @@ def test_pages_are_made_of_what_is_stored(folder: Path) -> None:
     store.write(folder, [row()], [])
     assert call(folder, "--pages") == 0
     assert (folder / SMALLEST.path).read_text(encoding="utf-8") == f"{MADE_BY}\n# 7.0\n"
-    assert "](tables/smallest.md)" in (folder / "README.md").read_text(encoding="utf-8")
-    index = (folder / "tables" / "README.md").read_text(encoding="utf-8")
-    assert "| [smallest.md](smallest.md) | `smallest.csv` |" in index
+    index = (folder / "README.md").read_text(encoding="utf-8")
+    assert "| [tables/smallest.md](tables/smallest.md) | `smallest.csv` |" in " ".join(
+        index.split()
+    )
     (folder / SUM.name).unlink()
     assert call(folder) == 0
     assert not (folder / SMALLEST.path).exists()

@@ -18,7 +18,7 @@ from markdown_it import MarkdownIt
 
 from taylor_verify.cli import main
 from taylor_verify.solvers.files.file import read
-from taylor_verify_reports.studies.portraits.study import PORTRAITS
+from taylor_verify_reports.studies.portraits.stored_portraits import PORTRAITS
 from taylor_verify_reports.studies.site import builder
 from taylor_verify_reports.studies.site.builder import MADE_BY, build, contents
 from taylor_verify_reports.studies.site.pages import front
@@ -48,7 +48,7 @@ for `euler/with-attitude`. The [data](../reports/data/verdicts.json), [the sourc
 ```{include} ../MORE.md
 ```
 """
-MORE = "See [the list](docs/index.md) and [tables/README.md](reports/tables/README.md).\n"
+MORE = "See [the list](docs/index.md) and [the report](reports/README.md).\n"
 
 # Building a site takes many seconds: `make test-site` runs these tests.
 building = pytest.mark.slow

@@ -12,11 +12,11 @@ import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.document import (
+from taylor_verify_reports.studies.tradeoff.tradeoff_page import STUDY, page
+from taylor_verify_reports.studies.tradeoff.trades import (
     Trades,
     write,
 )
-from taylor_verify_reports.studies.tradeoff.page import STUDY, page
 
 
 @pytest.fixture(scope="module")

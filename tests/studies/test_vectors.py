@@ -20,7 +20,7 @@ from taylor_verify.scenes.reading.reader import read
 from taylor_verify_reports.studies.vectors.bodies_in_water import IN_WATER
 from taylor_verify_reports.studies.vectors.expected_words import forbidden
 from taylor_verify_reports.studies.vectors.questions import Question, answered, questions
-from taylor_verify_reports.studies.vectors.study import FOLDER
+from taylor_verify_reports.studies.vectors.vectors_file import FOLDER
 from taylor_verify_reports.studies.vectors.wrong_answers import Wrong, judged, wrong_answer
 
 PUBLISHED = ROOT / "reports" / FOLDER

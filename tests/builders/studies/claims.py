@@ -7,7 +7,7 @@ from dataclasses import replace
 from taylor_verify.records.provenance import Provenance
 from taylor_verify_reports.claims.check import Residual
 from taylor_verify_reports.claims.claim import Claim
-from taylor_verify_reports.claims.document import ClaimRow, ClaimsStudy
+from taylor_verify_reports.claims.claim_row import ClaimRow, ClaimsStudy
 from taylor_verify_reports.claims.ledger import claims, examined
 from taylor_verify_reports.claims.numbers import CITED
 

@@ -11,7 +11,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.families.distributions import Draw
 from taylor_verify.scenes.families.family import Family, Variable
-from taylor_verify_reports.studies.hard.document import (
+from taylor_verify_reports.studies.hard.hard_scenes import (
     Expected,
     HardStudy,
     ReachFamily,

@@ -9,7 +9,7 @@ from typing import Any
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff.document import TradePoint
-from taylor_verify_reports.studies.tradeoff.document import (
+from taylor_verify_reports.studies.tradeoff.trades import (
     TimingMethod,
     TradeNumbers,
     TradeScene,

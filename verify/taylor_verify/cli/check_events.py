@@ -14,7 +14,7 @@ from taylor_verify.judge.events import EventsJudgement, judge_events
 from taylor_verify.judge.tolerances import tolerances
 from taylor_verify.numbers.precision import rung
 from taylor_verify.solvers.files.events import read_events
-from taylor_verify.words.judged_events import event_lines
+from taylor_verify.words.account import event_lines
 
 
 def answer(options: argparse.Namespace) -> Answer:

@@ -17,8 +17,7 @@ from taylor_verify.cli.standard_input import scene_and_files
 from taylor_verify.draw import file_errors, missing_load
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.drawn_course import lengthened, motion
-from taylor_verify.draw.moving import moving
-from taylor_verify.draw.moving_page import page
+from taylor_verify.draw.moving import moving, page
 from taylor_verify.draw.pictures import pictures
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file

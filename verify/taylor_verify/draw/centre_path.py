@@ -16,10 +16,9 @@ import numpy as np
 from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale, stretches
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
-from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, blank
-from taylor_verify.plotting.style import PAGE_WIDTH
+from taylor_verify.plotting.style import PAGE_WIDTH, QUIET
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,9 +16,9 @@ import numpy as np
 
 from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
-from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
+from taylor_verify.plotting.style import QUIET
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

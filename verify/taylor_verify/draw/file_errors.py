@@ -20,10 +20,9 @@ import numpy as np
 from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.log_axes import powers_within, widened
-from taylor_verify.plotting.palette import QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
-from taylor_verify.plotting.style import look_of_line, look_of_rung
+from taylor_verify.plotting.style import QUIET, look_of_line, look_of_rung
 from taylor_verify.plotting.wording import plain, power_of_ten
 from taylor_verify.records.quantities import is_conserved, states_among
 from taylor_verify.records.record import Record

@@ -6,8 +6,11 @@ of the other pictures: between two rows the body turns by a tenth of a radian, o
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from html import escape
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -36,6 +39,7 @@ _MOMENTUM_UP: Final = ", H upwards"
 _STILL: Final = 1e-6
 # Digits of a number on the page: no eye sees the next one.
 _DIGITS: Final = 4
+_TEMPLATE: Final = Path(__file__).with_name("assets") / "turning.html"
 
 
 def moving(document: Document) -> dict[str, Any]:
@@ -165,3 +169,11 @@ def _rounded(values: Numbers | Iterable[float], digits: int = _DIGITS) -> Any:
     largest = float(np.abs(numbers).max())
     decimals = digits - int(np.floor(np.log10(largest))) - 1 if largest > 0 else 0
     return np.round(numbers, decimals).tolist()
+
+
+def page(motion: Mapping[str, Any]) -> str:
+    """Return the page on which a motion turns, one HTML file without network; ``motion`` is of `moving`."""
+    text = json.dumps(motion, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+    # The data stand in a script element, which no text of theirs may end.
+    template = _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", escape(motion["title"]), 1)
+    return template.replace("DATA", text.replace("<", "\\u003c"), 1)

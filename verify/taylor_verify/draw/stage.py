@@ -16,9 +16,8 @@ import numpy as np
 
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.draw.view import Ellipsoid, Numbers, View, pieces
-from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.sheet import Entry, Frame, add_axes, blank, draw_legend
-from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
+from taylor_verify.plotting.style import INK, PAGE_WIDTH, PAPER, QUIET, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

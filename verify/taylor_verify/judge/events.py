@@ -19,7 +19,7 @@ from taylor_verify.records.faults import brief, refusal
 from taylor_verify.records.passing import Passing
 from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.words.judged_events import event_lines
+from taylor_verify.words.account import event_lines
 
 if TYPE_CHECKING:
     import pandas

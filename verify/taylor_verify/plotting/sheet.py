@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.plotting.palette import QUIET
-from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
+from taylor_verify.plotting.style import PAGE_WIDTH, QUIET, SMALL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 from zlib import crc32
 
-from taylor_verify.plotting.palette import FAINT, INK, PAPER, QUIET
 from taylor_verify.records.precisions import FORMATS, bits_of, place_of_rung
 
 Dashes = tuple[float, ...]
@@ -23,6 +22,12 @@ SOLID: Final[Dashes] = ()
 DASHED: Final[Dashes] = (5.0, 1.6)
 DOTTED: Final[Dashes] = (1.2, 1.4)
 DASHDOT: Final[Dashes] = (6.0, 1.4, 1.2, 1.4)
+
+# Text, thin lines, grids and paper. Text on paper has the contrast that WCAG 2.1 requires (1.4.3).
+INK: Final = "#1A1A1A"
+QUIET: Final = "#6A6A6A"
+FAINT: Final = "#E2E2E2"
+PAPER: Final = "#FFFFFF"
 
 # In points; the width in inches: that of a page with margins of an inch on both A4 and letter.
 PAGE_WIDTH: Final = 6.3

@@ -1,1 +1,1 @@
-"""Tables and a front page that a run leaves in a folder, made of its verdicts."""
+"""Tables and an index that a run leaves in a folder, made of its verdicts."""

@@ -1,4 +1,4 @@
-"""Report folder of a run: ``data``, then tables and a front page made from ``data`` alone."""
+"""Report folder of a run: ``data``, then tables and an index made from ``data`` alone."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report import csv_tables, published_tables
-from taylor_verify.report.front import front
+from taylor_verify.report.index_page import readme
 from taylor_verify.words.page_parts import MADE_BY
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ TABLES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {
 
 
 def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]:
-    """Write verdicts, records, tables and a front page of results, as `taylor-verify run --out DIR` does.
+    """Write verdicts, records, tables and an index of results, as `taylor-verify run --out DIR` does.
 
     Returns the files written. They replace the files of an earlier run, all of them or none. Raises OSError
     for a folder that cannot be written, and ValueError for two different records of one run.
@@ -47,12 +47,10 @@ def write_report(folder: str | PathLike[str], results: Judgements) -> list[Path]
 
 
 def index(place: Path, verdicts: Sequence[Verdict], besides: Iterable[Page] = ()) -> dict[str, str]:
-    """Return the index of the tables and the front page, which link the pages ``besides`` too.
+    """Return the index of a report, which links the pages ``besides`` too.
 
-    A README.md that this program did not make is not among them.
+    There is none in place of a README.md that this program did not make.
     """
-    besides = list(besides)
-    texts = {f"tables/{FRONT}": published_tables.readme(verdicts, besides)}
-    if not (place / FRONT).exists() or first_line(place / FRONT) == MADE_BY:
-        texts[FRONT] = front(verdicts, besides)
-    return texts
+    if (place / FRONT).exists() and first_line(place / FRONT) != MADE_BY:
+        return {}
+    return {FRONT: readme(verdicts, besides)}

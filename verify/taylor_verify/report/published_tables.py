@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records.runs import (
@@ -20,37 +19,11 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import counts, page, roundoffs, sections, unscored
 
 if TYPE_CHECKING:
-    from taylor_verify.words.entry import Page
+    pass
 
-_MEANINGS: Final[Mapping[Status, str]] = {
-    Status.PASS: "the error of every sample is within its bound",
-    Status.FAIL: "an error exceeds its bound or is no number, or the solver did not finish",
-    Status.UNDECIDED: "the exact solution is not known sharply enough to judge by",
-    Status.VACUOUS: "roundoff alone may be as large as the motion: no answer could fail",
-    Status.REFUSED: "the numbers of this rung cannot hold the scene",
-    Status.UNAVAILABLE: "this machine does not have the rung",
-}
 _RATIO: Final = (
     "*Over attainable* is the largest ratio, over all samples, of the error to the error that perfect "
     "rounding of every step would leave on this orbit"
-)
-_CONTENTS: Final = (
-    (
-        "[State errors](accuracy.md)",
-        "`gates.csv`",
-        "the error of what each scene tracks, beside that of perfect rounding",
-    ),
-    ("[Conserved quantities](conserved.md)", "`gates.csv`", "their drift, a run a line"),
-    (
-        "Gates",
-        "`gates.csv`",
-        "every verdict, its bound and the reason of the bound: `gates.md`",
-    ),
-)
-_PAPER: Final = (
-    "`make paper` makes a paper of the studies' results, with its tables as LaTeX and CSV, in "
-    "`reports/paper`. It is not committed, nor are the tables for searching: `taylor-verify publish "
-    "--missing` makes the sheets, CSV with every digit, and `gates.md`, a line for every verdict."
 )
 _ACCURACY: Final = (
     "scene",
@@ -176,54 +149,3 @@ def gates(verdicts: Sequence[Verdict]) -> str:
             lambda group: verdict_table(_GATES, [v for run in group for v in run.verdicts]),
         ),
     )
-
-
-def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
-    """Return the index of the tables, and how to read a cell; ``others`` are further pages."""
-    how = [
-        "Numbers have three significant digits, and all digits in the CSV. Times have up to six "
-        "digits.",
-        f"A word replaces a missing number: the verdict, or the outcome of a failed run. {NOTHING} is "
-        "an empty cell.",
-        "An error is absolute or relative as its unit says, and also given in u, the unit roundoff "
-        "2^-p of a rung of p bits: 1 u is the largest error of one rounding.",
-        f"{_RATIO}. A ratio near 1 is the best that the arithmetic allows.",
-        "In the CSV the word is in the column of the maximum, and empty cells have no mark; `max_u` "
-        "and `mean_u` are in u.",
-    ]
-    meanings = [[judged(status), text] for status, text in _MEANINGS.items()]
-    besides = [
-        [
-            entry.link("tables"),
-            code(Path(entry.sheet).name) if entry.has_sheet else NOTHING,
-            entry.what,
-        ]
-        for entry in others
-    ]
-    return page(
-        "Tables",
-        verdicts,
-        table(["table", "every digit", "what it has"], _CONTENTS),
-        table(["besides", "every digit", "what it has"], besides) if besides else "",
-        counts(verdicts),
-        "## How to read a cell",
-        bullets(how),
-        table(["verdict", "meaning"], meanings),
-        "## To print and to cite",
-        _PAPER,
-        "## Scenes",
-        table(["scene", "rungs", "SHA-256"], _scenes(verdicts)),
-    )
-
-
-def _scenes(verdicts: Sequence[Verdict]) -> list[list[str]]:
-    """Return every scene with its rungs and the digest of its text."""
-    rungs: dict[str, list[str]] = {}
-    digests: dict[str, str] = {}
-    for run in runs(verdicts):
-        rungs.setdefault(run.scene, []).append(run.rung)
-        digests[run.scene] = str(run.verdicts[0].provenance.get("scene", ""))
-    return [
-        [code(scene), ", ".join(dict.fromkeys(names)), code(digests[scene]) or NOTHING]
-        for scene, names in rungs.items()
-    ]

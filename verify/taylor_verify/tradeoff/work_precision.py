@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.palette import INK, QUIET
 from taylor_verify.plotting.picture import Picture, save
 from taylor_verify.plotting.sheet import Entry, name_lines, sheet
-from taylor_verify.plotting.style import TAYLOR, heading_of, kind_of, look_of, place
+from taylor_verify.plotting.style import INK, QUIET, TAYLOR, heading_of, kind_of, look_of, place
 from taylor_verify.plotting.wording import plain, stem_of
 from taylor_verify.records.standing import Standing
 from taylor_verify.tradeoff.document import label

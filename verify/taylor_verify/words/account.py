@@ -6,8 +6,8 @@ step summary and the annotations of GitHub arrange the same lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Final
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final
 
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.status import Status
@@ -78,3 +78,15 @@ def _row(verdict: Verdict) -> str:
 def _mends(verdict: Verdict) -> Iterator[str]:
     if verdict.verdict in _MENDS and not verdict.is_waived:
         yield f"    {_MENDS[verdict.verdict]}"
+
+
+def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
+    """Yield a line for each time of a judgement as `check --event --json` prints it."""
+    for row in document["events"]:
+        yield f"t = {row['given']:.17g}: right to {row['digits']} digits (off by {row['error']:.1e})"
+    for row in document["missed"]:
+        yield f"missed: t = {row['t']}"
+    for time in document["invented"]:
+        yield f"invented: t = {time:.17g}"
+    for row in document["undecided"]:
+        yield f"undecided: t = {row['t']}, within {row['radius']}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import posixpath
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
@@ -15,10 +14,10 @@ class Page:
     what: str
     has_sheet: bool = False
 
-    def link(self, seen_from: str = ".") -> str:
-        """Return a link to the page from a folder of the report."""
-        place = posixpath.relpath(self.path, seen_from)
-        return f"[{place}]({place})"
+    @property
+    def link(self) -> str:
+        """A link to the page from the index of the report."""
+        return f"[{self.path}]({self.path})"
 
     @property
     def sheet(self) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from taylor_verify_reports.claims.check import Check, Residual, Worded, measured
-from taylor_verify_reports.claims.document import ClaimResiduals, ClaimRow
-from taylor_verify_reports.claims.document import Verdict as Verdict
+from taylor_verify_reports.claims.claim_row import ClaimResiduals, ClaimRow
+from taylor_verify_reports.claims.claim_row import Verdict as Verdict
 
 Change = Check | tuple[str, str]
 """A separate check, or old and new words in the text of the claim's check."""

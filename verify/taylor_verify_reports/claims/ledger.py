@@ -11,7 +11,7 @@ from typing import Final
 
 from taylor_verify_reports.claims import heinbockel, hydromechanics
 from taylor_verify_reports.claims.claim import Claim, Finding, examine
-from taylor_verify_reports.claims.document import ClaimRow
+from taylor_verify_reports.claims.claim_row import ClaimRow
 from taylor_verify_reports.claims.numbers import IN_ORDER
 
 # A folder for each text; a module of it may have CLAIMS.

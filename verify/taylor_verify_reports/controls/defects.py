@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from taylor_verify_reports.controls.answers import ANSWERS
+from taylor_verify_reports.controls.broken_answers import ANSWERS
+from taylor_verify_reports.controls.broken_equations import EQUATIONS
+from taylor_verify_reports.controls.broken_steps import STEPPING
 from taylor_verify_reports.controls.defect import Defect
-from taylor_verify_reports.controls.equations import EQUATIONS
-from taylor_verify_reports.controls.stepping import STEPPING
 
 DEFECTS: Final[tuple[Defect, ...]] = (*EQUATIONS, *STEPPING, *ANSWERS)
 

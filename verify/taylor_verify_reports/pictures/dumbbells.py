@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import widened
-from taylor_verify.plotting.palette import INK, PAPER, QUIET
 from taylor_verify.plotting.sheet import (
     BELOW,
     HEADING,
@@ -18,7 +17,7 @@ from taylor_verify.plotting.sheet import (
     draw_legend,
     foot_of,
 )
-from taylor_verify.plotting.style import PAGE_WIDTH, SMALL
+from taylor_verify.plotting.style import INK, PAGE_WIDTH, PAPER, QUIET, SMALL
 from taylor_verify.plotting.wording import power_of_ten
 
 if TYPE_CHECKING:

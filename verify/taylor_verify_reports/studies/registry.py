@@ -8,20 +8,20 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.plotting.picture import Picture
-from taylor_verify_reports.studies.accuracy.study import STUDY as ACCURACY
+from taylor_verify_reports.studies.accuracy.standard_runs import STUDY as ACCURACY
 from taylor_verify_reports.studies.causes.study import STUDY as CAUSES
-from taylor_verify_reports.studies.claims.page import STUDY as CLAIMS
-from taylor_verify_reports.studies.controls.page import STUDY as CONTROLS
-from taylor_verify_reports.studies.enclosure.study import STUDY as ENCLOSURE
+from taylor_verify_reports.studies.claims_page import STUDY as CLAIMS
+from taylor_verify_reports.studies.controls.controls_page import STUDY as CONTROLS
+from taylor_verify_reports.studies.enclosure_width import STUDY as ENCLOSURE
 from taylor_verify_reports.studies.engines.study import SATELLITE, UNDERWATER
 from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
-from taylor_verify_reports.studies.growth.page import STUDY as GROWTH
-from taylor_verify_reports.studies.hard.page import STUDY as HARD
-from taylor_verify_reports.studies.portraits.study import STUDY as PORTRAITS
-from taylor_verify_reports.studies.reference.page import STUDY as REFERENCE
+from taylor_verify_reports.studies.growth.growth_page import STUDY as GROWTH
+from taylor_verify_reports.studies.hard.hard_page import STUDY as HARD
+from taylor_verify_reports.studies.portraits.stored_portraits import STUDY as PORTRAITS
+from taylor_verify_reports.studies.reference.reference_page import STUDY as REFERENCE
 from taylor_verify_reports.studies.study import Study
-from taylor_verify_reports.studies.tradeoff.page import STUDY as TRADEOFF
-from taylor_verify_reports.studies.vectors.study import STUDY as VECTORS
+from taylor_verify_reports.studies.tradeoff.tradeoff_page import STUDY as TRADEOFF
+from taylor_verify_reports.studies.vectors.vectors_file import STUDY as VECTORS
 
 STUDIES: Final[list[Study[Any]]] = [
     ACCURACY,

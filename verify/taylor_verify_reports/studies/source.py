@@ -16,10 +16,8 @@ from typing import Any, Final
 from taylor_verify.records import store
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.runs import Run, runs
-from taylor_verify_reports.studies.controls.document import CONTROLS, Sight
-from taylor_verify_reports.studies.portraits.study import PORTRAITS
-from taylor_verify_reports.studies.tradeoff import document as trades
-from taylor_verify_reports.studies.tradeoff.document import Trade
+from taylor_verify_reports.studies.controls.sight import CONTROLS, Sight
+from taylor_verify_reports.studies.portraits.stored_portraits import PORTRAITS
 
 Document = Mapping[str, Any]
 
@@ -86,15 +84,6 @@ class Report:
         """The deliberately broken solvers with the verdicts on them; empty if none are stored."""
         study = CONTROLS.find(self.folder)
         return study.sights if study else ()
-
-    @cached_property
-    def _trades(self) -> dict[str, Trade]:
-        study = trades.load(self.folder)
-        return {trade.scene: trade for trade in study.trades} if study else {}
-
-    def trade(self, scene: str) -> Trade | None:
-        """Return the measurement of speed against accuracy on a scene; None if it is not stored."""
-        return self._trades.get(scene)
 
     def has(self, place: str) -> bool:
         """Return True if a published file has this path."""

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from taylor_verify.records import store
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.json_text import complete, read
 from taylor_verify.records.replacement import first_line, replace_files
+
+if TYPE_CHECKING:
+    from taylor_verify.scenes.scene import Scene
 
 Document = TypeVar("Document")
 
@@ -109,3 +113,39 @@ class SceneDocuments:
         """Return the files of the folder that have this maker in their first line."""
         first = f'{{"made_by": {json.dumps(self.maker)},'
         return [file for file in (report / self.folder).glob("*.json") if first_line(file) == first]
+
+
+# Documents of many shipped scenes, made on all cores.
+
+
+def documents(
+    make: Callable[[Scene], dict[str, Any]],
+    names: Sequence[str],
+    finished: Callable[[str], None],
+    keep: Callable[[dict[str, Any]], object] | None = None,
+) -> list[dict[str, Any]]:
+    """Return ``make(scene)`` for many scenes, in the order given.
+
+    As each scene ends, ``keep`` is called with its document and ``finished`` with its name. Raises Failed
+    for one that came to nothing.
+    """
+
+    from taylor_verify.batch.failure import Failed
+    from taylor_verify.batch.work import run_all
+
+    def ended(name: str, document: dict[str, Any]) -> None:
+        if keep is not None:
+            keep(document)
+        finished(name)
+
+    return run_all(partial(document, make), names, ended=ended, raises=Failed)
+
+
+def document(make: Callable[[Scene], dict[str, Any]], name: str) -> dict[str, Any]:
+    """Return ``make(scene)`` for one scene. Raises Failed with its name."""
+    from taylor_verify.batch.failure import failing
+    from taylor_verify.exact.solution import Unsettled
+    from taylor_verify.scenes.reading.reader import load
+
+    with failing(name, Unsettled):
+        return make(load(name))

@@ -14,7 +14,7 @@ from rich.text import Text
 from taylor_verify.cli.answer import FAIL, PASS, Answer, wrong_calls
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.progress import working
-from taylor_verify_reports.claims.document import ClaimRow, Verdict
+from taylor_verify_reports.claims.claim_row import ClaimRow, Verdict
 from taylor_verify_reports.claims.ledger import UnknownClaim, examined, find, missed
 
 _COLOURS = {

@@ -211,7 +211,7 @@ def _measured(
 ) -> Answer:
     """Measure each study and make its pages and pictures, then the index if there is one."""
     from taylor_verify.records import store
-    from taylor_verify_reports.studies.report import publish_index
+    from taylor_verify_reports.studies.published_report import publish_index
     from taylor_verify_reports.studies.study import NotMeasured
 
     answer = _files_written([])
@@ -258,7 +258,7 @@ def _wrong_calls(folder: Path, option: str) -> Iterator[None]:
 
 
 def _pages(folder: Path) -> Answer:
-    from taylor_verify_reports.studies import report
+    from taylor_verify_reports.studies import published_report as report
 
     with _wrong_calls(folder, ""):
         return _files_written(report.publish(folder))

@@ -14,8 +14,8 @@ from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import in_roundoffs
 from taylor_verify.words.markdown import code, table
-from taylor_verify_reports.studies.controls import page as controls
-from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.controls import controls_page as controls
+from taylor_verify_reports.studies.controls.sight import CONTROLS
 
 BEGIN: Final = "<!-- accuracy: made by taylor-verify publish; do not edit -->"
 END: Final = "<!-- end of accuracy -->"

@@ -28,7 +28,7 @@ from taylor_verify_reports.studies.causes.kind import Kind
 from taylor_verify_reports.studies.causes.kinds import KINDS
 from taylor_verify_reports.studies.causes.loaded import any_sample
 from taylor_verify_reports.studies.causes.simulated import Rows, printed
-from taylor_verify_reports.studies.unfinished import Parts
+from taylor_verify_reports.studies.finished_parts import Parts
 
 SIZES: Final = (3e-3, 0.06, 0.5)
 OUTCOMES: Final = ("right", "several", "half", "silent", "passes", "false")

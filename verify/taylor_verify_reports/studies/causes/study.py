@@ -17,7 +17,7 @@ def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
     """Write the confusion table, and below it each false sentence; go on after an interrupt."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
     from taylor_verify_reports.studies.causes.measure import Named, measured, page
-    from taylor_verify_reports.studies.unfinished import Parts, unfinished
+    from taylor_verify_reports.studies.finished_parts import Parts, unfinished
 
     finished, answers = progress.counting(len(KINDS)), list[Named]()
     with unfinished(STUDY.name, folder) as place:

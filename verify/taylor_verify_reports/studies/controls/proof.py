@@ -7,14 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
 from taylor_verify.records.status import Status
-from taylor_verify.words.cells import INFINITE, figure
-from taylor_verify.words.markdown import bold, code, prose
-from taylor_verify_reports.studies.controls.document import Sight
+from taylor_verify.words.cells import INFINITE
+from taylor_verify.words.markdown import bold, prose
+from taylor_verify_reports.studies.controls.sight import Sight
 
 MAIN: Final = ("omega", "impulse")
 
-# A shift of time explains an error entirely if it leaves at most this part of the error.
-_WHOLLY: Final = 0.01
 # Errors of equal roundings in two runs differ by at most this factor.
 _ALIKE: Final = 2
 _SPELLINGS: Final = {"nan": "NaN", "munk": "Munk"}
@@ -26,11 +24,9 @@ def proven(sights: Sequence[Sight]) -> list[str]:
     sentences = [
         _energy_alone(finished),
         _conservation_together(finished),
-        _body_axes(finished),
         "Omega or impulse, attitude and centre together see "
         f"{_seeing(finished, lambda sight: sight.state)} of {len(finished)}; all conserved quantities "
         f"together see {_seeing(finished, lambda sight: sight.conserved)}.",
-        _shifted(finished),
         f"{len(finished)} of {len(sights)} report success: a solver's own report is no evidence."
         if finished
         else "",
@@ -88,40 +84,9 @@ def _is_conserving(sight: Sight) -> bool:
     return all(sight.is_missed_by(name) for name in sight.conserved)
 
 
-def _body_axes(sights: Sequence[Sight]) -> str:
-    """Return how many defects the gate of the main quantity passes, and which gates see them."""
-    blind = [sight for sight in sights if any(sight.is_missed_by(name) for name in MAIN)]
-    if not blind:
-        return ""
-    seeing = dict.fromkeys(name for sight in blind for name in sight.seen_by)
-    return (
-        f"{len(blind)} pass the gate of omega or of the impulse in body axes: {_names(blind)}. Only "
-        f"{_listed([code(name) for name in seeing])} see them."
-    )
-
-
 def _seeing(sights: Iterable[Sight], quantities: Callable[[Sight], Iterable[str]]) -> int:
     """Return the number of defects that a gate of one of the quantities sees."""
     return sum(any(map(sight.is_seen_by, quantities(sight))) for sight in sights)
-
-
-def _shifted(sights: Sequence[Sight]) -> str:
-    """Return the defects that a constant shift of time explains, with their shifts."""
-    listed = []
-    for sight in filter(_is_conserving, sights):
-        shift = constant_shift(sight)
-        verdict = next((sight.verdicts[name] for name in MAIN if name in sight.verdicts), None)
-        if shift is None or verdict is None or verdict.residual is None or not verdict.max:
-            continue
-        left = verdict.residual / verdict.max
-        if left <= _WHOLLY:
-            listed.append(f"{title(sight)} ({figure(shift)}; {_short(left)} of the error is left)")
-    if not listed:
-        return ""
-    return (
-        "A comparison in time names an error that no conserved quantity can see: the error of "
-        f"{_listed(listed)} is {'a' if len(listed) == 1 else 'in each case a'} constant shift of time."
-    )
 
 
 def _all_caught(sights: Sequence[Sight]) -> str:

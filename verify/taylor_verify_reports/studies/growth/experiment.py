@@ -19,9 +19,9 @@ from taylor_verify.solvers.registry import TAYLOR
 from taylor_verify.solvers.taylor.ensemble import Ensemble as Lanes
 from taylor_verify.solvers.taylor.ensemble import Lane
 from taylor_verify.solvers.taylor.numbers import unavailable
-from taylor_verify_reports.studies.growth.document import Ensemble, GrowthOfQuantity, GrowthStudy
 from taylor_verify_reports.studies.growth.errors import Measured, lane_errors
 from taylor_verify_reports.studies.growth.fit import growth
+from taylor_verify_reports.studies.growth.grown import Ensemble, GrowthOfQuantity, GrowthStudy
 from taylor_verify_reports.studies.growth.question import Question
 
 

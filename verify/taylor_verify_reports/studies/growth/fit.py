@@ -25,7 +25,7 @@ import numpy as np
 
 from taylor_verify.records.status import Status
 from taylor_verify.records.student import student
-from taylor_verify_reports.studies.growth.document import EXACT, GrowthGate
+from taylor_verify_reports.studies.growth.grown import EXACT, GrowthGate
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 

@@ -21,7 +21,7 @@ from taylor_verify.scenes.families.shipped import family
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-from taylor_verify_reports.studies.hard.document import ReachFamily
+from taylor_verify_reports.studies.hard.hard_scenes import ReachFamily
 
 QUARTERS: Final = 4
 # Two numbers in each decade, and one for long runs.

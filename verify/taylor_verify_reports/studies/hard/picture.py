@@ -12,7 +12,7 @@ from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import sheet
 from taylor_verify.plotting.style import look_of_rung
 from taylor_verify.plotting.wording import power_of_ten
-from taylor_verify_reports.studies.hard.document import (
+from taylor_verify_reports.studies.hard.hard_scenes import (
     ACHIEVED,
     ATTAINABLE,
     HardStudy,

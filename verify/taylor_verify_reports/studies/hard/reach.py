@@ -30,7 +30,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor.driver import Taylor
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.attainability import Floats, floors
-from taylor_verify_reports.studies.hard.document import LOST, ReachRow
+from taylor_verify_reports.studies.hard.hard_scenes import LOST, ReachRow
 from taylor_verify_reports.studies.hard.members import (
     FOLLOWED,
     QUARTERS,

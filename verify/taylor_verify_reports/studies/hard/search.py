@@ -26,7 +26,7 @@ from taylor_verify.scenes.families.family import Family, Place
 from taylor_verify.scenes.families.shipped import family
 from taylor_verify.scenes.library import WORST
 from taylor_verify.solvers.registry import TAYLOR
-from taylor_verify_reports.studies.hard.document import WorstOfFamily
+from taylor_verify_reports.studies.hard.hard_scenes import WorstOfFamily
 from taylor_verify_reports.studies.study import NotMeasured
 
 RUNG: Final = "f64"

@@ -9,10 +9,10 @@ from taylor_verify.plotting.picture import Picture
 from taylor_verify.words.markdown import code
 from taylor_verify_reports.studies.engines import page as engines_page
 from taylor_verify_reports.studies.hard import picture as hard_picture
-from taylor_verify_reports.studies.hard.document import HARD
+from taylor_verify_reports.studies.hard.hard_scenes import HARD
 from taylor_verify_reports.studies.paper.sources import Sources
 from taylor_verify_reports.studies.paper.table import ENGINES, TRADEOFF, Caption
-from taylor_verify_reports.studies.tradeoff import page as tradeoff_page
+from taylor_verify_reports.studies.tradeoff import tradeoff_page
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from taylor_verify.records.store import versions
 from taylor_verify.words.markdown import prose
 from taylor_verify.words.page_parts import packages
 from taylor_verify_reports.studies import figures, registry
-from taylor_verify_reports.studies.paper.findings import FINDINGS
 from taylor_verify_reports.studies.paper.illustration import pictures
+from taylor_verify_reports.studies.paper.paper_findings import FINDINGS
 from taylor_verify_reports.studies.paper.sources import read
 from taylor_verify_reports.studies.paper.table import Table, tables
 from taylor_verify_reports.typesetting import paper

@@ -12,14 +12,14 @@ from taylor_verify.records import store
 from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.markdown import prose
-from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy
+from taylor_verify_reports.studies.controls.sight import CONTROLS, ControlsStudy
 from taylor_verify_reports.studies.engines import document as engines
 from taylor_verify_reports.studies.engines.document import Board
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list
 from taylor_verify_reports.studies.engines.ranking import Score, best_of_each, settings
-from taylor_verify_reports.studies.hard.document import HARD, HardStudy
-from taylor_verify_reports.studies.tradeoff import document as tradeoff
-from taylor_verify_reports.studies.tradeoff.document import Trades
+from taylor_verify_reports.studies.hard.hard_scenes import HARD, HardStudy
+from taylor_verify_reports.studies.tradeoff import trades as tradeoff
+from taylor_verify_reports.studies.tradeoff.trades import Trades
 
 # Each study with its file, which exists once the study is measured.
 _FILES: Final = {

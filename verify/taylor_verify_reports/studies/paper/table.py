@@ -8,23 +8,22 @@ from typing import Final
 
 from taylor_verify.records import store
 from taylor_verify.records.standing import Standing
-from taylor_verify.report.front import BY_RUNG, by_rung
+from taylor_verify.report.index_page import BY_RUNG, by_rung
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.csv_sheet import sheet
 from taylor_verify.words.markdown import code, plain, prose, table
 from taylor_verify_reports.studies.accuracy import quoted
-from taylor_verify_reports.studies.controls import page as controls_page
-from taylor_verify_reports.studies.controls.document import CONTROLS
+from taylor_verify_reports.studies.controls import controls_page
+from taylor_verify_reports.studies.controls.sight import CONTROLS
 from taylor_verify_reports.studies.engines import document as engines
 from taylor_verify_reports.studies.engines import page as engines_page
-from taylor_verify_reports.studies.hard import page as hard_page
-from taylor_verify_reports.studies.hard import picture
-from taylor_verify_reports.studies.hard.document import HARD
-from taylor_verify_reports.studies.paper.findings import REACHED
+from taylor_verify_reports.studies.hard import hard_page, picture
+from taylor_verify_reports.studies.hard.hard_scenes import HARD
+from taylor_verify_reports.studies.paper.paper_findings import REACHED
 from taylor_verify_reports.studies.paper.sources import Sources
-from taylor_verify_reports.studies.tradeoff import document as tradeoff
-from taylor_verify_reports.studies.tradeoff.document import Trade, cheapest
+from taylor_verify_reports.studies.tradeoff import trades as tradeoff
 from taylor_verify_reports.studies.tradeoff.peers import DIGITS, OUTSIDE, TAYLOR, TITLES
+from taylor_verify_reports.studies.tradeoff.trades import Trade, cheapest
 
 VERDICTS: Final = (f"{store.FOLDER}/{store.VERDICTS}",)
 ENGINES: Final = (engines.ENGINES.name, engines.TIMINGS.name)

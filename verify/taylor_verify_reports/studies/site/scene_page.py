@@ -18,9 +18,8 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import conclusion, figure, verdict_table
 from taylor_verify.words.markdown import bullets, code, prose, table
 from taylor_verify.words.page_parts import packages
-from taylor_verify_reports.studies.reference.page import sheet_of
+from taylor_verify_reports.studies.reference.reference_page import sheet_of
 from taylor_verify_reports.studies.source import Document, Report
-from taylor_verify_reports.studies.tradeoff.document import TimedPoint, Trade
 
 # The navigation has no lines for scenes, which are too many; the table of scenes has links to them.
 _ORPHAN: Final = "---\norphan: true\n---"
@@ -69,7 +68,6 @@ def scene_page(
         if toml
         else [],
         "Accuracy": [verdict_table(_ACCURACY, verdicts)],
-        "Other solvers": _solvers(report.trade(scene)),
         "Pictures": [*([_turning(scene)] if has_motion else []), *_drawings(pictures)],
         "The arithmetic of the gates": [
             prose(condition.get("sentence", "")),
@@ -183,35 +181,6 @@ def _orbit(portrait: Document) -> list[str]:
     ]
     sentences = portrait.get("explain", {}).get("sentences", ())
     return [*map(prose, sentences), table(["quantity", "value", "meaning"], cells)]
-
-
-def _solvers(trade: Trade | None) -> list[str]:
-    """Return a table with the most accurate sound setting of each family of solvers.
-
-    Its time is that of a solve over the yardstick's.
-    """
-    if trade is None:
-        return []
-    best: dict[tuple[str, str], TimedPoint] = {}
-    for row in sorted(trade.sound, key=lambda row: row.error):
-        best.setdefault((row.point.family, row.point.rung), row)
-    lines = [
-        [
-            code(row.point.solver),
-            row.point.rung,
-            figure(row.error),
-            f"{digits:.1f}",
-            str(row.point.steps),
-            figure(row.timing.ratio),
-        ]
-        for row in best.values()
-        if (digits := row.point.achieved_digits) is not None
-    ]
-    return [
-        "The most accurate setting of every family of solvers that was sound on this scene; *time* is "
-        "that of a solve over that of taylor on f64.",
-        table(["solver", "rung", "error:", "digits:", "steps:", "time:"], lines),
-    ]
 
 
 def _gates(verdicts: Sequence[Verdict]) -> str:

@@ -46,19 +46,19 @@ from taylor_verify.tradeoff.trade_off import (
     sound_points,
     trade_off,
 )
-from taylor_verify_reports.studies.tradeoff.document import (
-    UNTIL,
-    TradeNumbers,
-    TradeScene,
-    TradeTiming,
-    TradeTimings,
-)
 from taylor_verify_reports.studies.tradeoff.rounds import (
     ROUNDS,
     YARDSTICK,
     Measured,
     measured,
     method,
+)
+from taylor_verify_reports.studies.tradeoff.trades import (
+    UNTIL,
+    TradeNumbers,
+    TradeScene,
+    TradeTiming,
+    TradeTimings,
 )
 
 # The last scene is chaotic beyond its end: no method has six digits there after a hundred periods.

@@ -7,7 +7,7 @@ from typing import Final
 
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
-from taylor_verify_reports.studies.tradeoff.document import (
+from taylor_verify_reports.studies.tradeoff.trades import (
     UNTIL,
     TimedPoint,
     Trade,

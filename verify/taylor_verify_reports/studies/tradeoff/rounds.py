@@ -34,7 +34,7 @@ from taylor_verify.tradeoff.timing import (
     in_rounds,
     place,
 )
-from taylor_verify_reports.studies.tradeoff.document import TimingMethod
+from taylor_verify_reports.studies.tradeoff.trades import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3

@@ -6,7 +6,7 @@ from typing import Final
 
 from taylor_verify.words.cells import figure
 from taylor_verify.words.markdown import code, prose, table
-from taylor_verify_reports.studies.tradeoff.document import NUMBERS, TIMINGS, Trades
+from taylor_verify_reports.studies.tradeoff.trades import NUMBERS, TIMINGS, Trades
 
 _WHAT_IS_TIMED: Final = (
     (

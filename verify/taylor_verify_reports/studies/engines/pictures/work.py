@@ -11,10 +11,9 @@ from math import inf
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.palette import INK, QUIET
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
-from taylor_verify.plotting.style import DASHED, Look, look_of_line
+from taylor_verify.plotting.style import DASHED, INK, QUIET, Look, look_of_line
 from taylor_verify.plotting.wording import plain
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.entry import EntryList

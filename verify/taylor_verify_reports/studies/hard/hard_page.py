@@ -24,7 +24,7 @@ from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page_parts import counts, roundoffs, traced, whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.columns import Columns, lay_out
-from taylor_verify_reports.studies.hard.document import (
+from taylor_verify_reports.studies.hard.hard_scenes import (
     ACHIEVED,
     ATTAINABLE,
     HARD,
@@ -319,7 +319,8 @@ def _measure(folder: Path, progress: Progress, runs: int = 0, seed: int = 1) -> 
 
     Unexpected verdicts are published too, and marked. Without a search the stored one stays.
     """
-    from taylor_verify_reports.studies.hard import measure, reach
+    from taylor_verify_reports.studies.hard import extremes as measure
+    from taylor_verify_reports.studies.hard import reach
 
     earlier, shipped = HARD.find(folder), list[Path]()
     search, worst = (earlier.search, earlier.worst) if earlier else (None, ())

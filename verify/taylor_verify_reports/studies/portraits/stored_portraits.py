@@ -33,8 +33,8 @@ def _portraits(
     progress: Progress,
     keep: Callable[[dict[str, Any]], object] | None = None,
 ) -> list[dict[str, Any]]:
-    from taylor_verify_reports.studies.documents import documents
-    from taylor_verify_reports.studies.portraits.measure import portrait
+    from taylor_verify_reports.studies.portraits.portrait import portrait
+    from taylor_verify_reports.studies.stored import documents
 
     return documents(portrait, scenes, progress.counting(len(scenes)), keep)
 

@@ -19,7 +19,7 @@ from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.quantities import MAIN, TRACKED
 from taylor_verify.scenes.library import find
 from taylor_verify.scenes.scene import Scene
-from taylor_verify_reports.studies.portraits.equations import equations
+from taylor_verify_reports.studies.portraits.latex_equations import equations
 
 # The number of times at which the values are given.
 TIMES: Final = 10

@@ -16,7 +16,7 @@ from taylor_verify.records.json_text import complete
 from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import whole
-from taylor_verify_reports.claims.document import ClaimRow, ClaimsStudy, Verdict
+from taylor_verify_reports.claims.claim_row import ClaimRow, ClaimsStudy, Verdict
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.study import Measured, Progress, Study
 
@@ -206,7 +206,7 @@ def _measure(folder: Path, progress: Progress) -> Measured:
     """Check the whole ledger, and store it only if every entry still has its verdict."""
     from taylor_verify.judge.provenance import command, processor, versions
     from taylor_verify.records.provenance import Provenance
-    from taylor_verify_reports.claims.document import ClaimsStudy
+    from taylor_verify_reports.claims.claim_row import ClaimsStudy
     from taylor_verify_reports.claims.ledger import claims, examined, missed
     from taylor_verify_reports.claims.numbers import CITED
 

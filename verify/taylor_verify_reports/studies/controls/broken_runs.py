@@ -12,7 +12,7 @@ from taylor_verify.run import run
 from taylor_verify.solvers.solver import Solver
 from taylor_verify_reports.controls.defect import Defect
 from taylor_verify_reports.controls.defects import DEFECTS
-from taylor_verify_reports.studies.controls.document import ControlsStudy, DefectRow, Sight
+from taylor_verify_reports.studies.controls.sight import ControlsStudy, DefectRow, Sight
 
 RUNG: Final = "f64"
 

@@ -14,10 +14,10 @@ from taylor_verify.words.markdown import prose
 from taylor_verify_reports.studies.controls.proof import conserving
 from taylor_verify_reports.studies.engines.advice import LOST
 from taylor_verify_reports.studies.engines.ranking import Score
-from taylor_verify_reports.studies.hard.document import ReachFamily, last_value, most_periods
+from taylor_verify_reports.studies.hard.hard_scenes import ReachFamily, last_value, most_periods
 from taylor_verify_reports.studies.paper.sources import Sources
-from taylor_verify_reports.studies.tradeoff.document import TimedPoint, Trade, cheapest
 from taylor_verify_reports.studies.tradeoff.peers import OUTSIDE, TAYLOR
+from taylor_verify_reports.studies.tradeoff.trades import TimedPoint, Trade, cheapest
 
 # An error that most users of an engine would ignore.
 GOOD: Final = 1e-6

@@ -13,7 +13,7 @@ from taylor_verify.records import store
 from taylor_verify.records.provenance import Machine, Provenance
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.library import EXTREMES
-from taylor_verify_reports.studies.hard.document import (
+from taylor_verify_reports.studies.hard.hard_scenes import (
     Expected,
     HardStudy,
     ReachRow,

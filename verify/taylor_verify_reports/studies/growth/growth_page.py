@@ -15,7 +15,7 @@ from taylor_verify.words.cells import NOTHING, figure, judged
 from taylor_verify.words.markdown import bold, bullets, code, prose
 from taylor_verify.words.page_parts import made_on, whole
 from taylor_verify_reports.studies.columns import Columns, csv_sheet, lay_out
-from taylor_verify_reports.studies.growth.document import (
+from taylor_verify_reports.studies.growth.grown import (
     EXACT,
     Ensemble,
     GrowthOfQuantity,

@@ -168,8 +168,8 @@ def _trajectories(
     progress: Progress,
     keep: Callable[[dict[str, Any]], object] | None = None,
 ) -> list[dict[str, Any]]:
-    from taylor_verify_reports.studies.documents import documents
-    from taylor_verify_reports.studies.reference.measure import reference
+    from taylor_verify_reports.studies.reference.exact_table import reference
+    from taylor_verify_reports.studies.stored import documents
 
     return documents(reference, scenes, progress.counting(len(scenes)), keep)
 

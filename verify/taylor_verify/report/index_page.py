@@ -1,87 +1,111 @@
-"""Front page of a report: its purpose, its main numbers, how to read them, and its other pages."""
+"""Index of a report folder: what came out, how to read a number, and the pages with all others."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.runs import Run, runs
+from taylor_verify.records.status import Status
 from taylor_verify.records.store import versions
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.words.cells import NOTHING, figure, in_roundoffs, main_error, ratio, worst
+from taylor_verify.words.cells import (
+    NOTHING,
+    figure,
+    in_roundoffs,
+    judged,
+    main_error,
+    ratio,
+    worst,
+)
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import counts, made_with, whole
 
 if TYPE_CHECKING:
     from taylor_verify.words.entry import Page
 
-_WHAT = (
-    "How accurately can a computer follow a tumbling rigid body, or a solid moving through an ideal "
-    "fluid? Each *scene* is one such motion, given in exact numbers. The Taylor integrator of "
-    "[heyoka](https://bluescarni.github.io/heyoka.py/) computes it in several number formats, the "
-    "*rungs*, from float32 upwards, and every computed state is compared with the exact motion, known "
-    "to more digits than the rung has. The difference is the error of the computation alone, because "
-    "the exact motion starts from the same numbers as the integrator."
+_WHAT: Final = (
+    "Every *scene* is one motion, given in exact numbers. A solver computes it in several number "
+    "formats, the *rungs*, from float32 upwards, and every state is compared with the exact motion of "
+    "the same numbers. So the difference is the error of the computation alone."
 )
-_READING = (
-    "*u* is the unit roundoff of the rung, the largest error of a single rounding of a number near "
-    "one. An error of 100 u costs the last two decimal digits.",
+_READING: Final = (
+    "*u* is the unit roundoff of the rung, 2^-p for p bits, the largest error of a single rounding. An "
+    "error of 100 u costs the last two decimal digits.",
     "*Attainable* is the error that would remain if each step were rounded perfectly: such roundings "
-    "add up like a random walk, and the motion itself magnifies them. *Error over attainable* near "
-    "1 says that the solver does all that its arithmetic allows.",
-    f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. Only "
-    "**pass** is good: the [other verdicts](tables/README.md#how-to-read-a-cell) each have a meaning.",
-    "A conserved energy or momentum does not prove that a motion is right: a wrong solution may "
-    "conserve both.",
+    "add up like a random walk, and the motion itself magnifies them. *Over attainable* is the largest "
+    "ratio of an error to it, over all samples: near 1, the solver does all that its arithmetic allows.",
+    f"A quantity *passes* if no sample's error exceeds {GATE_FACTOR} times what is attainable there. A "
+    "conserved energy or momentum does not prove that a motion is right: a wrong solution may conserve "
+    "both.",
+    "Numbers have three significant digits, and all digits in the CSV. A word replaces a missing "
+    f"number: the verdict, or the outcome of a failed run. {NOTHING} is an empty cell.",
 )
-_CONTENTS = (
-    ("[tables](tables/README.md)", "every number, and how a cell is read"),
+_MEANINGS: Final[Mapping[Status, str]] = {
+    Status.PASS: "the error of every sample is within its bound",
+    Status.FAIL: "an error exceeds its bound or is no number, or the solver did not finish",
+    Status.UNDECIDED: "the exact solution is not known sharply enough to judge by",
+    Status.VACUOUS: "roundoff alone may be as large as the motion: no answer could fail",
+    Status.REFUSED: "the numbers of this rung cannot hold the scene",
+    Status.UNAVAILABLE: "this machine does not have the rung",
+}
+_CONTENTS: Final = (
     (
         "[tables/accuracy.md](tables/accuracy.md)",
-        "the error of each scene on each rung, and what was attainable",
+        "`gates.csv`",
+        "the error of what each scene tracks, beside that of perfect rounding",
     ),
-    ("[tables/conserved.md](tables/conserved.md)", "the drift of energy, momenta and the like"),
-    ("`tables/gates.md`", "every verdict, its bound and the reason of the bound (not committed)"),
-    ("[data/verdicts.json](data/verdicts.json)", "the same for programs, to the last bit"),
-    ("[data/timings.json](data/timings.json)", "seconds and machine, which differ from run to run"),
-    ("`data/records`", "the equations and every sample's error of each run (not committed)"),
+    ("[tables/conserved.md](tables/conserved.md)", "`gates.csv`", "the drift of what is conserved"),
+    ("`tables/gates.md`", "`gates.csv`", "every verdict, its bound and the reason of the bound"),
+    ("[data/verdicts.json](data/verdicts.json)", NOTHING, "the same for programs, to the last bit"),
+)
+_REMAKE: Final = (
+    "`make verify` runs the standard set and writes a copy of this folder to `reports/local`; `make "
+    "reports` rewrites the committed one. `make check-reports` runs a part of it anew, and fails if a "
+    "number has left its *rounding class*: other processors round in another order, which changes the "
+    "digits of an error, but neither its verdict nor its size.",
+    "A clone lacks what is large and made of the other files: gates, sheets, records with every sample, "
+    "portraits of the scenes, the JSON of `reference`, pictures as PDF, the paper. `taylor-verify publish "
+    "--missing` makes the data in minutes, `make paper` the paper and its pictures, `make release-data` "
+    "one archive of all.",
 )
 
 
-def front(verdicts: Sequence[Verdict], others: Iterable[Page]) -> str:
-    """Return the front page of a report, with links to all other pages."""
+def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
+    """Return the index of a report folder; ``others`` are further pages."""
     judged_runs = runs(verdicts)
-    contents = [*_CONTENTS, *((page.link(), page.what) for page in others)]
+    besides = [
+        [
+            entry.link,
+            code(Path(entry.sheet).name) if entry.has_sheet else NOTHING,
+            entry.what,
+        ]
+        for entry in others
+    ]
     return whole(
         "How accurate it is",
         _WHAT,
-        "## In short",
         _in_short(judged_runs, verdicts),
         counts(verdicts),
         table(BY_RUNG, by_rung(judged_runs)),
-        "## How to read it",
+        "## The pages",
+        table(["page", "every digit", "what it has"], [*_CONTENTS, *besides]),
+        "## How to read a cell",
         bullets(_READING),
+        table(
+            ["verdict", "meaning"], [[judged(status), text] for status, text in _MEANINGS.items()]
+        ),
         "## The error of every scene",
         "The largest error of the main quantity, relative to its size: the angular velocity (`euler`) "
         "or the impulse (`kirchhoff`). A word is a verdict other than pass of any quantity of the "
         "run.",
         _by_scene(judged_runs),
-        "## What else is here",
-        table(["file", "what it has"], contents),
         "## To remake this",
-        "`make verify` runs the standard set and writes a copy of this folder to "
-        "`reports/local/`; `make reports` rewrites the committed one. `make check-reports` runs "
-        "part of it anew and fails if a number has left its *rounding class*: processors fuse "
-        "and order operations in their own ways, so the roundings differ, and with them the "
-        "digits of an error, but neither its verdict nor its size. "
-        "`verify/taylor_verify/batch/differences.py` says what that means in numbers, and why.",
-        "Files that are *not committed* are large, and made from the other files: records, portraits "
-        "of the scenes, `gates`, pictures as PDF, the paper, and the JSON of `reference`. "
-        "`taylor-verify publish --missing` makes the data of these in minutes, `make paper` the paper "
-        "and the pictures, and `make release-data` packs all into one archive.",
+        *_REMAKE,
         made_with(versions(verdicts)),
     )
 

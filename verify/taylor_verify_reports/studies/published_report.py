@@ -1,4 +1,4 @@
-"""Folder of what is published: the pages of every study, and the index of them all."""
+"""Folder of what is published: the pages of every study, and their index."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _CAUTION = f"**These numbers were edited**: no run has written `{store.VERDICTS}
 
 
 def publish(folder: Path | str) -> list[Path]:
-    """Make ``folder``/tables and its front page from ``folder``/data; return the files written.
+    """Make ``folder``/tables and the index from ``folder``/data; return the files written.
 
     Tables that are no longer made are removed. Files that this program did not make stay, even a README.md.
     Raises OSError for files that cannot be read or written, and ValueError for files that hold something
@@ -47,7 +47,7 @@ def publish(folder: Path | str) -> list[Path]:
 
 
 def publish_index(folder: Path | str) -> list[Path]:
-    """Make the front page, the index of the tables and the quoted blocks of other pages again.
+    """Make the index and the quoted blocks of other pages again.
 
     Returns the files written. Raises the errors of `publish`.
     """

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records.json_text import plain
 from taylor_verify.records.quantities import INITIAL, STATES, is_conserved
-from taylor_verify.records.status import Status
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.csv_sheet import sheet as csv_sheet
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import traced, whole
-from taylor_verify_reports.studies.controls.document import CONTROLS, ControlsStudy, Sight
 from taylor_verify_reports.studies.controls.proof import (
     MAIN,
     constant_shift,
@@ -23,6 +20,7 @@ from taylor_verify_reports.studies.controls.proof import (
     times_bound,
     title,
 )
+from taylor_verify_reports.studies.controls.sight import CONTROLS, ControlsStudy, Sight
 from taylor_verify_reports.studies.study import Measured, Progress, Study
 
 # Marks around the short table in a page that is otherwise written by hand.
@@ -76,14 +74,10 @@ def page(study: ControlsStudy) -> str:
         "## How to read the tables",
         bullets(_HOW),
         *(_section(sights, quantity, heading) for quantity, heading in _MODELS.items()),
-        "## What each gate sees and misses",
-        _by_gate(sights),
         "## The defects, and why",
         _in_words(sights),
-        "## The sound twins",
-        "Each defect is compared with a sound solver of the same step that differs from it by the "
-        "defect alone, so that no failure comes from a step that is too long.",
-        _twins(sights),
+        "Each defect is compared with a *sound twin*, a solver of the same step that differs from it by "
+        "the defect alone, so that no failure comes from a step that is too long.",
         "## To remake this",
         f"`taylor-verify publish controls` runs every defect and its twin, and writes "
         f"[controls.json](../{CONTROLS.name}); this page, its sheet `controls.csv` and the short "
@@ -140,21 +134,6 @@ def _blindest_first(sights: Iterable[Sight]) -> list[Sight]:
     return sorted(sights, key=key)
 
 
-def _by_gate(sights: Sequence[Sight]) -> str:
-    """Return a table of the gates: how many defects each sees, and which it misses."""
-    finished = [sight for sight in sights if sight.is_finished]
-    rows = []
-    for heading, name in ((heading, name) for heading, names in _COLUMNS for name in names):
-        asked = [sight for sight in finished if name in sight.quantities]
-        missed = [title(sight) for sight in asked if not sight.is_seen_by(name)]
-        if asked:
-            count = f"{len(asked) - len(missed)} of {len(asked)}"
-            rows.append([f"{heading} ({code(name)})", count, "; ".join(missed) or "none"])
-    stopped = f"{len(sights) - len(finished)} of {len(sights)}"
-    rows.append(["outcome", stopped, "every defect that claims success"])
-    return table(["gate", "sees:", "misses"], rows)
-
-
 def _in_words(sights: Sequence[Sight]) -> str:
     rows = [
         [
@@ -166,20 +145,6 @@ def _in_words(sights: Sequence[Sight]) -> str:
         for sight in sights
     ]
     return table(["defect", "scene", "what is wrong", "why it shows so"], rows)
-
-
-def _twins(sights: Sequence[Sight]) -> str:
-    """Return a table of the twins, each once, with its largest error over the bound."""
-    rows = {}
-    for sight in sights:
-        verdicts = sight.sound.values()
-        passed = sum(verdict.verdict is Status.PASS for verdict in verdicts)
-        largest = max((v.ratio for v in verdicts if v.ratio is not None), default=math.inf)
-        twin, scene = code(sight.defect.sound_solver), code(sight.defect.scene)
-        count = f"{passed} of {len(verdicts)}"
-        rows[twin, scene] = [twin, scene, count, figure(largest / sight.factor)]
-    columns = ["sound solver", "scene", "passes:", "largest error over bound:"]
-    return table(columns, rows.values())
 
 
 # The short table.
@@ -273,7 +238,7 @@ def _rows_of(sight: Sight) -> Iterator[dict[str, Any]]:
 
 def _measure(folder: Path, progress: Progress) -> Measured:
     from taylor_verify_reports.controls.defects import DEFECTS
-    from taylor_verify_reports.studies.controls.measure import sights, study
+    from taylor_verify_reports.studies.controls.broken_runs import sights, study
 
     measured = sights(DEFECTS, progress.counting(len(DEFECTS)))
     return Measured(CONTROLS.write(folder, study(measured)))

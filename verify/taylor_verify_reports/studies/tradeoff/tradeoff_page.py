@@ -18,19 +18,19 @@ from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies import figures
 from taylor_verify_reports.studies.study import Measured, Option, Progress, Study
-from taylor_verify_reports.studies.tradeoff.document import (
+from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
+from taylor_verify_reports.studies.tradeoff.timing_method import (
+    how_it_was_timed,
+    remake,
+    what_is_timed,
+)
+from taylor_verify_reports.studies.tradeoff.trades import (
     TimedPoint,
     Trade,
     Trades,
     cheapest,
     load,
     write,
-)
-from taylor_verify_reports.studies.tradeoff.peers import DIGITS, TAYLOR, peer_sections
-from taylor_verify_reports.studies.tradeoff.timing_method import (
-    how_it_was_timed,
-    remake,
-    what_is_timed,
 )
 
 _NOT_REACHED: Final = "not reached"

@@ -1,1 +1,0 @@
-"""The proven width of an enclosure beside its true error, on two motions."""
