@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM at the command line: the first is heard, and disturbs nothing that it ends."""
+"""Ctrl-C and SIGTERM at the command line: the first is heard, and no second disturbs what it ends."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of
+from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of, wrong_calls
 from taylor_verify.cli.folders import alone_in, writable
 from taylor_verify.cli.progress import advancing, working
 from taylor_verify.cli.streams import say
@@ -272,7 +272,9 @@ def _rendered(folder: Path) -> Answer:
 
 
 def _site(folder: Path, target: Path) -> Answer:
-    with _wrong_calls(folder, " @ --site"):
+    from taylor_verify.batch.lock import Occupied
+
+    with wrong_calls(" (--site)", Occupied), _wrong_calls(folder, " @ --site"):
         from taylor_verify_reports.studies.site.builder import build
 
         made = _files_written(build(folder, target))

@@ -6,15 +6,14 @@ import os
 import re
 import warnings
 from importlib.util import find_spec
-from io import StringIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
 from taylor_verify.batch.pool import available_cores
 from taylor_verify.records import schema
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify_reports.studies.site.pages import staged
+from taylor_verify_reports.studies.site.unfinished import Work, unfinished
 
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"
@@ -61,14 +60,13 @@ def contents(folder: Path) -> dict[str, str | bytes]:
         if find_spec(module) is None:
             package = module.replace("_", "-")
             raise ImportError(f"expected {package}, got no such package", name=package)
-    stage = staged(folder)
-    with TemporaryDirectory(prefix="taylor-verify-site-") as work:
-        source, made = Path(work, "source"), Path(work, "made")
-        replace_files(source, stage.files)
-        _run_sphinx(source, made, stage.docs or Path(__file__).parent)
-        files = [file for file in sorted(made.rglob("*")) if file.is_file()]
+    with unfinished(folder) as work:
+        stage = staged(folder, work.drawings)
+        source = work.source(stage.files)
+        _run_sphinx(source, work, stage.docs or Path(__file__).parent)
+        files = [file for file in sorted(work.made.rglob("*")) if file.is_file()]
         site = {
-            file.relative_to(made).as_posix(): _content(file)
+            file.relative_to(work.made).as_posix(): _content(file)
             for file in files
             if not file.name.endswith(_UNNEEDED)
         }
@@ -76,27 +74,34 @@ def contents(folder: Path) -> dict[str, str | bytes]:
     return {**site, **pages, SCHEMA: schema.text()}
 
 
-def _run_sphinx(source: Path, made: Path, settings: Path) -> None:
+def _run_sphinx(source: Path, work: Work, settings: Path) -> None:
     """Build all pages. Raises a ValueError with Sphinx's warnings, because each is a fault of a page."""
     from sphinx.application import Sphinx
     from sphinx.util.docutils import docutils_namespace, patch_docutils
 
-    messages = StringIO()
-    with warnings.catch_warnings(), patch_docutils(settings), docutils_namespace():
+    with (
+        warnings.catch_warnings(),
+        patch_docutils(settings),
+        docutils_namespace(),
+        work.warnings.open("a", buffering=1, encoding="utf-8") as messages,
+    ):
         # Python's own warnings, about calls between Sphinx and its extensions, are no faults of pages.
         warnings.simplefilter("ignore")
-        Sphinx(
+        app = Sphinx(
             srcdir=source,
             confdir=settings,
-            outdir=made,
+            outdir=work.made,
             doctreedir=source.parent / "doctrees",
             buildername="html",
             confoverrides={"include_patterns": _PAGES},
             status=None,
             warning=messages,
             parallel=available_cores(),
-        ).build(force_all=True)
-    if faults := messages.getvalue().replace(f"{source.resolve()}{os.sep}", ""):
+        )
+        # Without the index of the search, which is written last, it would be one of the other pages.
+        app.build(force_all=not (work.made / "searchindex.js").exists())
+    warned = work.warnings.read_text(encoding="utf-8")
+    if faults := warned.replace(f"{source.resolve()}{os.sep}", ""):
         lines = dict.fromkeys(re.sub(r"\x1b\[[\d;]*m", "", faults).strip().splitlines())
         raise ValueError(f"expected pages without a fault, got {'; '.join(lines)}")
 

@@ -30,6 +30,7 @@ from taylor_verify_reports.studies.site.stage import (
     docs_beside,
     smaller,
 )
+from taylor_verify_reports.studies.site.unfinished import Drawings
 from taylor_verify_reports.studies.source import Document, Report
 
 _RESULTS: Final = f"{DOCS}/results.md"
@@ -43,9 +44,10 @@ _SCENES: Final = (
 )
 
 
-def staged(folder: Path) -> Stage:
+def staged(folder: Path, stored: Drawings) -> Stage:
     """Return a stage with every page of the site and the files that pages link to.
 
+    Drawings that are ``stored`` are not made again.
     Raises OSError for files that cannot be read, and ValueError for files that hold something else.
     """
     report, stage = Report(folder), Stage(folder, docs_beside(folder))
@@ -53,7 +55,7 @@ def staged(folder: Path) -> Stage:
         scene: _pictures_of(report.portrait(scene), report.records(scene))
         for scene in report.scenes
     }
-    drawings = _drawn([picture for drawn in pictures.values() for picture in drawn])
+    drawings = _drawn([picture for drawn in pictures.values() for picture in drawn], stored)
     stage.files |= {f"{SCENES}/{name}": svg for name, svg in drawings.items()}
     motions = dict(_motions(report))
     stage.motions |= {f"{REPORTS}/{motion_place(scene)}": text for scene, text in motions.items()}
@@ -85,11 +87,16 @@ def _pictures_of(portrait: Document | None, records: Mapping[str, Document]) -> 
     return []
 
 
-def _drawn(pictures: Sequence[Picture]) -> dict[str, str]:
+def _drawn(pictures: Sequence[Picture], stored: Drawings) -> dict[str, str]:
     """Return the SVG of each picture by the name of its file; many are drawn on all cores."""
-    with LocalPool(available_cores()) if len(pictures) >= _MANY else nullcontext() as pool:
-        drawn = map(_svg, pictures) if pool is None else pool.map(_svg, pictures)
-        return {f"{picture.stem}.svg": svg for picture, svg in zip(pictures, drawn, strict=True)}
+    drawn = {picture.stem: stored.find(picture) for picture in pictures}
+    lacking = [picture for picture in pictures if drawn[picture.stem] is None]
+    with LocalPool(available_cores()) if len(lacking) >= _MANY else nullcontext() as pool:
+        made = map(_svg, lacking) if pool is None else pool.map(_svg, lacking)
+        for picture, svg in zip(lacking, made, strict=True):
+            stored.keep(picture, svg)
+            drawn[picture.stem] = svg
+    return {f"{stem}.svg": svg for stem, svg in drawn.items() if svg is not None}
 
 
 def _svg(picture: Picture) -> str:
