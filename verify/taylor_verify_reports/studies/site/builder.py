@@ -13,7 +13,7 @@ from taylor_verify.batch.pool import available_cores
 from taylor_verify.records import schema
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify_reports.studies.site.pages import staged
-from taylor_verify_reports.studies.site.unfinished import Work, unfinished
+from taylor_verify_reports.studies.site.site_work import Work, unfinished
 
 MADE_BY: Final = "<!-- made by taylor-verify publish --site; do not edit -->"
 FRONT: Final = "index.html"

@@ -21,6 +21,7 @@ from taylor_verify_reports.studies.site.scene_page import (
     motion_place,
     scene_page,
 )
+from taylor_verify_reports.studies.site.site_work import Drawings
 from taylor_verify_reports.studies.site.stage import (
     DOCS,
     FRONT,
@@ -30,7 +31,6 @@ from taylor_verify_reports.studies.site.stage import (
     docs_beside,
     smaller,
 )
-from taylor_verify_reports.studies.site.unfinished import Drawings
 from taylor_verify_reports.studies.source import Document, Report
 
 _RESULTS: Final = f"{DOCS}/results.md"

@@ -17,8 +17,8 @@ from typing import Final
 from taylor_verify.batch.pickling import dumps
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.replacement import replace_files
-from taylor_verify_reports.studies import unfinished as folders
-from taylor_verify_reports.studies.unfinished import Parts
+from taylor_verify_reports.studies import finished_parts as folders
+from taylor_verify_reports.studies.finished_parts import Parts
 
 _STAMP: Final = "sources.sha256"
 
