@@ -1,8 +1,8 @@
 """Widths of `enclose` beside those of codac: `python -m benches.beside_codac`, with tests on the path.
 
 Each example goes from a point that doubles hold to t = 1. codac's tubes have steps of 1/500. The true error
-is that of the middle of a box; the truth has 40 digits. A second table
-has what other programs print.
+is that of the middle of a box; the truth has 40 digits. The second table has the examples that CAPD and
+TaylorModels.jl print.
 """
 
 from __future__ import annotations
