@@ -1,8 +1,8 @@
 """Widths of `enclose` beside those of codac: `python -m benches.beside_codac`, with tests on the path.
 
 Each example goes from a point that doubles hold to t = 1. codac's tubes have steps of 1/500. The true error
-is that of the middle of a box; the truth has 40 digits. A second table has our widths of what CAPD and
-TaylorModels.jl print of themselves.
+is that of the middle of a box; the truth has 40 digits. The second table has the examples that CAPD and
+TaylorModels.jl print.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ EXAMPLES: Final[dict[str, tuple[dict[str, float], Sequence[str]]]] = {
     "pendulum": ({"a": 2, "b": 0}, ("b", "-sin(a)")),
 }
 
-# The start, the rates, the first and the last time of each.
+# The start, the rates, the first and the last time of what CAPD and TaylorModels.jl print of themselves.
 PRINTED: Final[dict[str, tuple[dict[str, Any], dict[str, str], int, float]]] = {
     "CAPD, ITimeMapSolutionCurveExample": (
         {"x": 1, "v": 2}, {"x": "v", "v": "sin(t) - sin(x)"}, 4, 10,

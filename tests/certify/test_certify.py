@@ -221,7 +221,13 @@ def test_every_tracked_quantity_has_a_bound(name: str) -> None:
         ),
         ({**DOCUMENT, "quantities": {"omega": [[[1.0]]] * 32}}, {}, "3 components"),
         (PPoly(SPLINE.c * 180 / np.pi, NODES), {}, "in degrees per unit of time"),
+        (PPoly(np.where(SPLINE.c == SPLINE.c[0, 5, 1], np.nan, SPLINE.c), NODES), {}, "got nan"),
         (TABLE, {"interpolation": "quintic"}, "linear, cubic, hermite"),
+        (
+            {**TABLE, "w2": np.where(NODES == END, np.inf, VALUES[:, 1])},
+            {"interpolation": "linear"},
+            r"expected finite numbers, got .*inf.* @ t = 4$",
+        ),
         (
             {"breaks": [0, 4], "quantities": {"omega": [[[1e160], [1], [1]]]}},
             {},

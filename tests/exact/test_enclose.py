@@ -148,6 +148,13 @@ def test_a_motion_that_ends_says_how_far_it_came() -> None:
     assert abs(doubt.value.motion["y"][0] - 2) <= doubt.value.motion.errors["y"][0]
 
 
+@pytest.mark.parametrize("rate", ["1/(x - x)", "(x - x)^(-1)", "(x - x)/(x - x)", "x/(pi - pi)"])
+def test_a_divisor_that_is_nothing_throughout_is_a_reason(rate: str) -> None:
+    """A divisor that cancels to zero ends the motion at its start, whatever it divides."""
+    with pytest.raises(Unsettled, match=r"a divisor may be zero near t = 0"):
+        enclose({"x": rate}, {"x": 1}, [1], DIGITS)
+
+
 def test_all_faults_are_named_at_once() -> None:
     """Faults of names, texts and numbers come together, each with its place."""
     with pytest.raises(Refused) as refused:

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from flint import fmpq, fmpq_poly
 
-from taylor_verify.records.faults import Faults, Refused
+from taylor_verify.records.faults import Faults, Refused, refusal
 
 MOST_DEGREE: Final = 60
 _HUGE: Final = 1e100
@@ -59,7 +59,11 @@ class Piece:
 
 
 def rational(value: Fraction | float) -> fmpq:
-    return fmpq(*value.as_integer_ratio())
+    """Return an exact or a binary number. Raises Refused for one that is not finite."""
+    try:
+        return fmpq(*value.as_integer_ratio())
+    except (ValueError, OverflowError):
+        raise refusal("finite coefficients", value, "answer") from None
 
 
 def nearest(value: fmpq) -> float:

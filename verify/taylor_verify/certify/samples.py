@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import pairwise
+from math import isfinite
 from typing import Any, Final
 
 import numpy as np
@@ -38,6 +39,9 @@ def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) ->
         for k, column in enumerate(file.columns[group])
     }
     pairs = sorted(zip(file.times, *values.values(), strict=True))
+    for time, *row in pairs:
+        if not all(map(isfinite, row)):
+            raise refusal("finite numbers", brief(list(map(float, row))), f"t = {float(time):g}")
     times, names = [Fraction(row[0]) for row in pairs], list(values)
     rows = _with_steady_signs(names, [row[1:] for row in pairs])
     if len(times) < 2:

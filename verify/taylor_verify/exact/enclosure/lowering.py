@@ -19,7 +19,7 @@ from taylor_verify.exact.enclosure.jumps import Choice, Jump
 from taylor_verify.exact.enclosure.kinks import Absolute, Norm
 from taylor_verify.exact.enclosure.operations import Bilinear
 from taylor_verify.exact.enclosure.powers import Exponential, Logarithm, Power, Quotient, Root
-from taylor_verify.exact.enclosure.tape import Graph, Sum
+from taylor_verify.exact.enclosure.tape import Graph, Sum, vanishes
 from taylor_verify.numbers.irrational import PI
 from taylor_verify.scenes.loads.steps import JUMPS, Step, needed
 
@@ -86,6 +86,9 @@ class Lowering:
 
     def quotient(self, above: Sum, below: Sum) -> Sum:
         graph = self._graph
+        if not below.terms and vanishes(below.constant):
+            # No number: the step that comes to it says so.
+            return graph.node(Quotient(graph.whole(above), graph.whole(below)))
         if not below.terms:
             return above.times(1 / below.constant)
         number, divisor = graph.split(below)
