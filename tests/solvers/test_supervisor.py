@@ -146,16 +146,6 @@ def test_other_children_of_the_caller_are_left_alone(program: Path, hidden: Path
             own.kill()
 
 
-def test_a_program_that_kills_its_supervisor_is_ended_and_told(program: Path) -> None:
-    """It is no answer, and the outcome says what is then unknown."""
-    kills = f"import os\nopen({str(program) + '.pids'!r}, 'w').write(str(os.getpid()))\n"
-    trajectory = solve(program, f"{kills}import time; os.kill(os.getppid(), 9)\n{HANG}")
-    assert trajectory.outcome is Outcome.CRASHED
-    assert conversation._UNKNOWN in trajectory.detail
-    (pid,) = numbers(Path(f"{program}.pids"))
-    wait_until(lambda: not is_alive(pid))
-
-
 def supervised_by(folder: Path, changes: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Another system, as far as the supervisor can see."""
     file = folder / "supervisor.py"
@@ -164,6 +154,27 @@ def supervised_by(folder: Path, changes: str, monkeypatch: pytest.MonkeyPatch) -
     assert main in source
     file.write_text(source.replace(main, f"{changes}\n\n{main}"))
     monkeypatch.setattr(conversation, "_SUPERVISOR", file)
+
+
+SLOW_REPORT = """
+def _tell(link, line, tell=_tell):
+    select.select([], [], [], 0.3)
+    tell(link, line)
+"""
+
+
+@pytest.mark.parametrize("changes", ["", SLOW_REPORT], ids=["at once", "before it is told"])
+def test_a_program_that_kills_its_supervisor_is_ended_and_told(
+    program: Path, changes: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is no answer, and the outcome says what is then unknown, however late the supervisor reports."""
+    supervised_by(program.parent, changes, monkeypatch)
+    kills = f"import os\nopen({str(program) + '.pids'!r}, 'w').write(str(os.getpid()))\n"
+    trajectory = solve(program, f"{kills}import time; os.kill(os.getppid(), 9)\n{HANG}")
+    assert trajectory.outcome is Outcome.CRASHED
+    assert conversation._UNKNOWN in trajectory.detail
+    (pid,) = numbers(Path(f"{program}.pids"))
+    wait_until(lambda: not is_alive(pid))
 
 
 def test_a_system_that_cannot_says_so(

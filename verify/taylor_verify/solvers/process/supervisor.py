@@ -2,8 +2,8 @@
 
 The program has the standard streams of this process. LINK is a socket to the caller, who is told
 
-    refused REASON              the program could not be started; nothing follows
-    started PID                 it runs, in a session of its own
+    started PID                 it begins, in a session of its own
+    refused REASON              the program could not be started
     ended STATUS SECONDS LEFT   its exit status or minus a signal, and the processes that are left
 
 The program is ended early when the caller closes the socket, and so when the caller dies. LEFT are
@@ -21,7 +21,6 @@ import select
 import signal
 import sys
 from contextlib import suppress
-from functools import partial
 from time import monotonic
 
 _PR_SET_CHILD_SUBREAPER = 36
@@ -29,6 +28,8 @@ _PR_SET_CHILD_SUBREAPER = 36
 _PATIENCE = 5.0
 _GLANCE = 0.02
 _IGNORED = [getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n)]
+_CHANGED = ("SIGCHLD", "SIGPIPE", "SIGXFSZ", "SIGXFZ")
+_OF_PYTHON = [getattr(signal, n) for n in _CHANGED if hasattr(signal, n)]
 
 
 def main(link: int, command: list[str]) -> None:
@@ -39,12 +40,9 @@ def main(link: int, command: list[str]) -> None:
         signal.signal(number, signal.SIG_IGN)
     deaths = _deaths()
     began = monotonic()
-    try:
-        program = _start(command)
-    except OSError as error:
-        _tell(link, f"refused {error.strerror}")
-        return
-    _tell(link, f"started {program}")
+    program = os.fork()
+    if not program:
+        _become(command, link)
     _let_go_of_streams()
     status = _status(program, link, deaths)
     seconds = monotonic() - began
@@ -74,17 +72,22 @@ def _deaths() -> int:
     return reading
 
 
-def _start(command: list[str]) -> int:
-    """Start the program with the signals as a shell has them."""
-    signals = [*_IGNORED, signal.SIGCHLD, signal.SIGPIPE]
-    signals += [s for name in ("SIGXFSZ", "SIGXFZ") if (s := getattr(signal, name, None))]
-    spawn = partial(
-        os.posix_spawnp, command[0], command, os.environ, setsigdef=signals, setsigmask=()
-    )
+def _become(command: list[str], link: int) -> None:
+    """Become the program, in a new session, with the signals as a shell has them.
+
+    The caller is told before the program runs, so that it knows of a program that ends its supervisor.
+    """
     try:
-        return spawn(setsid=True)
-    except NotImplementedError:
-        return spawn(setpgroup=0)
+        os.setsid()
+        for number in (*_IGNORED, *_OF_PYTHON):
+            signal.signal(number, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        _tell(link, f"started {os.getpid()}")
+        os.execvp(command[0], command)
+    except OSError as error:
+        _tell(link, f"refused {error.strerror}")
+    finally:
+        os._exit(127)
 
 
 def _let_go_of_streams() -> None:
