@@ -77,6 +77,7 @@ def _print_problem(page: Page, content: Mapping[str, Any]) -> None:
     page.indented("chosen   ", *cost["because"])
     page.line(bold("cost"), f"   {_counted(cost)}")
     page.line(f"       general equations of this body: {_counted(cost['same'])}")
+    page.line(f"       with all that the model has: {_counted(cost['general'])}")
     if cost["steps"] is not None:
         order = cost["evaluations"] // cost["steps"] if cost["steps"] else 0
         page.line(

@@ -23,11 +23,12 @@ from taylor_verify.judge.floor.attainable import orbit_of_run
 from taylor_verify.judge.floor.carrying import Carrying, carrying
 from taylor_verify.judge.judgement import Judgement, judgement
 from taylor_verify.models.form import Form
-from taylor_verify.models.general import in_general_form
+from taylor_verify.models.general import in_general_form, whole_form
 from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -249,20 +250,21 @@ _COUNTED = ("states", "parameters", "sums", "products", "quotients")
 
 
 def _cost(scene: Scene, rung: str) -> dict[str, Any]:
-    """Return the cost of an evaluation, and why these equations were chosen.
+    """Return the cost of an evaluation, that of other equations, and why these were chosen.
 
-    ``same`` counts the general equations of this body for the quantities of this scene, without
-    coefficients that are zero.
+    ``general`` counts the general equations of all quantities that the model has. ``same`` counts the
+    general equations of this body for the quantities of this scene, without coefficients that are zero.
     """
     try:
         problem = pose(scene, rung_named(rung))
     except NotRepresentable:
         unknown = dict.fromkeys(_COUNTED)
-        return {**unknown, "same": unknown, "because": []}
+        return {**unknown, "general": unknown, "same": unknown, "because": []}
     return {
         **_counts(problem.form),
+        "general": _counts(whole_form(scene.body)),
         "same": _counts(in_general_form(problem).form),
-        "because": list(problem.because),
+        "because": [*problem.because, *_left_out(scene)],
     }
 
 
@@ -273,3 +275,12 @@ def _counts(form: Form) -> dict[str, Any]:
         "parameters": len(form.entering()),
         **{name: operations[name] for name in ("sums", "products", "quotients")},
     }
+
+
+def _left_out(scene: Scene) -> list[str]:
+    """Return sentences on the quantities and the loads that the scene lacks."""
+    possible = TRACKED[scene.model]
+    sentences = [f"no {name}: it is not tracked" for name in possible if name not in scene.track]
+    if scene.body.is_free:
+        sentences.append(" and ".join(f"no {load}" for load in scene.body.load_names()))
+    return sentences

@@ -11,9 +11,12 @@ from fractions import Fraction
 
 from taylor_verify.models.form import Equations, Form
 from taylor_verify.models.letters import numbers_of
+from taylor_verify.models.mechanics import components
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.written import Written
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.named_numbers import Shape
 
 _ATTITUDE = ("e0", "e1", "e2", "e3")
 _CENTRE = ("c1", "c2", "c3")
@@ -48,3 +51,17 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
         replaced=(),
         because=(),
     )
+
+
+def whole_form(body: Body) -> Form:
+    """Return the form with every coefficient and load of this kind of body, with attitude and centre."""
+    kind = mechanics(body)
+    zeros = {Shape.NUMBER: 0, Shape.VECTOR: (0,) * 3}
+    names = [
+        name
+        for letter in kind.body_letters
+        for name in components(letter, zeros.get(letter.shape, ((0,) * 3,) * 3))
+    ]
+    places = {"attitude": _ATTITUDE, "centre": _CENTRE}
+    frame = tuple(n for part in body.STATE.PARTS for n in places.get(part.name, ()))
+    return Form(kind.equations, kind.states + frame, tuple(names))
