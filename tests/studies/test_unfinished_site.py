@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from builders.processes import PATIENCE
-from builders.programs import is_alive
 from matplotlib.figure import Figure
 
-from taylor_verify.batch.lock import LOCK
 from taylor_verify.plotting.picture import Picture
 from taylor_verify_reports.studies import finished_parts as folders
 from taylor_verify_reports.studies.site import pages, site_work
@@ -84,40 +77,3 @@ def test_a_picture_is_drawn_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     made = pages._drawn(PICTURES, stored)
     assert made == {"one.svg": "<svg>one</svg>", "two.svg": "<svg>two</svg>"}
     assert drawn == ["one", "two", "two"]
-
-
-# Sphinx forks: its processes have the lock too, and the system gives it back when all have ended.
-MAKING = """
-import multiprocessing, sys, time
-from pathlib import Path
-from taylor_verify.cli.interrupts import heard_once
-from taylor_verify_reports.studies.site.site_work import unfinished
-
-with heard_once(to_the_end=True), unfinished(Path(sys.argv[1])):
-    child = multiprocessing.get_context("fork").Process(target=time.sleep, args=(600,))
-    child.start()
-    print(child.pid, flush=True)
-    try:
-        child.join()
-    finally:
-        child.terminate()
-        child.join()
-"""
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
-def test_sigterm_leaves_no_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A site that was ended in the middle can be made at once, and the processes of Sphinx are gone."""
-    monkeypatch.undo()
-    home = {**os.environ, "XDG_CACHE_HOME": str(tmp_path), "HOME": str(tmp_path)}
-    words = [sys.executable, "-c", MAKING, str(tmp_path)]
-    with subprocess.Popen(words, env=home, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as made:
-        assert made.stdout is not None
-        child = int(made.stdout.readline())
-        (lock,) = tmp_path.rglob(LOCK)
-        made.send_signal(signal.SIGTERM)
-        _, error = made.communicate(timeout=PATIENCE)
-    assert made.returncode != -signal.SIGTERM
-    assert b"KeyboardInterrupt" in error
-    assert not lock.exists()
-    assert not is_alive(child)
