@@ -32,7 +32,6 @@ TRAJECTORIES: Final = SceneDocuments(FOLDER, "taylor-verify publish --reference;
 EXAMPLES: Final = ("example.cpp", "example.rs")
 _TEMPLATES: Final = Path(__file__).with_name("templates")
 _SHEET: Final = re.compile(r"\[csv\]\(([^()/]+\.csv)\)")
-_ROUTES: Final = {"mpmath": "closed form", "taylor": "Taylor"}
 
 Document = Mapping[str, Any]
 """Row of a scene: ``columns`` (a list of decimal texts by name), and the other keys of its JSON."""
@@ -109,7 +108,7 @@ def _sheet(columns: Mapping[str, Sequence[str]]) -> str:
 
 
 def _readme(documents: Iterable[Document], examples: Mapping[str, str]) -> str:
-    columns = ["scene", "regime", "route", "columns", "rows:", "file"]
+    columns = ["scene", "regime", "columns", "rows:", "file"]
     text = (_TEMPLATES / "reference.md").read_text(encoding="utf-8")
     filled = text.replace("{{scenes}}", table(columns, [_row(document) for document in documents]))
     for name, program in examples.items():
@@ -124,7 +123,6 @@ def _row(document: Document) -> list[str]:
     return [
         code(document["scene"]),
         document["regime"],
-        _ROUTES.get(document["route"], document["route"]),
         " ".join(code(vector) for vector in vectors),
         str(len(columns["t"])),
         f"[csv]({sheet_of(document['scene'])})",
