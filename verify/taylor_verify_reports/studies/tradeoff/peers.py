@@ -8,6 +8,7 @@ from typing import Final
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify_reports.studies.tradeoff.trades import (
+    UNTIL,
     TimedPoint,
     Trade,
     Trades,
@@ -48,7 +49,12 @@ _HOW: Final = (
     "diffrax is compiled as a whole by XLA (`jit`).",
     "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
     "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later.",
-    "No time includes the set-up, mainly compiling; tradeoff-timings.json has it as `setup_seconds`.",
+)
+_SET_UP: Final = (
+    "The times above exclude the set-up: the processor's seconds before the first solve of a process, "
+    "mainly of compiling, the longest of all processes. taylor compiles once for each tolerance and "
+    "form. Later processes would read its code from disk, which was switched off here. The others "
+    "compile once for a body, in every process anew."
 )
 
 
@@ -56,7 +62,7 @@ def peer_sections(trades: Trades) -> list[str]:
     """Return the paragraphs and tables of the section; a sentence if no peer was measured."""
     if not any(_peers(trade) for trade in trades.trades):
         return [_NONE]
-    return [_WHAT, _times(trades), bullets(_HOW)]
+    return [_WHAT, _times(trades), bullets(_HOW), _SET_UP, _set_up(trades)]
 
 
 def _peers(trade: Trade) -> list[str]:
@@ -142,3 +148,33 @@ def _overlap(first: TimedPoint, other: TimedPoint) -> bool:
     """Return True if the intervals of two times overlap; False without intervals."""
     high, low = first.timing.high, other.timing.low
     return high is not None and low is not None and low <= high
+
+
+# The set-up.
+
+
+def _set_up(trades: Trades) -> str:
+    families = _families(trades)
+    rows = []
+    for scene in dict.fromkeys(_shipped(trade.scene) for trade in trades.trades):
+        seconds = [_longest(trades, scene, family) for family in families]
+        cells = [NOTHING if longest is None else f"{figure(longest)} s" for longest in seconds]
+        rows.append([code(scene), *cells])
+    return table(["scene", *(f"{_title(f)}:" for f in families)], rows)
+
+
+def _longest(trades: Trades, scene: str, family: str) -> float | None:
+    """Return the longest set-up of a family on a scene, which may be part of its short or long run."""
+    seconds = [
+        row.timing.setup_seconds
+        for trade in trades.trades
+        if _shipped(trade.scene) == _shipped(scene)
+        for row in _of_family(trade, family)
+        if row.timing.setup_seconds is not None
+    ]
+    return max(seconds, default=None)
+
+
+def _shipped(scene: str) -> str:
+    """Return the name of the shipped scene that one of this name follows beyond its end."""
+    return scene.partition(UNTIL)[0]
