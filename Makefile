@@ -10,7 +10,7 @@ SOLVING = .venv/.solving
 INSTALLED = .venv/.installed
 
 .PHONY: help verify verify-all test test-all docs site test-site dist bench reports paper
-.PHONY: release-data tradeoff engines satellite underwater causes check-reports lint clean
+.PHONY: release-data tradeoff engines satellite underwater causes check-reports lint types imports clean
 
 help:  ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-13s %s\n", $$1, $$2 }' Makefile
@@ -28,12 +28,14 @@ verify verify-all: $(SOLVING)
 		[ $$status -ne 130 ] || exit 130; \
 		$(BIN)/taylor-verify run extremes $(EXTREMES_ON) --out reports/local/extremes && exit $$status
 
-# What a file of tests shares is made once, in one process.
+# What a file of tests shares is made once, in one process; tests/conftest.py says which files come first.
+TESTS = $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
 test: lint  ## Check style and types, then run all but the slow tests
-	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not slow'
+	@$(TESTS) -m 'not slow'
 
 test-all: lint  ## The same with the slow tests
-	@$(BIN)/python -m pytest -n 2 --dist loadfile
+	@$(TESTS)
 
 docs: $(INSTALLED)  ## Build the pages of docs alone into docs/_build/html; a warning is an error
 	@$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
@@ -49,7 +51,7 @@ site: $(INSTALLED)  ## Make one site of docs and of all that is published, into 
 test-site: site  ## Look at those pages in a browser without a window (Debian: installs chromium)
 	@command -v chromium > /dev/null && command -v chromedriver > /dev/null || \
 		{ apt-get --quiet update && apt-get --quiet --yes install chromium chromium-driver; }
-	@$(BIN)/python -m pytest -n 2 --dist loadfile -m 'browser or slow' tests/site tests/studies/test_site.py
+	@$(TESTS) -m 'browser or slow' tests/site tests/studies/test_site.py
 
 # Five minutes of one core at most.
 bench: $(INSTALLED)  ## Take the costs in ratios: targets missed, changes since the last (KEEP=1 keeps them)
@@ -100,7 +102,11 @@ check-reports: $(SOLVING)  ## Run part of what is published anew: has a number l
 lint: $(INSTALLED)  ## Check style, types and who imports whom only
 	@$(BIN)/ruff check
 	@$(BIN)/ruff format --check
+	@$(MAKE) --silent --jobs 2 types imports
+
+types:
 	@$(BIN)/mypy
+imports:
 	@$(BIN)/lint-imports --no-cache --no-logo
 
 clean:  ## Remove the environment, the caches and the local reports

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from importlib.abc import MetaPathFinder
 from importlib.util import find_spec
 from typing import Final
@@ -44,8 +44,13 @@ if WITHOUT_HEYOKA:
     sys.meta_path.insert(0, Absent())
 
 
-def pytest_collection_modifyitems(items: Iterable[pytest.Item]) -> None:
-    """Skip what is marked to need heyoka where it is not installed."""
+# Files that take longest begin first: else one core waits at the end while the other is at such a file.
+LONGEST: Final = ("test_vectors.py", "test_drawn_loads.py", "test_exact_by_referee.py")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files, and skip what needs heyoka where it is not installed."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
     for item in items:
         if WITHOUT_HEYOKA and item.get_closest_marker("heyoka") is not None:
             item.add_marker(pytest.mark.skip(reason=REASON))

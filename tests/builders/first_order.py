@@ -10,7 +10,6 @@ import numpy as np
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 
@@ -42,11 +41,11 @@ def implicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) ->
 def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
     """Rows of t, omega in body axes and a unit quaternion; a row after every so many steps."""
     given = load(scene)
-    assert isinstance(given.body, RigidBody | Gyrostat)
+    assert isinstance(given.body, RigidBody)
     assert isinstance(given.initial, Spin)
     inertia = np.array(given.body.inertia, dtype=float)
     moment = np.array(given.body.moment, dtype=float)
-    rotor = np.array(given.body.parts().get("rotor", np.zeros(3)), dtype=float)
+    rotor = np.array(given.body.rotor, dtype=float)
     w = np.array(given.initial.omega, dtype=float)
     q = np.array(given.initial.attitude, dtype=float)
     q /= np.linalg.norm(q)

@@ -10,7 +10,7 @@ from builders.scenes import TENSOR, vector
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
-from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 
@@ -91,7 +91,7 @@ MOTIONS = {
 def scene_of(free: FreeGyrostat, *instants: Fraction | int) -> Scene:
     """The scene of a motion, its attitude tracked."""
     clock = Clock(Fraction(0), tuple(map(Fraction, instants or (1,))))
-    body, start = Gyrostat(free.inertia, free.rotor), Spin(free.omega, TILTED)
+    body, start = RigidBody(free.inertia, rotor=free.rotor), Spin(free.omega, TILTED)
     return Scene("wheels", "wheels", "euler", frozenset({"attitude"}), body, start, clock)
 
 

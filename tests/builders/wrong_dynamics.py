@@ -21,7 +21,6 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
@@ -43,13 +42,12 @@ class Numbers:
         self.q = q / np.linalg.norm(q)
         self.rotor = np.zeros(3)
         self.damping = float(body.damping)
-        if isinstance(body, RigidBody | Gyrostat):
+        if isinstance(body, RigidBody):
             assert isinstance(start, Spin)
             self.tensor = np.array(body.inertia, dtype=float)
             self.load = np.array(body.moment, dtype=float)
             self.state = np.array(start.omega, dtype=float)
-            if isinstance(body, Gyrostat):
-                self.rotor = np.array(body.rotor, dtype=float)
+            self.rotor = np.array(body.rotor, dtype=float)
         else:
             assert isinstance(body, ImmersedBody)
             assert isinstance(start, Impulse)

@@ -13,8 +13,7 @@ from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers import tensors
-from taylor_verify.scenes.bodies import Body, ImmersedBody
-from taylor_verify.scenes.gyrostat import Gyrostat
+from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Spin, State
 from taylor_verify.scenes.scene import Scene
 
@@ -77,7 +76,7 @@ def test_a_body_whose_wheels_cancel_its_momentum_has_one_steady_spin() -> None:
     omega = vector("1/2", "1/4", "1/3")
     inertia = tensors.diagonal(vector(1, 2, 3))
     rotor = tensors.scaled(Fraction(-1), tensors.apply(inertia, omega))
-    orbit = elements(scene_of("euler", Gyrostat(inertia, rotor), Spin(omega)), 20)
+    orbit = elements(scene_of("euler", RigidBody(inertia, rotor=rotor), Spin(omega)), 20)
     assert orbit.regime == "steady"
     assert orbit["H2"].value == 0
     assert not [name for name in orbit if name.startswith("spin_")]

@@ -26,7 +26,7 @@ from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
-from taylor_verify.exact.gyrostat.closed import enclosed
+from taylor_verify.exact.euler.closed import enclosed
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.taylor import TaylorSolution

@@ -13,13 +13,12 @@ from taylor_verify.exact.quadratic_forms import Equations, exact
 from taylor_verify.exact.registry import KINDS, function_at, kind_of
 from taylor_verify.numbers.tensors import apply, dot
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 
 SAMPLES = {
     "euler": (RigidBody(TENSOR, MOMENT), SPIN),
-    "wheels": (Gyrostat(TENSOR, OMEGA, MOMENT), SPIN),
+    "wheels": (RigidBody(TENSOR, MOMENT, OMEGA), SPIN),
     "kirchhoff": (LOADED, IMPULSE),
 }
 

@@ -56,7 +56,7 @@ def _last_name(node: ast.AST) -> str:
 # What several rooms answer: the kinds of body, both sides of the wall between truth and solvers, a thing
 # and its door, its document or its picture.
 SHARED: Final = """
-    __init__ acting certificate closed damping elements ellipsoid events field functions gyrostat immersed
+    __init__ acting certificate closed damping elements ellipsoid events field functions immersed
     invariants jacobi judgement kinks loaded loads manufactured missing_load native orbit parts provenance
     question regime registry rigid scene states sweep units
 """

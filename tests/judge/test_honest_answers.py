@@ -15,7 +15,6 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.scene import Scene
 
@@ -78,7 +77,7 @@ def rigid(draw: Draw) -> tuple[Body, State]:
         omega, moment, wheels = (tensors.scaled(v[0], axis) for v in (omega, moment, wheels))
     damping, start = draw.damping(), Spin(omega, UNIT)
     if any(wheels):
-        return Gyrostat(inertia, wheels, moment, damping=damping), start
+        return RigidBody(inertia, moment, wheels, damping), start
     return RigidBody(inertia, moment, damping=damping), start
 
 

@@ -55,8 +55,7 @@ def rates(problem: Problem, state: dict[str, Fraction]) -> dict[str, Fraction]:
 @pytest.mark.parametrize("kind", [*kinds(Body), *kinds(State)], ids=lambda kind: kind.__name__)
 def test_every_number_is_a_part(kind: type[Parted]) -> None:
     """No field of a body or state holds numbers without being listed among the parts."""
-    # Damping is a part of those bodies alone that have some.
-    others = {"ellipsoid", "added", "damping", "loads"}
+    others = {"ellipsoid", "added", "loads"}
     assert {part.key for part in kind.PARTS} == {field.name for field in fields(kind)} - others
 
 

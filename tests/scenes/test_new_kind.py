@@ -14,7 +14,6 @@ from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, with_causes
 from taylor_verify.judge.causes.material import are_known
 from taylor_verify.numbers.tensors import Vector, diagonal
 from taylor_verify.scenes.bodies import Body, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.named_numbers import NUMBER, Part, Shape
 from taylor_verify.solvers.process import protocol
 from taylor_verify.solvers.registry import solver_named
@@ -35,7 +34,7 @@ BODIES = {
     "rigid": (RigidBody(INERTIA), True, True),
     "damped": (RigidBody(INERTIA, damping=Fraction(1)), False, True),
     "under a moment": (RigidBody(INERTIA, (Fraction(1),) * 3), False, True),
-    "with wheels": (Gyrostat(INERTIA, (Fraction(1),) * 3), False, True),
+    "with wheels": (RigidBody(INERTIA, rotor=(Fraction(1),) * 3), False, True),
     "of a new kind": (SprungBody(INERTIA), False, False),
 }
 

@@ -24,14 +24,20 @@ SCENES = ("euler/rest", "euler/generic")
 Captured = pytest.CaptureFixture[str]
 
 
-@pytest.fixture
-def report(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A whole report of two scenes on two rungs."""
-    place = tmp_path / "report"
+    place = tmp_path_factory.mktemp("whole") / "report"
     reports.write_runs(place, [(scene, rung) for scene in SCENES for rung in ("f32", "f64")])
     reports.write_portraits(place, SCENES)
     reports.report.publish(place)
     return place
+
+
+@pytest.fixture
+def report(whole: Path, tmp_path: Path) -> Path:
+    """A copy of that report."""
+    return Path(shutil.copytree(whole, tmp_path / "report"))
 
 
 def missing(place: Path) -> bulk.Missing:

@@ -7,16 +7,13 @@ from importlib import import_module
 from typing import Any, Final
 
 from taylor_verify.exact.euler.rigid import Rigid
-from taylor_verify.exact.gyrostat.wheeled import Wheeled
 from taylor_verify.exact.kind import Kind
 from taylor_verify.exact.kirchhoff.immersed import Immersed
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 
 KINDS: Final[Mapping[type[Body], Kind[Any, Any]]] = {
     RigidBody: Rigid(),
     ImmersedBody: Immersed(),
-    Gyrostat: Wheeled(),
 }
 
 

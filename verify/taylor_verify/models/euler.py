@@ -2,11 +2,13 @@
 
 H  angular momentum, body axes        K  inverse inertia tensor, omega = K H
 M  moment, body axes                  I  inertia tensor, H = I omega
+r  momentum of wheels, which H is without
 D  differences of K's diagonal, D1 = K33 - K22, D2 = K11 - K33, D3 = K22 - K11; their sum is 0
 D11, D22  K11 - K33 and K22 - K33
 
-The integrated form is H' = H x K H + M. Whatever symmetric K is stored, it is a rigid body:
-|H|^2 is constant identically, which no pair of separately rounded I and I^-1 gives.
+The integrated form is H' = (H + r) x K H + M. Whatever symmetric K is stored, it is a rigid body:
+|H + r|^2 is constant identically, which no pair of separately rounded I and I^-1 gives. H is without r:
+so omega = K H is not a difference of large numbers, however strong the wheels are.
 """
 
 from __future__ import annotations
@@ -71,14 +73,15 @@ def turning(H: Terms, deviation: Sequence[Terms]) -> list[Any]:
 
 
 def euler_equations(n: Named) -> dict[str, Any]:
-    """Return H' = H x K H + M, and the rate of the attitude where it is tracked."""
+    """Return H' = (H + r) x K H + M, and the rate of the attitude where it is tracked."""
     return _with_frame(n, momentum_rate(n.vector("H"), n.symmetric("K"), n.vector("M")))
 
 
 def _with_frame(n: Named, H_rate: list[Any]) -> dict[str, Any]:
-    """Return the rates of H, and that of the attitude where it is tracked."""
+    """Return the rates of H, with the r x omega of wheels, and that of the attitude where it is tracked."""
     omega = angular_velocity(n.vector("H"), n.symmetric("K"))
-    return labelled("H", H_rate) | frame_rates(n, omega, U=None)
+    rate = add(H_rate, cross(n.vector("r"), omega))
+    return labelled("H", rate) | frame_rates(n, omega, U=None)
 
 
 @dataclass(frozen=True)

@@ -54,12 +54,14 @@ def in_general_form(problem: Problem, zeros: bool = False) -> Problem:
 
 
 def whole_form(body: Body) -> Form:
-    """Return the form with every coefficient and load of this kind of body, with attitude and centre."""
+    """Return the form with every coefficient and load of the body, zeros too, with attitude and centre."""
     kind = mechanics(body)
+    values = kind.values(body)
     zeros = {Shape.NUMBER: 0, Shape.VECTOR: (0,) * 3}
     names = [
         name
         for letter in kind.body_letters
+        if not letter.is_optional or any(values[letter.name])
         for name in components(letter, zeros.get(letter.shape, ((0,) * 3,) * 3))
     ]
     places = {"attitude": _ATTITUDE, "centre": _CENTRE}

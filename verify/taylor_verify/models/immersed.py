@@ -37,6 +37,7 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
     body_letters = tuple(
         Part(_LETTERS[part.name], part.shape, part.dimension, part.is_load)
         for part in ImmersedBody.PARTS
+        if part.name in _LETTERS
     )
     momenta = (Part("x", Shape.VECTOR, IMPULSE), Part("y", Shape.VECTOR, MOMENTUM))
 

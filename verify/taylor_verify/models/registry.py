@@ -7,19 +7,16 @@ from typing import Any, Final
 
 from taylor_verify.models.damping import Damped
 from taylor_verify.models.driven import driven
-from taylor_verify.models.gyrostat import Wheeled
 from taylor_verify.models.immersed import Immersed
 from taylor_verify.models.mechanics import Mechanics
 from taylor_verify.models.rigid import Rigid
 from taylor_verify.models.units import Units
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.scene import Scene
 
 _MECHANICS: Final[Mapping[type[Body], Mechanics[Any, Any]]] = {
     RigidBody: Rigid(),
     ImmersedBody: Immersed(),
-    Gyrostat: Wheeled(),
 }
 
 

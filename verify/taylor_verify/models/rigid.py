@@ -1,6 +1,7 @@
-"""A rigid body in the numbers of Euler's equations: K, M and H = I omega.
+"""A rigid body in the numbers of Euler's equations: K, M, the momentum r of wheels, and H = I omega.
 
-K and H are formed exactly and rounded once each. The rounded body is K^-1, and omega = K H, exactly.
+K and H are formed exactly and rounded once each. The rounded body is K^-1 with wheels r, and omega = K H,
+exactly.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class Rigid(Mechanics[RigidBody, Spin]):
     body_letters = (
         Part("K", Shape.SYMMETRIC, Dimension(-1, -2, 0)),
         Part("M", Shape.VECTOR, MOMENT, is_load=True),
+        Part("r", Shape.VECTOR, MOMENTUM, is_optional=True),
     )
     momenta = (Part("H", Shape.VECTOR, MOMENTUM),)
 
@@ -41,12 +43,12 @@ class Rigid(Mechanics[RigidBody, Spin]):
         return euler_equations
 
     def values(self, body: RigidBody) -> Mapping[str, Value]:
-        return {"K": body.inverse_inertia, "M": body.moment}
+        return {"K": body.inverse_inertia, "M": body.moment, "r": body.rotor}
 
     def body(self, values: Mapping[str, Value]) -> RigidBody:
         if not tensors.is_positive_definite(values["K"]):
             raise ValueError("the inverse inertia tensor is not positive definite")
-        return RigidBody(tensors.inverse(values["K"]), values["M"])
+        return RigidBody(tensors.inverse(values["K"]), values["M"], values["r"])
 
     def change(self, body: RigidBody) -> Change:
         return Change(body.inertia, body.inverse_inertia)
@@ -55,11 +57,13 @@ class Rigid(Mechanics[RigidBody, Spin]):
         return chosen_equations(numbers, rung)
 
     def units(self, body: RigidBody, start: Spin, span: Fraction) -> Units:
+        """Return the units: H by its size or its growth by the moment, time by omega or by the wheels."""
         momentum = tensors.apply(body.inertia, start.omega)
         unit = size(momentum) or binary(size(body.moment) * span) or Fraction(1)
         rate = size(start.omega) or largest(body.inverse_inertia) * unit
         # If the moments differ by many orders of magnitude, H may turn much faster than the body.
         rate = max(rate, _nutation(body.inverse_inertia, momentum))
+        rate = max(rate, size(tensors.apply(body.inverse_inertia, body.rotor)))
         return Units(time=1 / binary(rate), momentum=unit)
 
     def derived(self, body: RigidBody, start: Spin) -> Mapping[str, Mapping[str, Value]]:

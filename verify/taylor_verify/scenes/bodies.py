@@ -16,6 +16,7 @@ from taylor_verify.scenes.motion import Impulse, Spin, State
 from taylor_verify.scenes.named_numbers import (
     FORCE,
     MOMENT,
+    MOMENTUM,
     RATE,
     Dimension,
     Part,
@@ -25,7 +26,7 @@ from taylor_verify.scenes.named_numbers import (
 )
 from taylor_verify.scenes.stand_in import stand_in
 
-DAMPING: Final = Part("damping", Shape.NUMBER, RATE)
+DAMPING: Final = Part("damping", Shape.NUMBER, RATE, is_optional=True)
 
 
 class Body(Parted):
@@ -35,8 +36,7 @@ class Body(Parted):
     its initial state, and ``ENERGY`` what ``energy_matrix`` is called in messages. A new kind of body is
     a class like those below; each room that has its physics has one table by these classes.
 
-    ``damping`` c, of either sign, subtracts c z from the rate of every momentum z. It is a part if it is
-    not zero.
+    ``damping`` c, of either sign, subtracts c z from the rate of every momentum z.
     """
 
     MODEL: ClassVar[str]
@@ -45,11 +45,6 @@ class Body(Parted):
 
     loads: Loads | None
     damping: Fraction
-
-    @property
-    def listed(self) -> tuple[Part, ...]:
-        """PARTS, and the damping of a body that has one."""
-        return (*self.PARTS, DAMPING) if self.damping else self.PARTS
 
     @property
     def undamped(self) -> Self:
@@ -84,7 +79,8 @@ class Body(Parted):
 
         Each adds terms of its own to the equations of motion.
         """
-        return frozenset(p.name for p in self.PARTS if not (p.is_energy or p.is_load))
+        own = (p.name for p in self.listed if not (p.is_energy or p.is_load))
+        return frozenset(own) - {DAMPING.name}
 
     @property
     def acting(self) -> tuple[str, ...]:
@@ -93,10 +89,10 @@ class Body(Parted):
         Parts of its own kind such as ``rotor``, ``damping``, ``loads`` for texts, and constant loads that
         are not zero.
         """
-        own = (part.name for part in self.PARTS if part.name in self.others)
-        changing = "damping" * bool(self.damping), "loads" * (self.loads is not None)
+        own = (part.name for part in self.listed if not (part.is_energy or part.is_load))
+        written = () if self.loads is None else ("loads",)
         loads = (part.name for part in self.PARTS if part.is_load and any(self.part(part)))
-        return tuple(filter(None, (*own, *changing, *loads)))
+        return *own, *written, *loads
 
     @property
     def is_plain(self) -> bool:
@@ -144,14 +140,16 @@ class Body(Parted):
 
 @dataclass(frozen=True)
 class RigidBody(Body):
-    """A rigid body about a fixed point or its centre of mass.
+    """A rigid body about a fixed point or its centre of mass: (I omega)' = (I omega + h) x omega + M.
 
     ``inertia`` is the symmetric positive definite tensor I (products of inertia enter as tensor
-    components, I_12 = -int xy dm); ``moment`` is constant in body axes.
+    components, I_12 = -int xy dm), with wheels locked; ``moment`` M is constant in body axes. ``rotor`` is
+    the constant momentum h of wheels, relative to the body; with one the body is called a gyrostat.
     """
 
     inertia: Matrix
     moment: Vector = ZERO_VECTOR
+    rotor: Vector = ZERO_VECTOR
     damping: Fraction = Fraction(0)
     loads: Loads | None = None
 
@@ -160,23 +158,30 @@ class RigidBody(Body):
     ENERGY = "the inertia tensor"
     PARTS = (
         Part("inertia", Shape.SYMMETRIC, Dimension(1, 2, 0), is_energy=True),
+        Part("rotor", Shape.VECTOR, MOMENTUM, is_optional=True),
         Part("moment", Shape.VECTOR, MOMENT, is_load=True),
+        DAMPING,
     )
 
     @property
+    def is_conservative(self) -> bool:
+        """True without loads, and without damping of a body with wheels: the wheels do work then."""
+        return self.is_free and not (self.damping and any(self.rotor))
+
+    @property
     def energy_matrix(self) -> Matrix:
-        """I: 2T = omega . I omega."""
+        """I: 2T = omega . I omega, without the energy of the wheels against the body."""
         return self.inertia
 
     @cached_property
     def inverse_inertia(self) -> Matrix:
-        """K = I^-1, so that omega = K H."""
+        """K = I^-1, so that omega = K (H - h)."""
         return tensors.inverse(self.inertia)
 
     @property
     def is_integrable(self) -> bool:
-        """True for a free body: Jacobi's motion."""
-        return self.is_free
+        """True for a free body without wheels: Jacobi's motion."""
+        return self.is_free and not any(self.rotor)
 
 
 @dataclass(frozen=True)
@@ -208,6 +213,7 @@ class ImmersedBody(Body):
         Part("angular", Shape.SYMMETRIC, Dimension(-1, -2, 0), is_energy=True),
         Part("force", Shape.VECTOR, FORCE, is_load=True),
         Part("couple", Shape.VECTOR, MOMENT, is_load=True),
+        DAMPING,
     )
 
     @property

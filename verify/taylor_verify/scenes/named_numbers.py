@@ -54,6 +54,7 @@ class Part:
 
     ``name`` is the word of documents and files, ``attribute`` the name in Python where that is another.
     A body with a load that is not zero is not free. The energy is made of the parts that are ``is_energy``.
+    An optional part of zero is none.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Part:
     is_load: bool = False
     attribute: str = ""
     is_energy: bool = False
+    is_optional: bool = False
 
     @property
     def key(self) -> str:
@@ -77,8 +79,8 @@ class Parted:
 
     @property
     def listed(self) -> tuple[Part, ...]:
-        """The parts of this object: PARTS, to which a subclass may add."""
-        return self.PARTS
+        """The parts that this object has."""
+        return tuple(p for p in self.PARTS if not p.is_optional or any(numbers(self.part(p))))
 
     def parts(self) -> dict[str, Value]:
         """Return the value of every part by its name."""
@@ -90,7 +92,7 @@ class Parted:
 
     def with_parts(self, values: Mapping[str, Value]) -> Self:
         """Return a copy with other values for the parts of these names."""
-        changes = {part.key: values[part.name] for part in self.listed if part.name in values}
+        changes = {part.key: values[part.name] for part in self.PARTS if part.name in values}
         return replace(self, **changes)
 
     def changed(self, change: Callable[[Part, Value], Value]) -> Self:

@@ -24,9 +24,8 @@ from taylor_verify.exact.conserved.derivation import (
 )
 from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, rational
 from taylor_verify.exact.conserved.potential import Factors, Potential, potentials
-from taylor_verify.exact.euler.rigid import Rotating
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.numbers.tensors import Vector
+from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
 from taylor_verify.scenes.scene import Scene
 
@@ -126,8 +125,8 @@ def kinetic(derivation: Derivation) -> Polynomial:
 
 def _of_spin(derivation: Derivation) -> dict[str, Row]:
     body, kind = derivation.scene.body, kind_of(derivation.scene.body)
-    assert isinstance(kind, Rotating)
-    wheels = derivation.wheels if derivation.has_rotor else map(rational, kind.rotor(body))
+    constant = map(rational, body.parts().get("rotor", ZERO_VECTOR))
+    wheels = derivation.wheels if derivation.has_rotor else constant
     H = [*map(add, mapped(kind.energy(body), derivation.state), wheels)]
     return {"H2": [product(H, H)], "H_space": derivation.turned(H), "H_axis": H}
 

@@ -9,7 +9,7 @@ from taylor_verify.exact.euler.fixed_axis import axis_under
 from taylor_verify.exact.euler.regime import FreeSpin
 from taylor_verify.exact.solution import NoClosedForm, Solution
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Quaternion, Spin
+from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.scene import Scene
 
 
@@ -23,10 +23,16 @@ def top(scene: Scene) -> tuple[RigidBody, Spin]:
 def enclosed(scene: Scene) -> Solution:
     """The motion in balls; raises NoClosedForm where anything tracked has none."""
     from taylor_verify.exact.euler.fixed_axis import in_balls
-    from taylor_verify.exact.gyrostat.sigma import top_rotation
+    from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
+    from taylor_verify.exact.gyrostat.sigma import free_rotation, top_rotation
 
     body, start = top(scene)
-    spin, attitude = FreeSpin(body.inertia, start.omega), _tracked(scene, start)
+    attitude = start.attitude if "attitude" in scene.track else None
+    if any(body.rotor):
+        if not body.is_free:
+            raise NoClosedForm("a moment acts on a body with wheels")
+        return free_rotation(FreeGyrostat(body.inertia, body.rotor, start.omega), attitude)
+    spin = FreeSpin(body.inertia, start.omega)
     if body.is_free:
         return top_rotation(spin, attitude)
     steady_axis = axis_under(spin, body.moment)
@@ -36,14 +42,11 @@ def enclosed(scene: Scene) -> Solution:
 
 
 def closed_form(scene: Scene) -> Solution | None:
-    """The motion in mpmath; None under a moment."""
+    """The motion in mpmath; None under a moment or with wheels."""
     from taylor_verify.exact.euler import jacobi
 
     body, start = top(scene)
-    if not body.is_free:
+    if not body.is_integrable:
         return None
-    return jacobi.free_rotation(FreeSpin(body.inertia, start.omega), _tracked(scene, start))
-
-
-def _tracked(scene: Scene, start: Spin) -> Quaternion | None:
-    return start.attitude if "attitude" in scene.track else None
+    attitude = start.attitude if "attitude" in scene.track else None
+    return jacobi.free_rotation(FreeSpin(body.inertia, start.omega), attitude)

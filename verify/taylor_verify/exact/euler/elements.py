@@ -59,6 +59,10 @@ _FIXED_AXIS_STORY: Final[Mapping[FixedAxisRegime, tuple[str, ...]]] = {
 def elements(scene: Scene, digits: int) -> Elements:
     """Return the elements of a free body; for a body under a moment sentences alone."""
     body, start = top(scene)
+    if any(body.rotor):
+        from taylor_verify.exact.gyrostat import elements as gyrostat
+
+        return gyrostat.elements(scene, digits)
     if not body.is_free:
         return _loaded(body, start.omega)
     spin = FreeSpin(body.inertia, start.omega)

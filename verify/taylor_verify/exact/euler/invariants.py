@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.row_arithmetic import applied, dot, largest, norms, ones, squares, turned
-from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import real
 
 
-def energy(body: RigidBody | Gyrostat) -> Invariant:
+def energy(body: RigidBody) -> Invariant:
     """T = omega . I omega / 2, so that dT/dH = omega."""
 
     def value(motion: Motion) -> Array:
@@ -30,36 +28,36 @@ def energy(body: RigidBody | Gyrostat) -> Invariant:
     )
 
 
-def momentum(body: RigidBody | Gyrostat, rotor: Vector) -> Invariant:
+def momentum(body: RigidBody) -> Invariant:
     """H2 = |I omega + h|^2."""
 
     def value(motion: Motion) -> Array:
-        return squares(whole(body, rotor, motion))
+        return squares(whole(body, motion))
 
     return Invariant(
         "H2",
         value,
         lambda motion: largest(value(motion)),
-        lambda motion: {"momentum": 2 * whole(body, rotor, motion)},
+        lambda motion: {"momentum": 2 * whole(body, motion)},
     )
 
 
-def space_momentum(body: RigidBody | Gyrostat, rotor: Vector) -> Invariant:
+def space_momentum(body: RigidBody) -> Invariant:
     """R H; a small rotation d of the attitude adds d x R H."""
     return Invariant(
         "H_space",
-        lambda motion: turned(motion["attitude"], whole(body, rotor, motion)),
-        lambda motion: largest(norms(whole(body, rotor, motion))),
+        lambda motion: turned(motion["attitude"], whole(body, motion)),
+        lambda motion: largest(norms(whole(body, motion))),
         lambda motion: {
             "momentum": ones(motion["omega"]),
-            "attitude": norms(whole(body, rotor, motion)),
+            "attitude": norms(whole(body, motion)),
         },
     )
 
 
-def whole(body: RigidBody | Gyrostat, rotor: Vector, motion: Motion) -> Array:
+def whole(body: RigidBody, motion: Motion) -> Array:
     """H at every row."""
     alone = applied(body.inertia, motion["omega"])
     # Nothing is added for no wheels: a row of float64 meets no exact entry that it need not.
-    H: Array = alone + real((rotor,), alone) if any(rotor) else alone
+    H: Array = alone + real((body.rotor,), alone) if any(body.rotor) else alone
     return H

@@ -89,7 +89,9 @@ def _in_space(scene: Scene, pitch: Pitch, inner: Solution, functions: Any) -> So
 def pitch_of(scene: Scene) -> Pitch | None:
     """Return the pitch of a scene, or None where its body and moment are not of this kind."""
     body, start = scene.body, scene.initial
-    if not isinstance(body, RigidBody) or not isinstance(start, Spin) or body.damping:
+    if not isinstance(body, RigidBody) or not isinstance(start, Spin):
+        return None
+    if body.damping or any(body.rotor):
         return None
     loads = body.loads
     if loads is None or loads.rung is not None or loads.states or loads.rotor or loads.switches:

@@ -12,12 +12,12 @@ from mpmath import mp, mpf
 from taylor_verify.exact.as_written import as_rationals
 from taylor_verify.exact.balls import Undecidable, midpoint
 from taylor_verify.exact.element import Element, Elements, settled
-from taylor_verify.exact.gyrostat.closed import free_gyrostat
+from taylor_verify.exact.euler.closed import top
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat, Regime
 from taylor_verify.exact.gyrostat.sigma import best_azimuth
 from taylor_verify.exact.gyrostat.spins import steady_spins
 from taylor_verify.exact.lattice import lattice
-from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+from taylor_verify.exact.solution import NO_CLOSED_FORM, Unsettled
 from taylor_verify.scenes.scene import Scene
 
 _CONSERVED: Final = (
@@ -54,16 +54,19 @@ _ATTEMPTS: Final = 8
 
 def elements(scene: Scene, digits: int) -> Elements:
     """Return every element of a free gyrostat; under a moment none, and a sentence."""
-    try:
-        free, _ = free_gyrostat(scene)
-    except NoClosedForm:
+    if not scene.body.is_free:
         story = "A constant moment acts on a body with wheels: no closed form is built."
         return Elements(NO_CLOSED_FORM, (), (story,))
     # Spins beside the motion: a start in degrees is rational there, rounded to 120 digits.
-    beside, _ = free_gyrostat(as_rationals(scene))
+    free, beside = map(_free, (scene, as_rationals(scene)))
     numbers = settled(lambda _: [*_numbers(free), *_conserved(free), *_spins(beside)], digits)
     sentences = (_STORY[free.regime], _count(beside)) if free.n else _CANCELLED
     return Elements(free.regime.value, numbers, (*sentences, _CONSERVED))
+
+
+def _free(scene: Scene) -> FreeGyrostat:
+    body, start = top(scene)
+    return FreeGyrostat(body.inertia, body.rotor, start.omega)
 
 
 def _numbers(free: FreeGyrostat) -> list[Element]:

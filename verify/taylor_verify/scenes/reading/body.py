@@ -18,15 +18,14 @@ from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.loads.loads import Entries, Loads
 from taylor_verify.scenes.reading.table import Table, complete
 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
-def rigid_body(table: Table, loads: Loads | None) -> RigidBody | Gyrostat | None:
-    """Return the body of model euler, a gyrostat if wheels turn by a number; None after a fault."""
+def rigid_body(table: Table, loads: Loads | None) -> RigidBody | None:
+    """Return the body of model euler; None after a fault."""
     inertia = _inertia(table)
     damping = table.number(DAMPING.name, default=Fraction(0))
     if inertia is None or loads is None or damping is None:
@@ -36,9 +35,8 @@ def rigid_body(table: Table, loads: Loads | None) -> RigidBody | Gyrostat | None
     loads = replace(loads, inertia=inertia, rotor=rotor if turns_by_text else ())
     constant = _numbers(ZERO_VECTOR if loads.is_written else moment)
     acting = loads if loads.is_written else None
-    if any(rotor) and not turns_by_text:
-        return Gyrostat(inertia, _numbers(rotor), constant, damping=damping, loads=acting)
-    return RigidBody(inertia, constant, damping=damping, loads=acting)
+    wheels = _numbers(ZERO_VECTOR if turns_by_text else rotor)
+    return RigidBody(inertia, constant, wheels, damping, acting)
 
 
 def _numbers(entries: Entries) -> Vector:

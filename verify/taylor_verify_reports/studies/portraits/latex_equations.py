@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.gyrostat import Gyrostat
 from taylor_verify.scenes.scene import Scene
 
 _EULER: Final = r"\dot{\mathbf H} = \mathbf H \times \boldsymbol\omega"
@@ -47,8 +46,10 @@ def equations(scene: Scene) -> list[str]:
 
 def _euler_equations(body: RigidBody) -> list[str]:
     loaded = "" if body.is_free or not _has_loads(body) else r" + \mathbf M" + _written(body)
-    damped = r" - c \mathbf H" if body.damping else ""
-    wheels = r" + \mathbf h(t, \mathbf z)" if body.loads and body.loads.rotor else ""
+    slowed = r"\mathsf I \boldsymbol\omega" if any(body.rotor) else r"\mathbf H"
+    damped = f" - c {slowed}" if body.damping else ""
+    written = r" + \mathbf h(t, \mathbf z)" if body.loads and body.loads.rotor else ""
+    wheels = r" + \mathbf h" if any(body.rotor) else written
     return [f"{_EULER}{damped}{loaded}", f"{_MOMENTUM}{wheels}"]
 
 
@@ -58,12 +59,6 @@ def _kirchhoff_equations(body: ImmersedBody) -> list[str]:
     force += rf" + \mathbf X{_written(body)}" if body.loads or any(body.force) else ""
     couple += rf" + \mathbf L{_written(body)}" if body.loads or any(body.couple) else ""
     return [f"{_LINEAR}{force}", f"{_ANGULAR}{couple}", _VELOCITIES, _ENERGY]
-
-
-def _gyrostat_equations(body: Gyrostat) -> list[str]:
-    loaded = "" if body.is_free else r" + \mathbf M" + _written(body)
-    damped = r" - c \mathsf I \boldsymbol\omega" if body.damping else ""
-    return [f"{_EULER}{damped}{loaded}", r"\mathbf H = \mathsf I \boldsymbol\omega + \mathbf h"]
 
 
 def _has_loads(body: Body) -> bool:
@@ -81,5 +76,4 @@ def _written(body: Body) -> str:
 _EQUATIONS: Final[Mapping[type[Body], tuple[Callable[[Any], list[str]], str]]] = {
     RigidBody: (_euler_equations, r"\boldsymbol\omega"),
     ImmersedBody: (_kirchhoff_equations, r"\boldsymbol\Omega"),
-    Gyrostat: (_gyrostat_equations, r"\boldsymbol\omega"),
 }
