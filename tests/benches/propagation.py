@@ -54,7 +54,7 @@ _FIRST: Final = Target(
 def plain(problem: Problem) -> Callable[[], object]:
     """Return heyoka's own call for a problem of which time 0 is a sample: no cap, no look, no outcome."""
     numbers = arithmetic(problem.rung)
-    integrator = compiled(problem.form, problem.rung, None, pays(problem.form, problem.rung))
+    integrator = compiled(problem.form, problem.rung, None, pays(problem))
     start, parameters = map(numbers.array, (problem.initial_momenta, problem.parameters))
     grid = numbers.times(problem.times)
     assert grid[0] == 0

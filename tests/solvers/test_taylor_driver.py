@@ -329,12 +329,14 @@ def test_unoptimised_code_takes_the_same_steps(name: str, monkeypatch: pytest.Mo
         ("kirchhoff/remus-100", "f128", False),
         ("kirchhoff/remus-100", "f80", True),
         ("kirchhoff/general-body", "f80", False),
+        ("extremes/euler-many-turns", "f64", True),
+        ("kirchhoff/remus-100", "f64", False),
+        ("euler/generic", "f64", True),
     ],
 )
 def test_code_is_optimised_where_the_way_is_long(scene: str, name: str, expected: bool) -> None:
-    """Code is optimised on long ways, in f80 and MPFR; float128's library would gain nothing."""
-    problem = pose(load(scene), rung(name))
-    assert driver.pays(problem.form, problem.rung, problem) is expected
+    """Code is optimised on long ways and for small systems; float128's library would gain nothing."""
+    assert driver.pays(pose(load(scene), rung(name))) is expected
 
 
 def test_optimised_code_passes_the_same_gates() -> None:

@@ -52,8 +52,8 @@ _SCOUTED = 24
 class Taylor(Solver):
     """heyoka at a tolerance, which bounds the error of a step: the rung's machine epsilon if None.
 
-    heyoka takes the order from it. With ``is_optimised`` its code is compiled for seconds, and runs up
-    to twice as fast from six states on.
+    heyoka takes the order from it. With ``is_optimised`` code for short ways too is compiled for seconds,
+    and its steps take half the time from six states on: that of heyoka as its user writes it.
     """
 
     name: str = "taylor"
@@ -151,19 +151,16 @@ def compiled(
     return stored(hy.taylor_adaptive, system, **options)
 
 
-def pays(form: Form, rung: Rung, problem: Problem | None = None) -> bool:
-    """Return True where three ways cost less with optimised code, its optimising included.
+def pays(problem: Problem) -> bool:
+    """Return True where optimised code is worth its compiling: of small systems, and on long ways.
 
-    The ways are those of a problem of this form, or long ones. Code that was stored is optimised once.
+    All legs of a way have one code. Code that was stored is optimised once.
     """
-    numbers = arithmetic(rung)
-    if numbers.is_quick_plain:
-        # One code for short and long ways, so that a longer one begins as a shorter one does.
-        return len(form.states) <= _LARGEST_STRAIGHT_LINE
-    if problem is None:
+    numbers, size = arithmetic(problem.rung), len(problem.form.states)
+    if numbers.is_quick_plain and size <= _LARGEST_STRAIGHT_LINE:
         return True
-    length = abs(float(numbers.times(problem.times)[-1]))
-    return length * len(form.states) > numbers.optimised_from
+    length = abs(float(problem.given.clock.elapsed[-1] / problem.units.time))
+    return length * size > numbers.optimised_from
 
 
 def _foreseen(problem: Problem) -> float:
@@ -186,7 +183,7 @@ def _foreseen(problem: Problem) -> float:
         ],
     )
     turned, kinks = smoothed(scout)
-    integrator = compiled(turned.form, rung, None, pays(turned.form, rung), kinks=kinks)
+    integrator = compiled(turned.form, rung, None, pays(scout), kinks=kinks)
     return Way(integrator, turned, scout).fastest()
 
 
@@ -216,7 +213,7 @@ def _prepared(problem: Problem, tolerance: tuple[int, int] | None, is_optimised:
         turned.form,
         problem.rung,
         None if tolerance is None else Fraction(*tolerance),
-        is_optimised or pays(turned.form, problem.rung, problem),
+        is_optimised or pays(problem),
         kinks=kinks,
     )
     return _Prepared(

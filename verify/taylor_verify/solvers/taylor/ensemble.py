@@ -27,7 +27,7 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.solvers.taylor.cache import stored
-from taylor_verify.solvers.taylor.driver import compiled, pays
+from taylor_verify.solvers.taylor.driver import compiled
 from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
 from taylor_verify.solvers.taylor.way import MOST_RADIANS, longest_step, most_steps, outcome_of
@@ -233,7 +233,7 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
     """Return one compiled integrator of so many lanes."""
     if width == 1:
-        return compiled(form, rung, tolerance, pays(form, rung))
+        return compiled(form, rung, tolerance, is_optimised=True)
     import heyoka as hy
 
     numbers = arithmetic(rung)

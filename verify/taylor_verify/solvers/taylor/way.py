@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import ceil, inf, isfinite
 from time import perf_counter
@@ -26,14 +26,17 @@ from taylor_verify.solvers.trajectory import Outcome
 # do that too, but they go into a flip, whose pole is near, and lose hundreds of units.
 _LONGEST_STEP, _FULL_ORDER = 1.0, 20
 # heyoka is called once, since each call cuts a step short. If the rate, looked at afterwards, says that a
-# step was longer than this factor allows, the way is gone again with looks so many radians apart, no more
-# and no less often than this: a call leads from each to the next, and the fastest rate so far counts.
+# step was longer than this factor allows, the way is gone again: at once in steps that suit its fastest
+# rate, where that takes less than so many times the steps,
 _SLACK: Final = 1.25
-# Steps of which the longest is shorter than this part of the cap were not cut to it.
-_UNCUT: Final = 0.9
+_MORE_STEPS: Final = 2.0
+# else with looks so many radians apart, no more and no less often than this: a call leads from each to the
+# next, and the fastest rate so far counts.
 _RADIANS_APART: Final = 4
 _FEWEST_LOOKS, _MOST_LOOKS = 4, 24
 _ROWS_LOOKED_AT: Final = 16
+# Steps of which the longest is shorter than this part of the cap were not cut to it.
+_UNCUT: Final = 0.9
 # A regular orbit takes three to five steps in the time of one radian, a close passage some more. Beyond
 # this bound a run has gone astray.
 LEAST_STEPS, STEPS_PER_RADIAN = 1000, 64
@@ -106,9 +109,13 @@ class Way:
         rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
         ran = self._went(_stretches(grid, self._calls), rate)
         if self._was_too_fast(ran, grid, rate):
-            look_count = max(self._calls, _look_count(self._radians))
-            grid, samples = self._instants(look_count)
-            ran = self._went(_stretches(grid, look_count), rate, is_watched=True)
+            fastest = self._fastest(*_some(ran, grid))
+            grid, samples = self._looks
+            is_close = ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate
+            if is_close:
+                ran = self._went(_stretches(grid, self._calls), fastest)
+            if not is_close or self._was_too_fast(ran, grid, fastest):
+                ran = self._went(_stretches(grid, self._look_count), rate, is_watched=True)
         if ran.outcome is not Outcome.FINISHED:
             return ran
         if len(ran.rows) != len(grid):
@@ -182,17 +189,27 @@ class Way:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
         if not len(ran.rows):
             return False
-        some = slice(None, None, -ceil(len(ran.rows) / _ROWS_LOOKED_AT))
-        rows, is_whole = ran.rows[some], ran.outcome is Outcome.FINISHED
+        (rows, times), is_whole = _some(ran, grid), ran.outcome is Outcome.FINISHED
         allowed = _SLACK * self._longest / ran.longest if is_whole else rate
         if is_whole and isinstance(self._linearised, Linearised):
             return not self._linearised.is_within(rows, allowed)
-        return not self._fastest(rows, grid[: len(ran.rows)][some], allowed) <= allowed
+        return not self._fastest(rows, times, allowed) <= allowed
 
     @property
     def _callback(self) -> _Advance | None:
         """The callback of a wide rung."""
         return None if self._problem.rung.name in _RADIANS_AT_ONCE else _Advance()
+
+    @property
+    def _look_count(self) -> int:
+        """The number of times that the rate is looked at where it changes much."""
+        wanted = self._radians / _RADIANS_APART if self._radians <= MOST_RADIANS else _MOST_LOOKS
+        return max(self._calls, min(max(_FEWEST_LOOKS, ceil(wanted)), _MOST_LOOKS))
+
+    @cached_property
+    def _looks(self) -> tuple[np.ndarray[Any, Any], Places]:
+        """The instants with those among them at which the rate is looked at."""
+        return self._instants(self._look_count)
 
     def _instants(self, pieces: int) -> tuple[np.ndarray[Any, Any], Places]:
         """Return the instants that heyoka is asked for, and where the samples are among them.
@@ -215,6 +232,12 @@ class Way:
             samples.append(len(instants))
             instants.append(before)
         return self.numbers.array(instants), samples[len(grid) - len(times) :]
+
+
+def _some(ran: Ran, grid: np.ndarray[Any, Any]) -> tuple[Rows, np.ndarray[Any, Any]]:
+    """Return the rows of a way at which the rate is looked at afterwards, and their times."""
+    some = slice(None, None, -ceil(len(ran.rows) / _ROWS_LOOKED_AT))
+    return ran.rows[some], grid[: len(ran.rows)][some]
 
 
 def _joined(legs: Sequence[Ran]) -> Ran:
@@ -259,13 +282,6 @@ def _is_finite(rows: Rows) -> bool:
         if isfinite(numbers.dot(numbers)):
             return True
     return bool(np.isfinite(rows).all())
-
-
-def _look_count(radians: float) -> int:
-    """Return the number of times that the rate is checked on a way of this length."""
-    if not radians <= MOST_RADIANS:
-        return _MOST_LOOKS
-    return min(max(_FEWEST_LOOKS, ceil(radians / _RADIANS_APART)), _MOST_LOOKS)
 
 
 def _calls(radians: float, rung: Rung) -> int:
