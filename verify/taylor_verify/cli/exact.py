@@ -56,7 +56,10 @@ def _text_of_events(content: Mapping[str, Any]) -> str:
     page = Page()
     count = len(content["events"])
     how = "proven, and others that are undecided" if content["undecided"] else "none missed"
-    page.line(bold(content["scene"]), f": {count} times of {content['event']}, {how}")
+    page.line(
+        bold(content["scene"]),
+        f": {count} {'time' if count == 1 else 'times'} of {content['event']}, {how}",
+    )
     for event in content["events"]:
         page.line(f"t = {event['t']}   (radius {event['radius']})")
     for event in content["undecided"]:
