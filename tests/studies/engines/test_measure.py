@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from shutil import rmtree
 from typing import Any
 
 import numpy as np
@@ -15,12 +16,11 @@ from builders.studies.engines import ENTRIES, SPINNER, answers
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify_reports.studies.engines import measure as measuring
-from taylor_verify_reports.studies.engines.answer import Answer, answered
+from taylor_verify_reports.studies.engines.answer import Answer, Answers, answered
 from taylor_verify_reports.studies.engines.document import Standing
 from taylor_verify_reports.studies.engines.entry import Asked, EntryList
 from taylor_verify_reports.studies.engines.measure import measure
 from taylor_verify_reports.studies.engines.replay import judged
-from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 
 @cache
@@ -50,23 +50,23 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def test_what_is_stored_is_not_run_again(ran: list[str], tmp_path: Path) -> None:
     """Nothing is run if every answer is known, and the answers are in the order of the list."""
-    measured = measure(ENTRIES, known(), Unfinished(tmp_path), lambda words: None)
+    measured = measure(ENTRIES, known(), Answers(tmp_path), lambda words: None)
     assert ran == []
     assert [answer.row.key for answer in measured] == [run.key for run in ENTRIES.runs()]
 
 
 def test_a_measurement_goes_on_after_a_kill(ran: list[str], tmp_path: Path) -> None:
     """Finished runs are in the store and are not repeated; those of damaged files are."""
-    store = Unfinished(tmp_path / "unfinished")
+    store = Answers(tmp_path / "unfinished")
     for answer in answers()[:4]:
-        store.keep(answer)
+        store.add(answer)
     (damaged, *_) = sorted(store.folder.glob("*.json"))
     damaged.write_text("{", encoding="utf-8")
     measured = measure(ENTRIES, {}, store, lambda words: None)
     assert len(ran) == len(ENTRIES.runs()) - 3
-    assert len(store.answers()) == len(measured) == len(ENTRIES.runs())
-    store.forget()
-    assert store.answers() == []
+    assert len(store.every()) == len(measured) == len(ENTRIES.runs())
+    rmtree(store.folder)
+    assert store.every() == {}
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_another_adapter_is_another_run(
     """Runs of another adapter, failed runs and runs without an environment are run again."""
     key, answer = next(iter(known().items()))
     changed = {**known(), key: replace(answer, row=replace(answer.row, **change))}
-    measure(ENTRIES, changed, Unfinished(tmp_path), lambda words: None)
+    measure(ENTRIES, changed, Answers(tmp_path), lambda words: None)
     assert ran == [key]
 
 
@@ -101,7 +101,7 @@ def test_an_engine_that_cannot_be_installed_is_no_failure(
     monkeypatch.setattr(measuring, "prepare", prepare)
     lost = replace(SPINNER, name="lost", solver="outside:mujoco", versions=("1.0",))
     entries = EntryList(ENTRIES.scene, (*ENTRIES.entry, lost))
-    measured = measure(entries, known(), Unfinished(tmp_path), lambda words: None)
+    measured = measure(entries, known(), Answers(tmp_path), lambda words: None)
     rows = [answer.row for answer in measured if answer.row.engine == "lost"]
     assert [row.standing for row in rows] == [Standing.UNAVAILABLE] * len(SPINNER.values)
     assert {row.detail for row in rows} == {"no such package"}
@@ -126,7 +126,7 @@ def test_an_answer_reads_back_to_the_last_bit() -> None:
     for answer in answers():
         assert answer.states is not None
         for states in (answer.states, answer.states.astype(np.float32)):
-            read = Answer.from_bytes(replace(answer, states=states).to_bytes())
+            read = Answer.from_text(replace(answer, states=states).to_text())
             assert read.row == answer.row
             assert read.states is not None
             assert read.states.dtype == states.dtype

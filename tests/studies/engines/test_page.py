@@ -21,7 +21,7 @@ from builders.studies.engines import (
 
 from taylor_verify.plotting.picture import content
 from taylor_verify_reports.studies.engines import page
-from taylor_verify_reports.studies.engines.advice import advice
+from taylor_verify_reports.studies.engines.advice import advice, at_length
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing, find, write
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list
@@ -123,14 +123,16 @@ def under(load: str, entry: Entry, *errors: float) -> list[EngineRow]:
 
 
 def test_a_way_of_giving_a_load_is_warned_of() -> None:
-    """The paragraph of a job has the best setting with its way, and the least error of a far worse way."""
+    """The line of a job has the best setting with its way, and the least error of a far worse way."""
     each_step = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-3)
-    (sentence,) = advised(*under("asked for in each stage", SPINNER, 1e-3, 1e-6, 1e-9), *each_step)[
-        :1
-    ]
-    assert "a step of 0.025 (the load asked for in each stage): omega and attitude" in sentence
+    rows = [*under("asked for in each stage", SPINNER, 1e-3, 1e-6, 1e-9), *each_step]
+    short, *_ = advised(*rows)
+    assert "a step of 0.025 (the load asked for in each stage): right to 1.00e-9." in short
+    assert "Never with the load held over each step (1.00e-3 at best)." in short
+    first, *_, last = at_length(board_with(*rows), ENTRIES, ENTRIES.scene[0].job)
+    assert "a step of 0.025 (the load asked for in each stage): omega and attitude" in first
     worse = "Never with the load held over each step (**Wobbler** with splitting and a step of 0.025 has"
-    assert f"{worse} 1.00e-3)" in sentence
+    assert f"{worse} 1.00e-3)" in last
     near = under("held over each step", WOBBLER, 1e-2, 5e-3, 1e-10)
     assert "Never with" not in advised(*under("asked", SPINNER, 1e-3, 1e-6, 1e-12), *near)[0]
 
@@ -140,7 +142,8 @@ def test_a_step_over_a_switch_is_warned_of() -> None:
     rows = under("asked for in each stage", SPINNER, 1e-9, 1e-3, 1e-10)
     switched = replace(ENTRIES, scene=(replace(ENTRIES.scene[0], switches=True),))
     assert "goes over a switch" not in advised(*rows)[0]
-    sentence = advised(*rows, entries=switched)[0]
+    assert "Never a step that goes over a switch." in advised(*rows, entries=switched)[0]
+    *_, sentence = at_length(board_with(*rows), switched, switched.scene[0].job)
     assert (
         "has 1.00e-9 with a step of 0.1, which ends on every switch, and 1.00e-3 with 0.05"
         in sentence

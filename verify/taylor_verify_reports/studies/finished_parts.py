@@ -30,15 +30,16 @@ class Parts:
 
     def find(self, key: bytes) -> str | None:
         """Return a part; None if it is not finished."""
-        file = self.folder / self._name(key)
+        file = self.file_of(key)
         return file.read_text(encoding="utf-8") if file.exists() else None
 
     def keep(self, key: bytes, text: str) -> None:
         """Store a part. Raises OSError."""
-        replace_files(self.folder, {self._name(key): text})
+        replace_files(self.folder, {self.file_of(key).name: text})
 
-    def _name(self, key: bytes) -> str:
-        return f"{hashlib.sha256(key).hexdigest()}{self.suffix}"
+    def file_of(self, key: bytes) -> Path:
+        """Return the file of a part."""
+        return self.folder / f"{hashlib.sha256(key).hexdigest()[:32]}{self.suffix}"
 
 
 @contextmanager

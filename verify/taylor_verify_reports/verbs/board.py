@@ -186,11 +186,11 @@ def _trajectory(options: argparse.Namespace, folder: Path) -> Answer:
     columns = answer.columns()
     check = f"taylor-verify check FILE --scene {answer.row.scene} --rung {answer.row.rung}"
     if options.out is None:
-        return Answer(PASS, columns, lambda: answer.to_bytes().decode(), [check])
+        return Answer(PASS, columns, answer.to_text, [check])
     if Path(options.out).suffix != ".json":
         raise WrongCall(f"expected a name that ends in .json, got {options.out!r:.60} @ --out")
     file = writable_file(options.out, "--out")
-    file.write_bytes(answer.to_bytes())
+    file.write_text(answer.to_text(), encoding="utf-8")
     return Answer(
         PASS, {"written": [str(file)]}, lambda: str(file), [check.replace("FILE", str(file))]
     )

@@ -39,16 +39,13 @@ def advice(board: Board, entries: EntryList) -> list[str]:
     """Return sentences that tell a user what to take and what to avoid, the most useful first.
 
     They follow from the rows of the ``board``. ``entries`` is the list of engines, which names the scenes
-    of the advice.
+    of the advice. A job under loads has one sentence; `at_length` has all that is to say.
     """
     names = entries.titles
-    plain = {row.name for row in entries.entry if row.plain}
-    every = settings(board.study)
-    engines = [setting for setting in newest(every) if setting.engine not in plain]
-    shipped = [setting for setting in newest(every, shipped=True) if setting.engine not in plain]
+    engines, shipped = _entrants(board, entries), _entrants(board, entries, shipped=True)
     return [
         *chain.from_iterable(
-            _under_loads(board, engines, job, scenes, entries)
+            _in_short(engines, job, scenes, entries)
             if any(setting.load for setting in engines)
             else _of_free_bodies(board, engines, job, scenes, names)
             for job, scenes in advised(board, entries).items()
@@ -69,22 +66,43 @@ def _of_free_bodies(
     yield from _never(engines, job, scenes, names)
 
 
-def _under_loads(
-    board: Board,
-    engines: Sequence[EngineSetting],
-    job: str,
-    scenes: Sequence[str],
-    entries: EntryList,
-) -> Iterator[str]:
-    """Yield a paragraph for a job under loads: what to take, and which way of giving a load to avoid."""
-    sentences = [
+def at_length(board: Board, entries: EntryList, job: str) -> list[str]:
+    """Return the sentences on a job under loads: what to take, what suffices, and what to avoid."""
+    engines, scenes = _entrants(board, entries), advised(board, entries).get(job, [])
+    return [
         *_take(board, engines, job, scenes, entries.titles),
         *_ways_to_avoid(engines, scenes, entries.titles),
         *_missed_switches(engines, scenes, entries),
         *_lost_engines(engines, job, scenes, entries.titles),
     ]
-    if sentences:
-        yield " ".join(sentences)
+
+
+def _in_short(
+    engines: Sequence[EngineSetting], job: str, scenes: Sequence[str], entries: EntryList
+) -> Iterator[str]:
+    """Yield a paragraph for a job under loads: the best setting, and what to avoid."""
+    names, scores = entries.titles, [s for setting in engines for s in setting.scores(scenes)]
+    if (best := best_of(scores)) is None:
+        return
+    _, *equal = _equals(scores, lambda score: score.error, TIE)
+    others = _either([bold(prose(names[score.setting.engine])) for score in equal], "and")
+    tie = f"; a tie with {others}" if equal else ""
+    sentences = [
+        f"For {job} take {named(best.setting, names)}{_step(best)}{_load(best)}: right to "
+        f"{figure(best.error)}{tie}."
+    ]
+    if bad := [f"{prose(w)} ({figure(s.error)} at best)" for w, s in _bad_ways(scores).items()]:
+        sentences.append(f"Never with the load {_either(bad)}.")
+    if any(_missed_switches(engines, scenes, entries)):
+        sentences.append("Never a step that goes over a switch.")
+    yield " ".join([*sentences, *_lost_engines(engines, job, scenes, names)])
+
+
+def _entrants(board: Board, entries: EntryList, shipped: bool = False) -> list[EngineSetting]:
+    """Return the settings of engines in their newest versions, without plain solvers."""
+    plain = {row.name for row in entries.entry if row.plain}
+    every = newest(settings(board.study), shipped)
+    return [setting for setting in every if setting.engine not in plain]
 
 
 def advised(board: Board, entries: EntryList) -> dict[str, list[str]]:
@@ -148,17 +166,21 @@ def _ways_to_avoid(
 ) -> Iterator[str]:
     """Yield a warning of the ways of giving a load whose best engine is far worse than another way's."""
     scores = [score for setting in engines for score in setting.scores(scenes)]
+    if listed := [
+        f"{prose(way)} ({named(score.setting, names)}{_step(score)} has {figure(score.error)})"
+        for way, score in _bad_ways(scores).items()
+    ]:
+        yield f"Never with the load {_either(listed)}, the least error of that way here."
+
+
+def _bad_ways(scores: Sequence[Score]) -> dict[str, Score]:
+    """Return the ways of giving a load that are far worse than the best way, each with its best score."""
     best: dict[str, Score] = {}
     for way in dict.fromkeys(score.row.load for score in scores if score.row.load):
         if score := best_of(score for score in scores if score.row.load == way):
             best[way] = score
     least = max(NEGLIGIBLE, min((score.error for score in best.values()), default=0.0))
-    bad = {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
-    if listed := [
-        f"{prose(way)} ({named(score.setting, names)}{_step(score)} has {figure(score.error)})"
-        for way, score in bad.items()
-    ]:
-        yield f"Never with the load {_either(listed)}, the least error of that way here."
+    return {way: score for way, score in best.items() if score.error > FAR_WORSE * least}
 
 
 def _missed_switches(

@@ -6,6 +6,7 @@ import hashlib
 import json
 import shlex
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -27,6 +28,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.entry import Asked
 from taylor_verify_reports.studies.engines.replay import States, errors_of, judged, states_of
+from taylor_verify_reports.studies.unfinished import Parts
 
 _STANDINGS: Final = {
     Outcome.FINISHED: Standing.JUDGED,
@@ -45,12 +47,12 @@ class Answer:
     seconds: float = 0.0
     states: States | None = None
 
-    def to_bytes(self) -> bytes:
+    def to_text(self) -> str:
         """Return the answer as JSON that `check` reads too; every float has all its bits."""
         columns = self.columns()
         kind = "" if self.states is None else self.states.dtype.str
         stored = _Stored(self.row, self.seconds, kind, tuple(columns)[1:])
-        return laid_out({**complete(stored), **columns}).encode()
+        return laid_out({**complete(stored), **columns})
 
     def columns(self) -> dict[str, list[float]]:
         """Return the trajectory as the columns of a file, t first; empty without states."""
@@ -62,13 +64,30 @@ class Answer:
         return {"t": times, **dict(zip(names, self.states.T.tolist(), strict=True))}
 
     @classmethod
-    def from_bytes(cls, content: bytes) -> Answer:
-        """Return the answer from its JSON. Raises ValueError for any other content."""
-        stored, states = parsed(content, _Stored), None
+    def from_text(cls, text: str) -> Answer:
+        """Return the answer from its JSON. Raises ValueError for any other text."""
+        stored, states = parsed(text.encode(), _Stored), None
         if stored.kind:
-            numbers = json.loads(content)
+            numbers = json.loads(text)
             states = np.array([numbers[name] for name in stored.order], dtype=stored.kind).T
         return cls(stored.row, stored.seconds, states)
+
+
+@dataclass(frozen=True)
+class Answers(Parts):
+    """Answers of runs, a file for each, so that a measurement that was stopped can go on."""
+
+    def add(self, answer: Answer) -> None:
+        """Store an answer. Raises OSError."""
+        self.keep(answer.row.key.encode(), answer.to_text())
+
+    def every(self) -> dict[Path, Answer]:
+        """Return the stored answers by their files; damaged ones are skipped."""
+        answers = {}
+        for file in sorted(self.folder.glob(f"*{self.suffix}")):
+            with suppress(ValueError):
+                answers[file] = Answer.from_text(file.read_text(encoding="utf-8"))
+        return answers
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The page of a board whose scenes have loads: advice for each job, then a table for each scene."""
+"""The page of a board whose scenes have loads: advice for each job, then each scene at length."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bullets, prose, table
 from taylor_verify.words.page_parts import whole
-from taylor_verify_reports.studies.engines.advice import advice
+from taylor_verify_reports.studies.engines.advice import advice, at_length
 from taylor_verify_reports.studies.engines.document import Board, EngineRow
 from taylor_verify_reports.studies.engines.entry import EntryList
 from taylor_verify_reports.studies.engines.findings import findings
@@ -58,7 +58,7 @@ def _scenes(board: Board, entries: EntryList) -> Iterator[str]:
         own = [setting for setting in every if setting.on(scene.name)]
         if own:
             yield f"## {scene.name}"
-            yield f"{scene.job[:1].upper()}{scene.job[1:]}." if scene.job else ""
+            yield bullets(at_length(board, entries, scene.job)) if scene.job else ""
             yield _table(board, own, scene.name, entries.titles)
 
 

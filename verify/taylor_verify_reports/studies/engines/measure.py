@@ -19,7 +19,7 @@ from taylor_verify.scenes.reading.reader import load as load_scene
 from taylor_verify.solvers.engines.engine import PREFIX, Outside, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.registry import solver_named
-from taylor_verify_reports.studies.engines.answer import Answer, answered, made_of, row_of
+from taylor_verify_reports.studies.engines.answer import Answer, Answers, answered, made_of, row_of
 from taylor_verify_reports.studies.engines.document import (
     Board,
     EnginesStudy,
@@ -27,7 +27,6 @@ from taylor_verify_reports.studies.engines.document import (
     Standing,
 )
 from taylor_verify_reports.studies.engines.entry import BOARDS, STEP, Asked, EntryList
-from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 # A part of the report folder that is neither published nor committed.
 UNFINISHED: Final = "local/boards"
@@ -42,7 +41,7 @@ Known = Mapping[str, Answer]
 def measure(
     entries: EntryList,
     known: Known,
-    store: Unfinished,
+    store: Answers,
     say: Say,
     only: Collection[str] = (),
     workers: int | None = None,
@@ -55,7 +54,7 @@ def measure(
     be stored.
     """
     every = entries.runs()
-    unfinished = {answer.row.key: answer for answer in store.answers()}
+    unfinished = {answer.row.key: answer for answer in store.every().values()}
     final = {key: answer for key, answer in known.items() if _is_final(answer)} | unfinished
     answers = {**known, **unfinished}
     waiting = [
@@ -74,7 +73,7 @@ def measure(
         nonlocal done
         for run, answer in zip(runs, set_answers, strict=True):
             done += 1
-            store.keep(answer)
+            store.add(answer)
             say(f"{done}/{len(waiting)} {run}: {answer.row.standing}")
 
     before = _processor_seconds()

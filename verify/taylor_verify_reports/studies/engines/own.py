@@ -10,13 +10,14 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from shutil import rmtree
 from typing import Final
 
 from taylor_verify.check import check
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.replacement import replace_files
 from taylor_verify_reports.studies.engines import document, engine_page, loaded_page, page
-from taylor_verify_reports.studies.engines.answer import Answer, row_of
+from taylor_verify_reports.studies.engines.answer import Answer, Answers, row_of
 from taylor_verify_reports.studies.engines.document import (
     Board,
     EngineRow,
@@ -34,7 +35,6 @@ from taylor_verify_reports.studies.engines.entry import (
 )
 from taylor_verify_reports.studies.engines.measure import answers_of, board_of, measure
 from taylor_verify_reports.studies.engines.replay import errors_of
-from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
 LOCAL: Final = "local/boards"
 OWN: Final = f"{LOCAL}/own"
@@ -106,10 +106,12 @@ def add(
     What is stored from an earlier call is kept, unless everything is asked for ``anew`` or it failed.
     Raises OSError.
     """
-    store = Unfinished(folder / OWN / engine.name / name)
+    store = Answers(folder / OWN / engine.name / name)
     if anew:
-        store.forget()
-    store.keep_only(lambda answer: answer.row.is_judged or answer.row.standing is Standing.UNSUITED)
+        rmtree(store.folder, ignore_errors=True)
+    for file, answer in store.every().items():
+        if not (answer.row.is_judged or answer.row.standing is Standing.UNSUITED):
+            file.unlink()
     asked = entry_list(name).scene
     chosen = tuple(scene for scene in asked if not scenes or scene.name in scenes)
     entries = EntryList(chosen, (engine.entry,))
@@ -119,7 +121,7 @@ def add(
         for run in entries.runs():
             if file := _file_for(run, Path(engine.files)):
                 answer = _judged_file(run, file)
-                store.keep(answer)
+                store.add(answer)
                 _copy(file, store, answer)
                 say(f"{run}: {answer.row.standing}")
     return own_answers(folder, name, engine.name)
@@ -132,9 +134,9 @@ def _file_for(run: Asked, folder: Path) -> Path | None:
     return next((file for stem in stems for file in sorted(place.glob(f"{stem}.*"))), None)
 
 
-def _copy(file: Path, store: Unfinished, answer: Answer) -> None:
+def _copy(file: Path, store: Answers, answer: Answer) -> None:
     """Store a file of results beside its row, so that whoever gets the folder can judge it."""
-    name = f"{store.file_of(answer.row.key).stem}.{file.name.partition('.')[2]}"
+    name = f"{store.file_of(answer.row.key.encode()).stem}.{file.name.partition('.')[2]}"
     replace_files(store.folder, {f"{_FILES}/{name}": file.read_bytes()})
 
 
@@ -153,7 +155,7 @@ def _judged_file(run: Asked, file: Path) -> Answer:
 def own_answers(folder: Path, board: str, engine: str = "*") -> list[Answer]:
     """Return the stored answers of one's own engines on a board."""
     places = sorted((folder / OWN).glob(f"{engine}/{board}"))
-    answers = [answer for place in places for answer in Unfinished(place).answers()]
+    answers = [answer for place in places for answer in Answers(place).every().values()]
     order = [scene.name for scene in entry_list(board).scene]
     known = [answer for answer in answers if answer.row.scene in order]
     return sorted(known, key=lambda answer: _order(answer.row, order))
@@ -166,8 +168,8 @@ def _order(row: EngineRow, scenes: Sequence[str]) -> tuple[str, str, int, float]
 
 def file_of(folder: Path, board: str, answer: Answer) -> Path:
     """Return the file of an own answer, which `check` reads: the copy of a file, or the stored answer."""
-    store = Unfinished(folder / OWN / answer.row.engine / board)
-    place = store.file_of(answer.row.key)
+    store = Answers(folder / OWN / answer.row.engine / board)
+    place = store.file_of(answer.row.key.encode())
     return next((store.folder / _FILES).glob(f"{place.stem}.*"), place)
 
 

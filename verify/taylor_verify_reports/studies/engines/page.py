@@ -41,7 +41,7 @@ _LEGEND: Final = (
     "means that the steps show no order.",
     "*time* is the processor's time in the engine's own calls for a second of the motion, in microseconds, "
     "without starting and compiling. It comes from a single run: only its order of magnitude is reliable.",
-    "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
+    "*step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
     "at a whole number of steps.",
     "Adapters switch off sleeping, damping and caps on the velocity if an engine has them. The table "
     "*as shipped* shows the engines without these changes.",
@@ -138,7 +138,7 @@ def _best(board: Board, entries: EntryList, every: Sequence[EngineSetting]) -> s
 COLUMNS: Final = (
     "engine",
     "setting",
-    "best step:",
+    "step:",
     "omega:",
     "attitude:",
     "order:",
@@ -186,7 +186,7 @@ def _scenes(board: Board, entries: EntryList, every: Sequence[EngineSetting]) ->
             space = "H in space:" if "omega" in states else "momentum in space:"
             numbers = (*(f"{name}:" for name in states), "energy:", space, "digits:")
             yield f"## {scene}"
-            yield table(["engine", "setting", "best step:", *numbers, "cause"], rows)
+            yield table(["engine", "setting", "step:", *numbers, "cause"], rows)
 
 
 def _scene_row(row: EngineRow, title: str, cause: str) -> list[str]:

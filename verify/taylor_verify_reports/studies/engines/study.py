@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from shutil import rmtree
 from typing import Final
 
 from taylor_verify_reports.studies.engines import document, loaded_page, page
@@ -22,13 +23,13 @@ def _measure(
     workers: int | None = None,
 ) -> Measured:
     """Run the engines whose runs are not stored; a measurement that was stopped is continued."""
+    from taylor_verify_reports.studies.engines.answer import Answers
     from taylor_verify_reports.studies.engines.measure import (
         UNFINISHED,
         answers_of,
         board_of,
         measure,
     )
-    from taylor_verify_reports.studies.engines.unfinished import Unfinished
 
     try:
         entries = entry_list(name)
@@ -40,7 +41,7 @@ def _measure(
         raise NotMeasured(
             f"expected engines among {', '.join(entries.engines)}, got {', '.join(unknown)}"
         )
-    store = Unfinished(folder / UNFINISHED / name)
+    store = Answers(folder / UNFINISHED / name)
     reused = {
         answer.row.key: answer
         for answer in known
@@ -49,7 +50,7 @@ def _measure(
     answers = measure(entries, reused, store, progress.say, only, workers)
     written = document.write(folder, board_of(answers, workers, name))
     # Until the results are stored, the measurement can be continued.
-    store.forget()
+    rmtree(store.folder, ignore_errors=True)
     return Measured(written)
 
 
