@@ -201,6 +201,9 @@ def test_one_name_has_one_meaning() -> None:
     doors = SOURCES / "taylor_verify"
     names = Counter(path.stem for path in doors.rglob("*.py") if path.parent != doors)
     assert {name for name, files in names.items() if files > 1} == set(SHARED.split())
+    published = SOURCES / "taylor_verify_reports"
+    names = Counter(path.stem for path in published.rglob("*.py"))
+    assert {name for name, files in names.items() if files > 1} == {"__init__"}
 
 
 def test_no_import_circle() -> None:

@@ -11,11 +11,17 @@ import pytest
 from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
-from taylor_verify_reports.studies.causes import measure
+from taylor_verify_reports.studies.causes import measured_causes as measure
 from taylor_verify_reports.studies.causes.kind import right
 from taylor_verify_reports.studies.causes.kinds import KINDS
 from taylor_verify_reports.studies.causes.loaded import LOADED, any_sample
-from taylor_verify_reports.studies.causes.measure import OUTCOMES, Named, measured, page, table
+from taylor_verify_reports.studies.causes.measured_causes import (
+    OUTCOMES,
+    Named,
+    measured,
+    page,
+    table,
+)
 from taylor_verify_reports.studies.finished_parts import Parts
 
 

@@ -19,8 +19,8 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies import bulk, registry
+from taylor_verify_reports.studies.engines.board_studies import STUDY as ENGINES
 from taylor_verify_reports.studies.engines.entry import BOARDS
-from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
 from taylor_verify_reports.studies.registry import STUDIES
 from taylor_verify_reports.studies.stored import Stored
 from taylor_verify_reports.studies.study import (

@@ -9,12 +9,12 @@ from typing import Any, Final
 
 from taylor_verify.plotting.picture import Picture
 from taylor_verify_reports.studies.accuracy.standard_runs import STUDY as ACCURACY
-from taylor_verify_reports.studies.causes.study import STUDY as CAUSES
+from taylor_verify_reports.studies.causes.causes_study import STUDY as CAUSES
 from taylor_verify_reports.studies.claims_page import STUDY as CLAIMS
 from taylor_verify_reports.studies.controls.controls_page import STUDY as CONTROLS
 from taylor_verify_reports.studies.enclosure_width import STUDY as ENCLOSURE
-from taylor_verify_reports.studies.engines.study import SATELLITE, UNDERWATER
-from taylor_verify_reports.studies.engines.study import STUDY as ENGINES
+from taylor_verify_reports.studies.engines.board_studies import SATELLITE, UNDERWATER
+from taylor_verify_reports.studies.engines.board_studies import STUDY as ENGINES
 from taylor_verify_reports.studies.growth.growth_page import STUDY as GROWTH
 from taylor_verify_reports.studies.hard.hard_page import STUDY as HARD
 from taylor_verify_reports.studies.portraits.stored_portraits import STUDY as PORTRAITS

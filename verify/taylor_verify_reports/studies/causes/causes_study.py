@@ -16,7 +16,7 @@ _SEED: Final = 1
 def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
     """Write the confusion table, and below it each false sentence; go on after an interrupt."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
-    from taylor_verify_reports.studies.causes.measure import Named, measured, page
+    from taylor_verify_reports.studies.causes.measured_causes import Named, measured, page
     from taylor_verify_reports.studies.finished_parts import Parts, unfinished
 
     finished, answers = progress.counting(len(KINDS)), list[Named]()
