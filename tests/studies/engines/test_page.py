@@ -21,12 +21,8 @@ from builders.studies.engines import (
 
 from taylor_verify.plotting.picture import content
 from taylor_verify_reports.studies.engines import page
-<<<<<<< HEAD
 from taylor_verify_reports.studies.engines.advice import advice, at_length
-=======
-from taylor_verify_reports.studies.engines.advice import advice
 from taylor_verify_reports.studies.engines.board_studies import STUDY
->>>>>>> h/pages
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing, find, write
 from taylor_verify_reports.studies.engines.engine_page import pages
 from taylor_verify_reports.studies.engines.entry import Entry, EntryList, entry_list

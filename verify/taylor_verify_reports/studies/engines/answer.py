@@ -28,7 +28,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify_reports.studies.engines.document import EngineRow, Standing
 from taylor_verify_reports.studies.engines.entry import Asked
 from taylor_verify_reports.studies.engines.replay import States, errors_of, judged, states_of
-from taylor_verify_reports.studies.unfinished import Parts
+from taylor_verify_reports.studies.finished_parts import Parts
 
 _STANDINGS: Final = {
     Outcome.FINISHED: Standing.JUDGED,
