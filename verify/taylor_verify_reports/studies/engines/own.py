@@ -119,10 +119,10 @@ def add(
         measure(entries, {}, store, say)
     else:
         for run in entries.runs():
-            if file := _file_for(run, Path(engine.files)):
-                answer = _judged_file(run, file)
+            if result := _file_for(run, Path(engine.files)):
+                answer = _judged_file(run, result)
                 store.add(answer)
-                _copy(file, store, answer)
+                _copy(result, store, answer)
                 say(f"{run}: {answer.row.standing}")
     return own_answers(folder, name, engine.name)
 
