@@ -34,7 +34,7 @@ from taylor_verify.judge.errors.state import (
     norms,
     state_distances,
 )
-from taylor_verify.judge.errors.velocity import VelocityErrors, velocity_shift
+from taylor_verify.judge.errors.velocity import VelocityErrors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import VELOCITIES, state_groups
@@ -155,18 +155,20 @@ class Comparison:
             last = block
         assert last is not None
         errors = [each for each in states.errors() if self._has_quantity(each.quantity)]
-        block = self._shifted(errors, last)
+        moving = [(one.group, *one.joined()) for one in velocities]
+        every = [*errors, *(of_one for _, of_one, _ in moving)]
+        block = self._shifted(every, last)
         with mp.workprec(self.bits):
-            shifts = self._shifts(block, errors)
-            shifted = [self._shift_of(one, block) for one in velocities]
+            shifts = self._shifts(block, every)
+        pairs = zip(moving, shifts[len(errors) :], strict=True)
         return Measured(
             errors,
             drifts.errors(),
             worked,
-            shifted,
+            [Velocity(*one, shift) for one, shift in pairs],
             np.concatenate(excess) if excess else None,
             reduce(joined, at_nodes),
-            shifts,
+            shifts[: len(errors)],
             block.is_whole_of(self.scene),
         )
 
@@ -241,15 +243,8 @@ class Comparison:
         """Return the shifts of time; none under written loads, whose rates are not known."""
         if self.scene.body.loads is not None:
             return [None] * len(errors)
-        scene, truth, answer = block.scene, block.truth, block.answer
-        return time_shifts(scene, self.exact, truth, answer, self.digits, errors)
-
-    def _shift_of(self, velocity: VelocityErrors, block: Block) -> Velocity:
-        errors, sizes = velocity.joined()
-        own, shift = block.velocities[velocity.group], None
-        if self.scene.body.loads is None:
-            shift = velocity_shift(block.scene, self.exact, own, self.digits, errors)
-        return Velocity(velocity.group, errors, sizes, shift)
+        answer = Motion({**block.answer.quantities, **block.velocities}, block.answer.radius)
+        return time_shifts(block.scene, self.exact, block.truth, answer, self.digits, errors)
 
     # The rows in blocks.
 

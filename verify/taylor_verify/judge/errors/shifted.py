@@ -22,6 +22,7 @@ from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.causes.quick_motion import quick_motion
 from taylor_verify.judge.errors.state import Errors
+from taylor_verify.judge.velocities import exact_matrix, velocity, velocity_forms
 from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.instants import evenly
@@ -215,14 +216,9 @@ class Compared:
 
     def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
         error, size = self._relative(truth.quantities, slice(None))
-        factors = {
-            part: float(mp.ldexp(1, derivatives.units[part]) / scale)
-            for part, scale in self._scales.items()
-        }
         velocity, acceleration = (
             np.concatenate(
-                [factor * rows[part].reshape(len(shifts), -1) for part, factor in factors.items()],
-                axis=1,
+                [self._rate(rows, derivatives.units, part) for part in self._scales], axis=1
             )
             for rows in (derivatives.velocity, derivatives.acceleration)
         )
@@ -235,6 +231,21 @@ class Compared:
             unit=power_of_two(derivatives.time),
             more=np.zeros(len(shifts)),
         )
+
+    def _rate(self, rows: Mapping[str, Floats], units: Mapping[str, int], part: str) -> Floats:
+        """Return the rate of a part over its scale, from those of the momenta where it is a velocity."""
+        if part in rows:
+            factor = float(mp.ldexp(1, units[part]) / self._scales[part])
+            return factor * rows[part].reshape(len(rows[part]), -1)
+        forms = velocity_forms(self.run.scene.body).forms[part]
+        total: Floats = sum(
+            rows[name]
+            @ (exact_matrix(matrix).T * (mp.ldexp(1, units[name]) / self._scales[part])).astype(
+                float
+            )
+            for name, matrix in forms.items()
+        )
+        return total
 
     def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
         """Return the mean square error after each of these shifts, on a few samples."""
@@ -275,8 +286,9 @@ class Compared:
         self, truth: Mapping[str, Any], rows: Sequence[int] | slice
     ) -> tuple[Floats, float]:
         """Return the error of these rows of the answer, in units of a power of two near the largest."""
-        parts = self._scales
-        errors = {p: self.run.answer[p][rows] - truth[p] for p in parts}
+        parts, body = self._scales, self.run.scene.body
+        known = {p: truth[p] if p in truth else velocity(p, body, truth) for p in parts}
+        errors = {p: self.run.answer[p][rows] - known[p] for p in parts}
         errors = {p: error.reshape(len(error), -1) for p, error in errors.items()}
         with np.errstate(all="ignore"):  # overflow and underflow are handled below
             relative = np.concatenate(
