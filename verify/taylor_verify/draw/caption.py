@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
-_WAYS: Final = {
+WAYS: Final = {
     "arb": "exact, by closed form with proven bounds",
     "mpmath": "exact, by closed form",
     "taylor": "exact, by enclosed Taylor series",
@@ -27,7 +27,7 @@ class NotDrawn(ValueError):  # noqa: N818 (an answer, not a fault of the code)
 
 def caption(document: Mapping[str, Any]) -> str:
     """Return the scene and the exact route of its motion."""
-    return f"{document['scene']}: {_WAYS[document['route']]}."
+    return f"{document['scene']}: {WAYS[document['route']]}."
 
 
 def captioned(

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.draw.caption import WAYS
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.quantities import COLUMNS, GATE_FACTOR
@@ -143,7 +144,7 @@ def _facts(runs: Sequence[Run], portrait: Document, record: Document) -> str:
         "regime": portrait.get("regime") or record.get("regime", ""),
         "period": f"{float(periods[0]):.6g}" if periods else "",
         "compared": ", ".join(dict.fromkeys(v.quantity for run in runs for v in run.state)),
-        "truth": (portrait.get("values") or record).get("route", ""),
+        "truth": WAYS.get((portrait.get("values") or record).get("route", ""), ""),
         "source": portrait.get("source") or "",
     }
     return "\n".join(f":{name}: {prose(value)}" for name, value in facts.items() if value)
@@ -226,12 +227,9 @@ def _values(document: Document) -> list[str]:
     if not rows:
         return []
     radii = [float(row["radius"]) for row in rows if row.get("radius")]
-    route = {"arb": "ball arithmetic", "mpmath": "the second closed form"}.get(
-        document.get("route", ""), "Taylor series in ball arithmetic"
-    )
     error = f"; no row is off by more than {figure(max(radii))} of itself" if radii else ""
     what = (
-        f"{document['digits']} digits by {route}{error}. The columns are those that "
+        f"{document['digits']} digits, {WAYS[document['route']]}{error}. The columns are those that "
         "`taylor-verify check` reads."
     )
     return [what, _block("text", _trajectory(rows), "exact")]
