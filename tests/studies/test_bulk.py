@@ -16,6 +16,7 @@ from builders import reports
 
 from taylor_verify.cli import main
 from taylor_verify.records import store
+from taylor_verify.records.sums import line
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies import archive, bulk
 from taylor_verify_reports.studies.study import Progress
@@ -105,11 +106,11 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
 
     Records of an earlier version, which do not name their verdicts, are accepted."""
     stamp = report / "data" / store.STAMP
-    line = stamp.read_bytes()
+    content = stamp.read_bytes()
     assert lacking(report, "records of runs") == ()
     stamp.unlink()
     assert lacking(report, "records of runs") == ()
-    stamp.write_bytes(line)
+    stamp.write_bytes(content)
     file = report / "data" / store.VERDICTS
     stored = json.loads(file.read_text(encoding="utf-8"))
     stored["verdicts"][0] |= {"max": 0.5, "bound": 1.0}
@@ -121,6 +122,22 @@ def test_records_of_other_verdicts_are_made_again(report: Path) -> None:
     store.add_records(report, [])
     assert [f.name for f in mine.parent.glob("*.json")] == ["mine.json"]
     assert len(lacking(report, "records of runs")) == 4
+
+
+def test_a_run_that_departs_from_what_is_published_is_named(report: Path, capsys: Captured) -> None:
+    """A published error that a run made again does not have fails, and its scene gets no records."""
+    file = report / "data" / store.VERDICTS
+    stored = json.loads(file.read_text(encoding="utf-8"))
+    asked = {"scene": "euler/generic", "rung": "f64", "quantity": "omega"}
+    (row,) = (row for row in stored["verdicts"] if asked.items() <= row.items())
+    row |= {"max": 0.5, "bound": 1.0}
+    text = store.laid_out(stored)
+    file.write_text(text, encoding="utf-8")
+    file.with_name(store.SUM).write_text(line(text.encode(), store.VERDICTS), encoding="utf-8")
+    shutil.rmtree(report / "data" / store.RECORDS)
+    assert main(["publish", "--missing", "--from", str(report)]) == 1
+    assert "euler/generic" in capsys.readouterr().err
+    assert {run.scene for run in lacking(report, "records of runs")} == {"euler/generic"}
 
 
 def test_documents_of_another_text_of_a_scene_are_made_again(report: Path) -> None:

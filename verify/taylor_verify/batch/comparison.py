@@ -122,10 +122,7 @@ class Earlier:
         """Find every number that left the rounding class of its published one, upwards or downwards."""
         before = _asked_again(self.verdicts, results)
         report = compare(before, results.verdicts)
-        failures = report.towards(
-            *(each for each in Direction if each is not Direction.UNAVAILABLE)
-        )
-        compared = report.compared, failures, (), (), before, self._notes
+        compared = report.compared, report.departures, (), (), before, self._notes
         return Comparison(*compared, doubted=bool(self.edited), source=self.source)
 
 

@@ -120,6 +120,11 @@ class Differences:
         """Return the differences in some directions."""
         return tuple(each for each in self.all if each.direction in directions)
 
+    @property
+    def departures(self) -> tuple[Difference, ...]:
+        """Whatever left the rounding class of its published row, upwards or downwards."""
+        return tuple(each for each in self.all if each.direction is not Direction.UNAVAILABLE)
+
 
 def compare(before: Iterable[Verdict], now: Iterable[Verdict]) -> Differences:
     """Compare every row of ``now`` with that of ``before`` for its scene, solver, setting, rung, quantity.

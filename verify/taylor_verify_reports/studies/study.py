@@ -31,6 +31,10 @@ class NotMeasured(ValueError):  # noqa: N818 (it names what did not happen)
     """A study cannot be measured with the given options; the text is the message to the user."""
 
 
+class Departed(ValueError):  # noqa: N818 (it names what happened)
+    """Runs made again have numbers outside the rounding class of the published ones; a line for each."""
+
+
 @dataclass(frozen=True)
 class Progress:
     """Reports on the progress of a measurement; silent by default.

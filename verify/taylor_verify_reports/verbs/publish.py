@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, graver, lines_of, wrong_calls
+from taylor_verify.cli.answer import FAIL, PASS, Answer, WrongCall, graver, lines_of, wrong_calls
 from taylor_verify.cli.folders import alone_in, writable
 from taylor_verify.cli.progress import advancing, working
 from taylor_verify.cli.streams import say
@@ -287,11 +287,21 @@ def _site(folder: Path, target: Path) -> Answer:
 
 
 def make_missing(folder: Path) -> Answer:
-    """Make the files of every study that the repository leaves out."""
+    """Make the files of every study that the repository leaves out.
+
+    The answer fails, and names the rows, if runs made again leave the rounding class of the published ones.
+    """
+    from taylor_verify_reports.studies.study import Departed
+
     lacking = _missing(folder)
     if lacking.data:
         say(f"making what is not in {folder}: {lacking.data} ({_TIME})")
-    return _files_written(lacking.make(_progress()))
+    try:
+        return _files_written(lacking.make(_progress()))
+    except Departed as departed:
+        rows = str(departed).splitlines()
+        end = f"{len(rows)} departures from their rounding class: no records of these scenes"
+        return Answer(FAIL, {"written": [], "departures": rows}, str, [*rows, end])
 
 
 def _packed(folder: Path, target: Path) -> Answer:

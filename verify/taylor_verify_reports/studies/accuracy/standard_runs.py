@@ -11,7 +11,7 @@ from taylor_verify.records.runs import Run
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import TABLES
-from taylor_verify_reports.studies.study import Bulk, Measured, Progress, Published, Study
+from taylor_verify_reports.studies.study import Bulk, Departed, Measured, Progress, Published, Study
 
 if TYPE_CHECKING:
     from taylor_verify.batch.job import Job
@@ -57,24 +57,36 @@ def _runs_lacking(report: Published) -> tuple[Run, ...]:
 
 
 def _add_records(folder: Path, lacking: Sequence[Run], progress: Progress) -> tuple[Path, ...]:
-    """Run the published runs once more; the records of a scene are written as its runs end."""
+    """Run the published runs once more; the records of a scene are written as its runs end.
+
+    Raises Departed at the end; a scene whose numbers are not the published ones has no records.
+    """
+    from taylor_verify.batch.differences import compare
     from taylor_verify.batch.failure import Failed
     from taylor_verify.batch.job import Job
     from taylor_verify.batch.judging import run_job
     from taylor_verify.batch.work import run_all
 
-    rungs: dict[str, list[str]] = {}
+    published: dict[str, list[Run]] = {}
     for run in lacking:
-        rungs.setdefault(run.scene, []).append(run.rung)
-    jobs = [Job(scene, _SOLVER, tuple(own)) for scene, own in rungs.items()]
+        published.setdefault(run.scene, []).append(run)
+    jobs = [Job(s, _SOLVER, tuple(run.rung for run in own)) for s, own in published.items()]
     finished, written = progress.counting(len(jobs)), dict[Path, None]()
+    departures: list[str] = []
 
     def keep(job: Job, judged: Sequence[Judgement]) -> None:
-        records = [one.record for one in judged if one.record is not None]
-        written.update(dict.fromkeys(store.add_records(folder, records)))
+        before = (verdict for run in published[job.name] for verdict in run.verdicts)
+        after = (verdict for one in judged for verdict in one.verdicts)
+        if departed := compare(before, after).departures:
+            departures.extend(map(str, departed))
+        else:
+            records = [one.record for one in judged if one.record is not None]
+            written.update(dict.fromkeys(store.add_records(folder, records)))
         finished(str(job))
 
     run_all(run_job, jobs, ended=keep, raises=Failed)
+    if departures:
+        raise Departed("\n".join(departures))
     return tuple(written)
 
 
