@@ -195,7 +195,7 @@ class _Replays:
         return some[:_FITS]
 
     def _beside(self, place: int) -> Sequence[Floats]:
-        none = np.zeros((self.arcs.of_right[: self.arcs.answer.n].size, 0))
+        none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
         return [none, *self.bases] if place == 0 else [none]
 
     def _lefts(self, place: int, rest: Floats) -> list[float]:
