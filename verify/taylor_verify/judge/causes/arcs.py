@@ -26,6 +26,8 @@ _FINEST: Final = 2e-14
 _ORDER: Final = 2.0**8
 # Times so far from a switch, relative to the time, are on one side of it whatever rounds.
 _INSIDE: Final = 2.0**-50
+# The work of reading other texts.
+_NEW_TEXTS: Final = 10_000.0
 # Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
 _STATES: Final = 2400
@@ -204,6 +206,34 @@ class Arcs(Evidence):
         """
         parts = [self._defects(part, steps) for part in parts_of(sets)]
         return np.concatenate(parts)
+
+    def along(self, changes: Changes) -> float:
+        """Return the cosine between the defects and what a changed text makes of the arcs, about.
+
+        That is the load at both ends times the span, for short arcs. Else, and for other changes, it is 1.
+        """
+        omega = self.answer.right.velocities(self.since, self.begin(self.answer.n))[0, -3:]
+        turn = float(np.max(np.linalg.norm(omega, axis=0) * np.abs(self.spans)))
+        if "acting" not in changes or turn > 1 or len(self.answer.right.switches):
+            return 1.0
+        self.answer.budget.spend(_NEW_TEXTS)
+        push = self._push(self.answer.right.changed(changes)) - self._push_of_right
+        defects = self.of_right[: self.answer.n, : len(self.first)]
+        size = float(np.linalg.norm(push) * np.linalg.norm(defects))
+        return float(np.sum(push * defects)) / size if size > 0 else 0.0
+
+    @cached_property
+    def _push_of_right(self) -> Floats:
+        return self._push(self.answer.right)
+
+    def _push(self, equations: Equations) -> Floats:
+        answer, count = self.answer, len(self.first)
+        rows = np.concatenate([self.first, self.last])
+        z, times = answer.states(max(answer.n, equations.coupled), rows).T[None], answer.times[rows]
+        load = equations.loads_at(times, z, equations.velocities(times, z))[0]
+        pushed = (load[:, :count] + load[:, count:]) / 2 * self.spans
+        rates = pushed if equations.has_momenta else equations.inverse @ pushed
+        return np.asarray(rates / answer.sizes[:, None])
 
     @cached_property
     def compared(self) -> int:

@@ -57,6 +57,8 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
+# Nor is a text whose load makes nothing like the defects: the cosine is less, of faults and of families.
+_ALONG: Final = (0.5, 0.3)
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
@@ -87,15 +89,13 @@ def dynamics(answer: Answer) -> Cause | None:
 
 
 def in_states(answer: Answer) -> Cause | None:
-    """Return the change of states, of held loads or of the body whose scene moves as the answer does."""
+    """Return the change of own states, of loads or of the body whose scene moves as the answer does."""
     right = answer.right
-    if right.loads is None or not answer.moving:
+    if not answer.moving:
         return None
     search = _search_from_start(answer)
-    faults = [*faults_of_states(answer)]
-    if not answer.has_states:
-        return search.cause([*search.without_numbers(faults)])
-    faults += [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_texts(right)]
+    faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
+    faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
     with suppress(Spent):
         cause = cause or search.cause([*search.fitted(_written(answer))])
@@ -216,6 +216,7 @@ class Search:
 
     def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
+        faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
         every = self.evidence.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))
@@ -234,12 +235,17 @@ class Search:
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
 
+    def _along(self, changes: Changes) -> float:
+        return self.evidence.along(changes) if isinstance(self.evidence, Arcs) else 1.0
+
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
-        sets = [changes for family in families for changes in family.ahead]
+        ahead = [(family, family.ahead) for family in families]
+        ahead = [each for each in ahead if abs(self._along(each[1][0])) > _ALONG[1]]
+        sets = [changes for _, of_family in ahead for changes in of_family]
         defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
         linear = list[_Linear]()
-        for family in families:
+        for family, _ in ahead:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
