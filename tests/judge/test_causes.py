@@ -421,6 +421,15 @@ def test_two_rows_name_nothing() -> None:
     assert causes(load(FREE), columns) == {}
 
 
+def test_noise_of_momenta_has_no_cause() -> None:
+    """Momenta with noise in every row, the first one included, end in no error and no cause."""
+    columns, draw = simulated(load(FLUID)), np.random.default_rng(5)
+    for name in VECTORS["linear_impulse"] + VECTORS["angular_impulse"]:
+        noise = 1e-4 * draw.standard_normal(len(columns["t"]))
+        columns[name] = (np.array(columns[name]) * (1 + noise)).tolist()
+    assert causes(load(FLUID), columns) == {}
+
+
 @pytest.mark.parametrize("value", by_turns([np.nan, 1e200], 2))
 def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> None:
     """Rows that are no numbers, or beyond float64's squares, end in no error and no cause."""

@@ -1,32 +1,19 @@
-"""Causes of attitudes alone, of parts of a run, of an added mass, of steps, under loads by the attitude."""
+"""Causes of attitudes alone, of parts of a run, of steps, under loads by the attitude."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from builders.trajectories import QUATERNION, Columns, file_judgement, named, write_csv
+from builders.caused_rows import Array, Law, causes, columns, rows, titles
+from builders.trajectories import QUATERNION, Columns, file_judgement, write_csv
 from builders.turns import by_turns
-from builders.wrong_dynamics import failure, turned
-from scipy.integrate import solve_ivp
+from builders.wrong_dynamics import turned
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.judge.causes.likely import explained
-from taylor_verify.judge.causes.material import material_of_file
-from taylor_verify.judge.conventions.fits import Conventions
-from taylor_verify.judge.conventions.worlds import World
-from taylor_verify.numbers.precision import rung
-from taylor_verify.records.answers import LikelyCause
 from taylor_verify.scenes.reading.reader import read
-from taylor_verify.solvers.files.file import read as read_file
-
-Array = np.ndarray[Any, np.dtype[np.float64]]
-# The rates of v at a time, from v and q.
-Law = Callable[[float, Array, Array], Array]
 
 TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
 Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
@@ -46,41 +33,6 @@ attitude = [-0.5, 0.3, -0.7, 0.2]
 end = 8
 samples = 81
 """
-VEHICLE = """
-title = "Vehicle"
-model = "kirchhoff"
-track = ["attitude"]
-[body]
-mass = 31.9
-inertia = [0.12, 4.2, 4.2]
-centre_of_mass = [0, 0, 0.02]
-added_mass = [0.86, 30.3, 28.3, 0.035, 3.6, 3.5]
-[initial]
-linear_velocity = [1.5, 0.1, -0.05]
-angular_velocity = [0.05, 0.1, 0.15]
-[time]
-end = 3
-samples = 61
-"""
-
-
-def rows(law: Law, v0: Sequence[float], q0: Array, times: Array, edges: Sequence[float]) -> Array:
-    """The states at the times by SciPy, begun anew at each of the edges."""
-    n, z, parts = len(v0), np.array([*v0, *q0]), []
-    for begin, end in pairwise([times[0], *edges, times[-1]]):
-        inside = times[(times > begin) & (times <= end)]
-        solved = solve_ivp(
-            lambda t, z: np.concatenate([law(t, z[:n], z[n:]), turned(z[n:], z[n - 3 : n])]),
-            (begin, end - 1e-13),
-            z,
-            "DOP853",
-            t_eval=np.minimum(inside, end - 1e-13),
-            rtol=3e-14,
-            atol=1e-16,
-        )
-        z = solved.y[:, -1]
-        parts.append(solved.y.T)
-    return np.vstack([[*v0, *q0], *parts])
 
 
 def rigid(
@@ -98,28 +50,6 @@ def rigid(
         edges,
     )
     return columns(TIMES, made, ("w1", "w2", "w3"))
-
-
-def columns(times: Array, made: Array, names: Sequence[str]) -> Columns:
-    q = made[:, len(names) :]
-    unit = q / np.linalg.norm(q, axis=1, keepdims=True)
-    return named(("t",), times[:, None]) | named(names, made[:, :-4]) | named(QUATERNION, unit)
-
-
-def titles(path: Path, scene: str, made: Columns) -> list[str]:
-    """The causes of a file whose states failed, without what they leave."""
-    return [cause.sentence.partition("; leaves")[0] for cause in causes(path, scene, made)]
-
-
-def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
-    asked, known = read(scene, "scene"), ("omega", "impulse", "attitude")
-    file = read_file(str(write_csv(path / "mine.csv", made)))
-    plain = Conventions((), World(asked), {})
-    failures = [failure(asked, quantity) for quantity in known]
-    with np.errstate(all="ignore"):
-        answer = material_of_file(file, rung("f64"), plain, failures)
-        assert answer is not None
-        return explained(answer).causes
 
 
 def window(begin: float, end: float, moment: Sequence[float]) -> Law:
@@ -212,13 +142,13 @@ def saved_twice(made: Columns) -> Columns:
     return columns(TIMES[:80], np.repeat(table(made)[:40], 2, axis=0), ("w1", "w2", "w3"))
 
 
-def in_steps() -> Columns:
-    """Explicit Euler in five steps a row, with a drag."""
+def in_steps(moment: Law = DAMPED) -> Columns:
+    """Explicit Euler in five steps a row, with a moment."""
     h, z, made = 0.02, np.array([0.8, -0.5, 1.1, *Q]), [np.array([0.8, -0.5, 1.1, *Q])]
     for _ in TIMES[1:]:
         for _ in range(5):
             w, q = z[:3], z[3:]
-            rate = np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w)) - 0.07 * w
+            rate = np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w) + moment(0.0, w, q))
             z = z + h * np.concatenate([rate, turned(q, w)])
             z[3:] /= np.linalg.norm(z[3:])
         made.append(z)
@@ -239,6 +169,33 @@ def test_rows_that_are_held_or_stepped_have_their_cause(
 ) -> None:
     """An attitude held or set anew, rows saved twice, a fault beside coarse steps: each has its name."""
     assert titles(tmp_path, RIGID.format(load=""), made())[0].startswith(words)
+
+
+WHEELS = np.array([0.4, -0.3, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("moment", "words"),
+    by_turns(
+        [
+            (lambda t, w, q: 0 * w, "wheels left out, beside steps of explicit Euler, h = 0.02"),
+            (
+                lambda t, w, q: np.cross(WHEELS * [1, 0, 1], w),
+                "wheel 2 left out, beside steps of explicit Euler, h = 0.02",
+            ),
+            (lambda t, w, q: -0.05 * w**3, None),
+            (lambda t, w, q: 0.5 * np.cross(WHEELS, w) - 0.05 * w**3, None),
+        ],
+        3,
+        lambda moment, words: words is None,
+    ),
+)
+def test_wheels_that_are_missing_beside_steps_are_named(
+    moment: Law, words: str | None, tmp_path: Path
+) -> None:
+    """Wheels left out by a coarse method have their name beside its own; two faults beside it have none."""
+    scene = RIGID.format(load=f"rotor = {WHEELS.tolist()}")
+    assert [*titles(tmp_path, scene, in_steps(moment))] == ([] if words is None else [words])
 
 
 @pytest.mark.parametrize(
@@ -295,55 +252,6 @@ def test_steps_under_a_load_that_reads_the_attitude_are_replayed(tmp_path: Path)
     own = columns(TIMES, np.array(made), ("w1", "w2", "w3"))
     (title,) = titles(tmp_path, RIGID.format(load=SPRING), own)
     assert title == "explicit gyroscopic step: explicit Euler, h = 0.02"
-
-
-def crossed(v: Array) -> Array:
-    return np.cross(np.eye(3), v)
-
-
-def coriolis(matrix: Array, nu: Array) -> Array:
-    """Fossen's C(nu) of a mass matrix."""
-    linear, angular = crossed(matrix[:3] @ nu), crossed(matrix[3:] @ nu)
-    return np.block([[np.zeros((3, 3)), -linear], [-linear, -angular]])
-
-
-def body(factor: float = 1.0) -> tuple[Array, Array]:
-    """The rigid body of the vehicle, and its added mass times a factor."""
-    arm = crossed(np.array([0, 0, 0.02]))
-    lower = np.diag([0.12, 4.2, 4.2]) - 31.9 * arm @ arm
-    own = np.block([[31.9 * np.eye(3), -31.9 * arm], [31.9 * arm, lower]])
-    return own, factor * np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
-
-
-@pytest.mark.parametrize(
-    ("entries", "factor", "of_mass", "words"),
-    [
-        ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
-        ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
-        ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
-        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
-        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
-        ("every", 0.0, 0.0, "added mass left out"),
-    ],
-)
-def test_an_added_mass_that_a_scene_names_is_named(
-    entries: Any, factor: float, of_mass: float, words: str, tmp_path: Path
-) -> None:
-    """Entries of C_A, and the whole of it in one place or in both, have their names."""
-    own, added = body()
-    factors = np.ones((6, 6))
-    for i, k in np.ndindex(6, 6) if entries == "every" else [(i - 1, k - 1) for i, k in entries]:
-        factors[i, k] = factor
-    mass = own + of_mass * added
-
-    def law(t: float, nu: Array, q: Array) -> Array:
-        matrix = coriolis(own, nu) + factors * coriolis(added, nu)
-        return np.linalg.solve(mass, -matrix @ nu)
-
-    times = np.round(np.arange(0, 61) * 0.05, 6)
-    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
-    names = ("u1", "u2", "u3", "w1", "w2", "w3")
-    assert titles(tmp_path, VEHICLE, columns(times, made, names))[0].startswith(words)
 
 
 @pytest.mark.slow

@@ -33,6 +33,14 @@ def doubled(n: Numbers) -> None:
     n.damping = 2 * n.damping
 
 
+def in_degrees(n: Numbers) -> None:
+    n.damping *= np.pi / 180
+
+
+def in_other_degrees(n: Numbers) -> None:
+    n.damping *= np.pi / 200
+
+
 def of_velocity(n: Numbers) -> Rate:
     """The rates with c times omega, or U and W, for c times the momenta."""
 
@@ -55,6 +63,8 @@ def of_velocity(n: Numbers) -> Rate:
         pytest.param(RIGID, turned_round, "damping with the other sign", marks=pytest.mark.slow),
         (RIGID, doubled, "damping"),
         (FLUID, left_out, "damping left out"),
+        (RIGID, in_degrees, "damping of omega in radians for degrees"),
+        pytest.param(RIGID, in_other_degrees, "damping", marks=pytest.mark.slow),
         pytest.param(FLUID, doubled, "damping", marks=pytest.mark.slow),
     ],
 )

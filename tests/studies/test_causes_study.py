@@ -70,6 +70,7 @@ _NAMED = {
     "velocity of another point": "velocity of another point",
     "path of another point": "path of another point",
     "frame that turns": "frame that turns",
+    "rates of Euler angles": "rates of Euler angles",
     "constant current": "constant current",
     "asleep from a time on": "asleep",
     "a cap": "speed capped",

@@ -68,7 +68,7 @@ def causes_of(answer: Answer) -> list[Cause]:
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
         of_motion = _of_motion(answer, moving, "attitude" in left)
-        return of_motion or _in_space(answer) or _some(in_states(answer))
+        return of_motion or _in_space(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
@@ -127,7 +127,9 @@ def _turns_too_little(answer: Answer) -> bool:
 
 
 def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
-    right = answer.right if cause is None else answer.right.changed(cause.changes)
+    is_stepped = cause is not None and cause.method is not None
+    changes = {} if cause is None or is_stepped else cause.changes
+    right = answer.right.changed(changes)
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
     if of_attitude is not None:
         return [*causes, of_attitude]
@@ -245,15 +247,18 @@ def _undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     for name, readings_ in tried.items() if answer.is_from_start else ():
         if name in by_group or name not in answer.failed:
             continue
-        allowed = _ROUNDINGS * answer.roundings[name]
-        if answer.error[name][0] <= allowed:
+        if _is_right_at_first(answer, name):
             continue
         for words, read in readings_:
-            if read.at(np.s_[:1]).error[name][0] <= allowed:
+            if _is_right_at_first(read, name):
                 convention = Cause(f"{name} {words}", "convention", {})
                 if both := _beside(convention, causes_of(read)):
                     return both
     return []
+
+
+def _is_right_at_first(answer: Answer, group: str) -> bool:
+    return bool(answer.error[group][0] <= _ROUNDINGS * answer.roundings[group])
 
 
 def _beside(convention: Cause, causes: list[Cause]) -> list[Cause]:
@@ -277,9 +282,11 @@ def _in_space(answer: Answer) -> list[Cause]:
     convention = Cause(f"omega {name}", "convention", {})
     if np.array_equal(read.file.v, answer.file.v):
         return []
-    causes = _of_motion(read, list(read.moving), "attitude" in answer.failed)
-    if causes:
-        return _beside(convention, causes)
+    # Where the first row refutes the convention, only the equations may be in space axes.
+    if not answer.is_from_start or _is_right_at_first(read, "omega"):
+        causes = _of_motion(read, list(read.moving), "attitude" in answer.failed)
+        if causes:
+            return _beside(convention, causes)
     in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
     return _beside(convention, _in_world(answer, answer.file.v)) or _in_world(answer, in_space)
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
 
@@ -28,8 +29,9 @@ Changes = Mapping[str, Any]
 _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
 _AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
 AXES: Final = _AXES | _AXES_OF_NUMBERS
-# The work of texts, once and for each state.
-_TEXTS: Final = 120.0
+# The work of texts, once, for each of their steps, and for each state.
+_TEXTS: Final = 80.0
+_STEP: Final = 3.0
 _TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 
@@ -228,14 +230,16 @@ class Equations:
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
         each = (0.016 if self._reads_frame else 0.008) * components
         if self.acting is not None:
-            once, each = once + _TEXTS * (1 + bool(self.own)), each + _TEXTS_OF_ONE
+            steps = len(self.acting.written.piece(Fraction(0)).steps)
+            once += (_TEXTS + _STEP * steps) * (1 + bool(self.own))
+            each += _TEXTS_OF_ONE
         return once + each * states
 
     def _expressions(self, time: Floats, z: Floats, nu: Floats, R: Any) -> Floats:
         """Return the values of the expressions that have an effect, (parameters, columns, arcs)."""
         loads = None
         if not {"loads", "turned loads"}.isdisjoint(self._columns):
-            loads = self._loads(time, z, nu)
+            loads = self.loads_at(time, z, nu)
         sets, begin = max(len(each) for each in (nu, R, loads) if each is not None), 0
         values = np.empty((sets, self._slopes.shape[-1], z.shape[2]))
         for name, columns in self._columns.items():
@@ -267,7 +271,7 @@ class Equations:
         """The places of both factors of each product that has an effect."""
         return np.transpose(self.basis.pairs)[:, self._columns["products"]]
 
-    def _loads(self, time: Floats, z: Floats, nu: Floats) -> Floats:
+    def loads_at(self, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads of the scene, (parameters, components, arcs)."""
         load = np.asarray(self.load)
         constant = np.asarray(load if load.ndim == 3 else load[None, :, None], dtype=float)

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
-from taylor_verify.judge.causes.budget import Budget, Spent
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
@@ -44,7 +44,7 @@ from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
-# Beside the steps of a method the search has this work of its own.
+# Beside the steps of a method at least this work may be done.
 _BESIDE: Final = 100_000.0
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
@@ -57,6 +57,8 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
+# Nor is a text whose load makes nothing like the defects: the cosine is less, of faults and of families.
+_ALONG: Final = (0.5, 0.3)
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
@@ -87,15 +89,13 @@ def dynamics(answer: Answer) -> Cause | None:
 
 
 def in_states(answer: Answer) -> Cause | None:
-    """Return the change of states, of held loads or of the body whose scene moves as the answer does."""
+    """Return the change of own states, of loads or of the body whose scene moves as the answer does."""
     right = answer.right
-    if right.loads is None or not answer.moving:
+    if not answer.moving:
         return None
     search = _search_from_start(answer)
-    faults = [*faults_of_states(answer)]
-    if not answer.has_states:
-        return search.cause([*search.without_numbers(faults)])
-    faults += [*faults_of_terms(right), *faults_of_bodies(right), *faults_of_texts(right)]
+    faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
+    faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
     with suppress(Spent):
         cause = cause or search.cause([*search.fitted(_written(answer))])
@@ -111,10 +111,9 @@ def in_numbers(answer: Answer) -> Cause | None:
 
     At most half of the work that may be done is done for it.
     """
-    part = replace(answer, budget=Budget(answer.budget.left / 2))
-    with suppress(Spent):
-        search = _search_from_start(part)
-        return search.cause([*search.fitted(_written(part))])
+    with suppress(Spent), answer.budget.at_most(answer.budget.left / 2):
+        search = _search_from_start(answer)
+        return search.cause([*search.fitted(_written(answer))])
     return None
 
 
@@ -169,15 +168,19 @@ class Search:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
-            cause = self.cause(self._pairs(linear), PAIR)
+            budget = self.answer.budget
+            with suppress(Spent), budget.at_most(budget.left / 2):
+                cause = self.cause(self._pairs(linear), PAIR)
         return cause or self._beside_steps(linear, stride)
 
     def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""
         few = [each.slopes for each in linear if each.family.count <= FEW]
-        faults = [fault.changes for fault in faults_of_terms(self.answer.right)]
-        budget = self.answer.budget
-        with budget.of_its_own(_BESIDE), suppress(Spent):
+        right, budget = self.answer.right, self.answer.budget
+        texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
+        faults = [fault.changes for fault in (*faults_of_terms(right), *texts)]
+        budget.left = max(budget.left, _BESIDE)
+        with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
@@ -216,6 +219,7 @@ class Search:
 
     def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
+        faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
         every = self.evidence.defects([fault.changes for fault in faults])
         for fault, defects in zip(faults, every, strict=True):
             left = float(np.linalg.norm(defects))
@@ -234,12 +238,17 @@ class Search:
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
 
+    def _along(self, changes: Changes) -> float:
+        return self.evidence.along(changes) if isinstance(self.evidence, Arcs) else 1.0
+
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
-        sets = [changes for family in families for changes in family.ahead]
+        ahead = [(family, family.ahead) for family in families]
+        ahead = [each for each in ahead if abs(self._along(each[1][0])) > _ALONG[1]]
+        sets = [changes for _, of_family in ahead for changes in of_family]
         defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
         linear = list[_Linear]()
-        for family in families:
+        for family, _ in ahead:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
@@ -265,7 +274,7 @@ class Search:
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
                 fit = gauss_newton(self.evidence, family)
-                if family.kind == "clock" and isinstance(self.evidence, Arcs):
+                if family.kind == "clock" and isinstance(self.evidence, Arcs) and 0 not in counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
                     candidate = self._fitted(family, fit.size, fit.numbers)

@@ -51,6 +51,7 @@ _FRAMES: Final = {
     "omega": "is relative to a frame that turns, in space axes, at",
 }
 _ONCE_MORE: Final = "is turned by R^T once more: the file has it in body axes already"
+_OF_ANGLES: Final = "is the rates of Euler angles, roll' pitch' yaw', and no body rates"
 _TURNED: Final = "turned by a fixed rotation"
 _NOUNS: Final = {"velocity": "the linear velocity", "centre": "the centre"}
 
@@ -174,7 +175,17 @@ def _vectors(answer: Answer, name: str) -> Iterator[Reading]:
         yield Reading(f"is in another unit: {unit}", 0, factor * truth)
     if name == "omega" and answer.n == 3:
         yield Reading("is I omega", 0, truth @ answer.right.mass.T)
+    if name == "omega":
+        yield Reading(_OF_ANGLES, 0, _rates_of_angles(truth, R))
     yield from _fitted(answer, name, file, truth, R)
+
+
+def _rates_of_angles(omega: Floats, R: Floats) -> Floats:
+    """Return roll' pitch' yaw' of R = R_z(yaw) R_y(pitch) R_x(roll)."""
+    (x, y, z), (p, q, r) = R[:, 2].T, omega.T
+    level = np.hypot(y, z)
+    yaw = (q * y + r * z) / level**2
+    return np.array([p - yaw * x, (q * z - r * y) / level, yaw]).T
 
 
 def _signs(P: Floats) -> str:

@@ -9,49 +9,42 @@ from fractions import Fraction
 from itertools import product
 from typing import Final
 
-import numpy as np
-
+from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_texts import added, rewritten, written_out
 from taylor_verify.judge.causes.fit import Fault
 from taylor_verify.judge.causes.float_answer import Answer
-from taylor_verify.judge.causes.written_numbers import Number, rewritten
+from taylor_verify.judge.causes.written_numbers import Number
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
-_RATES: Final = tuple(
-    Fraction(f) for f in ("2", "1/2", "4", "1/4", "5", "1/5", "10", "1/10", "5/4", "4/5")
-)
+_TIMES: Final = ("2", "3/2", "3", "4", "5", "10", "5/4")
+_RATES: Final = tuple(Fraction(times) ** sign for times in _TIMES for sign in (1, -1))
 _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 
 
-def faults_of_states(answer: Answer) -> Iterator[Fault]:
-    """Yield the loads of a scene that are run otherwise; what no scene may have is none."""
-    acting = answer.right.acting
+def faults_of_states(right: Equations) -> Iterator[Fault]:
+    """Yield the own states of a scene, run otherwise; what no scene may have is none."""
+    acting = right.acting
     assert acting is not None
-    loads = acting.written
-    others = _misread_states(loads) if answer.has_states else _held_loads(loads, answer)
     with suppress(ValueError):
-        for name, other in others:
+        for name, other in _misread_states(acting.written):
             if next(other.faults(), None) is None:
                 yield Fault(name, "states", {"acting": acting.of(other)})
 
 
-def _held_loads(loads: Loads, answer: Answer) -> Iterator[tuple[str, Loads]]:
-    """Yield loads that are taken once in a row, or several times, and held in between."""
-    spacing = Fraction(float(np.median(np.diff(answer.times)))).limit_denominator(10**6)
-    if not spacing > 0:
-        return
+def held_over_steps(answer: Answer, h: float) -> Changes:
+    """Return the scene whose loads are taken once in a step, and held in between; none if it has faults."""
+    acting = answer.right.acting
+    assert acting is not None
+    loads, every = written_out(acting.written), Fraction(h).limit_denominator(10**6)
     names = {name: f"{name}_held" for name, _ in loads.vectors}
-    vectors = tuple(
-        (name, tuple(f"{names[name]}{i}" for i in (1, 2, 3))) for name, _ in loads.vectors
+    vectors = tuple((n, tuple(f"{own}{i}" for i in (1, 2, 3))) for n, own in names.items())
+    states = tuple(
+        Held(names[name], None, entries, every, Fraction(0), is_vector=True)
+        for name, entries in loads.vectors
     )
-    for steps in (1, 2, 4, 5, 10):
-        every = spacing / steps
-        states = tuple(
-            Held(names[name], None, entries, every, Fraction(0), is_vector=True)
-            for name, entries in loads.vectors
-        )
-        name = f"loads taken every {float(every):.6g} and held in between"
-        yield name, replace(loads, vectors=vectors, states=states)
+    other = replace(loads, vectors=vectors, states=states)
+    return {"acting": acting.of(other)} if next(other.faults(), None) is None else {}
 
 
 def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
@@ -164,22 +157,16 @@ def _half_wheels(loads: Loads) -> Iterator[tuple[str, Loads]]:
         f"({h[0]})*w3 - ({h[2]})*w1",
         f"({h[1]})*w1 - ({h[0]})*w2",
     ]
-    yield "no gyroscopic term of the wheels", _with_moment(loads, turning)
+    yield "no gyroscopic term of the wheels", added(loads, {"moment": turning})
     if all(entry in own or entry.replace(".", "").isdigit() for entry in h):
         reaction = [f"({own.get(entry, 0)})" for entry in h]
-        yield "no reaction of the wheels' motors", _with_moment(loads, reaction)
+        yield "no reaction of the wheels' motors", added(loads, {"moment": reaction})
 
 
 def _rates(loads: Loads) -> Iterator[tuple[str, str]]:
     for state in loads.states:
         if isinstance(state, Continuous):
             yield from zip(state.components, map(str, state.rate), strict=True)
-
-
-def _with_moment(loads: Loads, texts: list[str]) -> Loads:
-    ((name, entries),) = loads.vectors
-    added = tuple(f"{entry} + {text}" for entry, text in zip(entries, texts, strict=True))
-    return replace(loads, vectors=((name, added),))
 
 
 def _without_limits(text: str) -> str:

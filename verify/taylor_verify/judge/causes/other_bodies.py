@@ -99,6 +99,9 @@ def _misread_parts(mass: Floats, added: Floats) -> Iterator[tuple[str, Any]]:
     """Yield misread mass matrices of a rigid body and the added mass that the scene has apart."""
     for words, factor in _ADDED:
         yield f"added mass {words}", mass + (factor - 1) * added
+    diagonal = np.diag(np.diag(added))
+    if np.any(added != diagonal):
+        yield "added mass cut to its diagonal", mass - added + diagonal
     yield "rigid body left out", added
     rigid = mass - added
     arm, central = rigid[3:, :3] / rigid[0, 0], rigid.copy()

@@ -41,12 +41,14 @@ def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
     return min(max(LEAVES, ROUNDINGS * answer.floor(groups)), CAPS[min(count, 1)])
 
 
-def whole(answer: Answer, equations: Equations, stepper: Stepper | None = None) -> Motion | None:
+def whole(
+    answer: Answer, equations: Equations, stepper: Stepper | None = None, components: int = 0
+) -> Motion | None:
     """Return the motion of the equations from the start of the answer; None if it is not reached.
 
-    A ``stepper`` takes the place of the flow for the moving part.
+    A ``stepper`` takes the place of the flow for the moving part, or for so many ``components``.
     """
-    n, count = answer.n, equations.coupled
+    n, count = answer.n, components or equations.coupled
     start = _start(answer, equations, count)
     rows = answer.states(count)
     times = answer.times

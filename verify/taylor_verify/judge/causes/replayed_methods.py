@@ -7,14 +7,14 @@ each arc. An attitude's update takes q, the angular velocities at both ends of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.models.frame import attitude_rate
 from taylor_verify.numbers import rotation
 
@@ -29,11 +29,15 @@ _SETTLED: Final = 1e-15
 
 @dataclass(frozen=True)
 class Method:
-    """A step (equations, time, v, h) of some order; an implicit one costs more."""
+    """A step (equations, time, v, h) of some order; one ``is_dear`` that is solved or goes in stages.
+
+    One that ``has_frame`` leads the attitude and the centre as well.
+    """
 
     order: int
     step: _Step
-    is_implicit: bool = False
+    is_dear: bool = False
+    has_frame: bool = False
 
 
 def _explicit(weights: Sequence[float], *rows: Sequence[float]) -> _Step:
@@ -98,6 +102,14 @@ def _in_place(equations: Equations, time: Floats, v: Floats, h: Floats) -> Float
     return z
 
 
+def _held_loads(equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:
+    """Return the exact step under the loads at its begin, held in body axes."""
+    load = equations.loads_at(time, z, equations.velocities(time, z))
+    z = flow(replace(equations, acting=None, load=load).rates, z, time, h, 1)
+    z[:, equations.size + 4 :] += h * equations.current[: z.shape[1] - equations.size - 4, None]
+    return z
+
+
 def _momentum(equations: Equations, v: Floats) -> Floats:
     return equations.mass @ v + equations.rotor[:, None]
 
@@ -130,14 +142,14 @@ def _of_fixed_size(equations: Equations, time: Floats, v: Floats, h: Floats) -> 
 
 METHODS: Final[Mapping[str, Method]] = {
     "explicit Euler": Method(1, _explicit([1])),
-    "backward Euler": Method(1, _backward(_NEWTON), is_implicit=True),
-    "one Newton step of backward Euler": Method(1, _backward(1), is_implicit=True),
+    "backward Euler": Method(1, _backward(_NEWTON), is_dear=True),
+    "one Newton step of backward Euler": Method(1, _backward(1), is_dear=True),
     "components updated in place": Method(1, _in_place),
     "midpoint": Method(2, _explicit([0, 1], [1 / 2])),
     "Heun": Method(2, _explicit([1 / 2, 1 / 2], [1])),
     "Ralston": Method(2, _explicit([1 / 4, 3 / 4], [2 / 3])),
-    "implicit midpoint": Method(2, _iterated(_midpoint), is_implicit=True),
-    "trapezoid": Method(2, _iterated(_trapezoid), is_implicit=True),
+    "implicit midpoint": Method(2, _iterated(_midpoint), is_dear=True),
+    "trapezoid": Method(2, _iterated(_trapezoid), is_dear=True),
     "RK3 (Kutta)": Method(3, _explicit([1 / 6, 2 / 3, 1 / 6], [1 / 2], [-1, 2])),
     "RK3 (SSP)": Method(3, _explicit([1 / 6, 1 / 6, 2 / 3], [1], [1 / 4, 1 / 4])),
     "RK4": Method(4, _explicit([1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1])),
@@ -148,6 +160,8 @@ METHODS: Final[Mapping[str, Method]] = {
         4, _explicit([1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1])
     ),
 }
+# The loads of a scene, taken once in a step.
+HELD: Final = Method(1, _held_loads, is_dear=True, has_frame=True)
 # Methods of the momentum of a rigid body.
 OF_MOMENTUM: Final[Mapping[str, Method]] = {
     "momentum turned by the rate at the begin of the step": Method(1, _turned_by_the_rate),

@@ -19,8 +19,10 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.misread_states import held_over_steps
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
+    HELD,
     METHODS,
     OF_MOMENTUM,
     Method,
@@ -33,9 +35,10 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, which are this many roundings at least.
 _LEAVES: Final = 0.02
 _CLEAR: Final = 30.0
-# The steps of an arc by which the error of a method is measured, and how many times finer ones are measured
-# again; of explicit and implicit ones the most.
+# The steps of an arc by which the error of a method is measured, fewer where they are dear, and how many
+# times finer ones are measured again; of explicit and dear ones the most.
 _FINE: Final = 16
+_FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
 _MOST_IMPLICIT: Final = 64
@@ -83,7 +86,7 @@ def replay(
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
     h = spans / steps
-    evaluations = _EVALUATIONS if method.is_implicit else method.order
+    evaluations = _EVALUATIONS if method.is_dear else method.order
     v = np.broadcast_to(v, (max(len(v), equations.sets), *v.shape[1:]))
     price = equations.price(v.shape[1], len(v) * v.shape[2])
     answer.budget.spend(steps * evaluations * price)
@@ -103,17 +106,27 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
+    if answer.right.acting is not None:
+        known = {**known, "loads": HELD}
     for steps in _each_best(_Replays(arcs, stride, [{}]).steps(known, _ALONE)):
         if steps.left < max(_LEAVES, _CLEAR * arcs.floor):
+            h, changes = steps.step(answer), {}
             words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
             if steps.method.order > 1:
                 words = f"truncation of order {steps.method.order}: {steps.name}"
+            name = f"{words}, h = {h:.6g}"
+            if steps.method is HELD:
+                name, changes = (
+                    f"loads taken every {h:.6g} and held in between",
+                    held_over_steps(answer, h),
+                )
             yield Candidate(
-                name=f"{words}, h = {steps.step(answer):.6g}",
+                name=name,
                 kind="method",
                 defects=steps.left,
                 motion=partial(_motion, steps.method, steps.count),
                 near=_LEAVES,
+                changes=changes,
                 method=(steps.method, steps.count),
             )
 
@@ -128,7 +141,7 @@ def steps_beside(
     if arcs.of_right.shape != (arcs.answer.n, len(arcs.first)):
         return []  # momenta are compared beside the start or the attitude, which no step of v leads to
     bases = [orthonormal(each / np.linalg.norm(each, axis=0), 1e-9) for each in slopes]
-    explicit = {name: method for name, method in METHODS.items() if not method.is_implicit}
+    explicit = {name: method for name, method in METHODS.items() if not method.is_dear}
     steps = _Replays(arcs, stride, [{}, *faults], bases).steps(explicit, _BESIDE)
     return [each for each in _each_best(steps) if each.left < _BESIDE][:_METHODS]
 
@@ -154,7 +167,7 @@ class _Replays:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
-            rests = self._stepped(method, _FINE, self.sets)
+            rests = self._stepped(method, _fine(method), self.sets)
             for place, count in self._near(method, defects, rests, near):
                 (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
                 if np.all(np.isfinite(rest)):
@@ -167,11 +180,11 @@ class _Replays:
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
         """
-        most = _MOST_IMPLICIT if method.is_implicit else _MOST
+        most = _MOST_IMPLICIT if method.is_dear else _MOST
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
-            counts = self._counts(method, place, own, own - rest, near, _FINE)
+            counts = self._counts(method, place, own, own - rest, near, _fine(method))
             steps = counts[0] * self.stride if counts else 0
-            if _MUCH_FINER * _FINE < steps <= most:
+            if _MUCH_FINER * _fine(method) < steps <= most:
                 (finer,) = self._stepped(method, steps, [self.sets[place]])
                 counts = self._counts(method, place, own, own - finer, near, steps) or counts
             around = {max(1, count) + more for count in counts for more in (-1, 0, 1)}
@@ -195,7 +208,7 @@ class _Replays:
         return some[:_FITS]
 
     def _beside(self, place: int) -> Sequence[Floats]:
-        none = np.zeros((self.arcs.of_right[: self.arcs.answer.n].size, 0))
+        none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
         return [none, *self.bases] if place == 0 else [none]
 
     def _lefts(self, place: int, rest: Floats) -> list[float]:
@@ -221,6 +234,10 @@ class _Replays:
         return defects[:, :n, :arcs].reshape(len(defects), -1)
 
 
+def _fine(method: Method) -> int:
+    return _FINE_OF_DEAR if method.is_dear else _FINE
+
+
 def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
     times = answer.times if answer.is_from_start else np.r_[answer.begins, answer.times]
@@ -229,7 +246,9 @@ def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
     def go(z: Floats) -> Floats:
         return replay(answer, method, answer.right, z, since, spans, steps)
 
-    return whole(answer, answer.right, go)
+    frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
+    components = max(answer.right.coupled, answer.n + frame * method.has_frame)
+    return whole(answer, answer.right, go, components)
 
 
 def stepped(answer: Answer, steps: Steps) -> Answer:

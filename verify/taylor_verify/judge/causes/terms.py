@@ -16,6 +16,11 @@ from taylor_verify.judge.causes.many_flows import Floats
 
 _WRONG: Final = (("left out", 0.0), ("with the other sign", -1.0))
 _OFTEN_WRONG: Final = (*_WRONG, ("twice", 2.0))
+_DEGREE: Final = np.pi / 180
+_PER_DEGREE: Final = (
+    ("of omega in degrees", 1 / _DEGREE),
+    ("of omega in radians for degrees", _DEGREE),
+)
 
 
 def faults_of_terms(right: Equations) -> Iterator[Fault]:
@@ -30,7 +35,7 @@ def faults_of_terms(right: Equations) -> Iterator[Fault]:
     if right.has_loads:
         yield from _faults_of_loads(right)
     if right.damping:
-        for words, factor in _WRONG:
+        for words, factor in (*_WRONG, *_PER_DEGREE):
             yield Fault(f"damping {words}", "damping", {"damping": factor * right.damping})
         drag = right.basis.factors(velocities=-float(right.damping) * np.eye(right.size))
         yield Fault("damping of the velocity", "damping", {"damping": 0.0, "extra": drag})
@@ -79,6 +84,9 @@ def _coriolis_terms(right: Equations) -> Iterator[tuple[str, Floats]]:
     if right.size == 6:
         gyro, turn, none = right.mass[3:], right.mass[:3], 0 * right.mass[:3]
         yield "Munk moment", coriolis(none, none, turn)
+        if np.any(turn[:, 3:]):
+            masses = np.hstack([turn[:, :3], none[:, :3]])
+            yield "Munk moment of the masses", coriolis(none, none, masses)
         yield "term x x W", coriolis(none, turn)
         yield "term y x W", coriolis(gyro)
 

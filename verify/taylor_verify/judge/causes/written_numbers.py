@@ -7,18 +7,24 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from math import pi
 from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_texts import (
+    NAME,
+    changed_texts,
+    key_of,
+    moving_names,
+    rewritten,
+    terms,
+)
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fault
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_arguments import NAME, other_arguments
-from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
-from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.judge.causes.texts import Place, places, with_entry
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.tables import Kind
 
@@ -53,6 +59,7 @@ class Number:
         return Family(self.name, KIND, value, np.abs(value), changes, (self.name,))
 
 
+@lru_cache(maxsize=8)
 def numbers(loads: Loads) -> list[Number]:
     """Return the numbers of the loads that may be others, and the factors of the terms of sums."""
     every = [*_of_places(loads), *_repeated(loads), *_of_terms(loads), *_of_drag(loads)]
@@ -68,7 +75,7 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
-    for name, other in (*_hung_otherwise(loads), *other_arguments(loads, rewritten)):
+    for name, other in changed_texts(loads):
         if next(other.faults(), None) is None:
             yield Fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
@@ -76,14 +83,6 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
             tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
             yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
-
-
-def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
-    for k, hung in enumerate(loads.hung):
-        for field, words in (("force", "left out"), ("at", "at the origin")):
-            if any(hung.force) and any(getattr(hung, field)):
-                other = with_entry(loads.hung, k, hung._replace(**{field: ZERO_VECTOR}))
-                yield f"{HANGING[k]} {words}", replace(loads, hung=other)
 
 
 def _is_free(number: Number) -> bool:
@@ -137,7 +136,7 @@ def _repeated(loads: Loads) -> Iterator[Number]:
     counts: dict[str, Counter[str]] = {}
     for place in places(loads):
         if isinstance(place.entry, str):
-            for key in ("", _key(place)):
+            for key in ("", key_of(place)):
                 counts.setdefault(key, Counter()).update(_LITERAL.findall(place.entry))
     for key, of_key in counts.items():
         for literal, count in of_key.items():
@@ -147,10 +146,6 @@ def _repeated(loads: Loads) -> Iterator[Number]:
                 yield Number(name, float(literal), partial(_put_all, loads, key, literal))
 
 
-def _key(place: Place) -> str:
-    return place.key.partition("[")[0]
-
-
 def _put_all(loads: Loads, key: str, literal: str, value: float) -> Loads:
     def changed(match: re.Match[str]) -> str:
         return _written(value) if match.group() == literal else match.group()
@@ -158,42 +153,13 @@ def _put_all(loads: Loads, key: str, literal: str, value: float) -> Loads:
     return rewritten(loads, lambda text: _LITERAL.sub(changed, text), key)
 
 
-def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:
-    """Return the loads with every text changed, or every text of one key."""
-    texts = [place for place in places(loads) if isinstance(place.entry, str)]
-    for place in texts:
-        if key in ("", _key(place)):
-            same = next(each for each in places(loads) if each.key == place.key)
-            loads = same.put(change(str(place.entry)))
-    return loads
-
-
 # Terms of sums.
-
-
-def terms(text: str) -> list[str]:
-    """Return the terms of a sum with their signs; their texts one behind the other are the sum."""
-    parts, depth, begin = list[str](), 0, 0
-    for k, letter in enumerate(text):
-        depth += (letter == "(") - (letter == ")")
-        before = text[begin:k].strip()
-        is_exponent = bool(re.search(r"\d[eE]$", before)) and letter in "+-"
-        if (
-            letter in "+-"
-            and not depth
-            and before
-            and before[-1] not in "*/^(,"
-            and not is_exponent
-        ):
-            parts.append(text[begin:k])
-            begin = k
-    return [*parts, text[begin:]]
 
 
 def _of_terms(loads: Loads) -> Iterator[Number]:
     """Yield the factors of terms that have no number of their own."""
     for place in places(loads):
-        if not isinstance(place.entry, str) or " if " in place.entry:
+        if not isinstance(place.entry, str):
             continue
         parts = terms(place.entry)
         for k, part in enumerate(parts):
@@ -218,7 +184,7 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities, and of those with their sizes alone."""
-    names = frozenset(_moving_names(loads))
+    names = moving_names(loads)
     texts = [entry for _, entries in loads.vectors for entry in entries if isinstance(entry, str)]
     for words, word in (("terms with velocities (drag)", ""), ("quadratic drag", "abs(")):
         drag = partial(_drag_of, names, word)
@@ -228,8 +194,8 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
 
 def _drag_of(names: frozenset[str], word: str, text: str) -> set[int]:
     """Return the places of the terms of a text that have a word and read one of the names."""
-    of_text = enumerate([] if " if " in text and not word else terms(text))
-    return {k for k, part in of_text if word in part and not names.isdisjoint(NAME.findall(part))}
+    parts = enumerate(terms(text))
+    return {k for k, part in parts if word in part and not names.isdisjoint(NAME.findall(part))}
 
 
 def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Loads:
@@ -239,13 +205,3 @@ def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Lo
     for name, _ in loads.vectors:
         loads = rewritten(loads, changed, name)
     return loads
-
-
-def _moving_names(loads: Loads) -> set[str]:
-    """Return the names of velocities, and of all definitions that read one."""
-    names = {f"{letter}{i}" for letter in "uw" for i in (1, 2, 3)}
-    for _ in loads.definitions:
-        for name, entry in loads.definitions:
-            if isinstance(entry, str) and not names.isdisjoint(NAME.findall(entry)):
-                names.add(name)
-    return names

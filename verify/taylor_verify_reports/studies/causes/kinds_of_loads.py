@@ -101,9 +101,9 @@ def _one_drag_less(v: Any, s: Any, size: float) -> Any:
 
 _V: Final = ("vehicle",)
 _S: Final = ("sampled",)
-_DRAG: Final = ("drag", "abs(u", "abs(w")
-_THRUST: Final = ("force 1", "1 if t <", "from t =", "right up to")
-_PULSES: Final = ("late", "step(t -")
+_DRAG: Final = ("terms with velocities", "all quadratic drag")
+_THRUST: Final = ("in force 1", "terms of force without", "from t =", "right up to")
+_PULSES: Final = ("loads late",)
 OF_LOADS: Final = (
     Kind(
         "added mass missing in C",
@@ -118,7 +118,7 @@ OF_LOADS: Final = (
         _of_added(-1),
         ("solid",),
     ),
-    Kind("added mass missing", ("added mass left out", "mass"), of(_no_added), ("solid",)),
+    Kind("added mass missing", ("added mass left out",), of(_no_added), ("solid",)),
     Kind("entry of C_A zeroed", ("C_",), _entries(_any_entry, 0.0), ("solid",)),
     Kind("entry of C_A of the other sign", ("C_",), _entries(_any_entry, -1.0), ("solid",)),
     Kind(
@@ -134,7 +134,12 @@ OF_LOADS: Final = (
         ("solid",),
     ),
     Kind("drag of another size", _DRAG, _with(drag=_half_drag), _V),
-    Kind("drag left out on an axis", _DRAG, _with(drag=_one_drag_less), _V),
+    Kind(
+        "drag left out on an axis",
+        ("in force 2", "force 2 left out"),
+        _with(drag=_one_drag_less),
+        _V,
+    ),
     Kind("thrust left out", _THRUST, _with(thrust=0.0), _V),
     Kind("thrust of the other sign", _THRUST, _with(thrust=lambda v, s, e: -v.thrust), _V),
     Kind("switch missed", _THRUST, _with(until=np.inf), _V),
@@ -146,7 +151,7 @@ OF_LOADS: Final = (
     ),
     Kind(
         "couple of weight and buoyancy left out",
-        ("weight", "buoyancy", "couple", "component 3 of its point"),
+        ("weight at", "weight and buoyancy", "couple r x R^T e3", "component 3 of its point"),
         _with(arm=np.zeros(3)),
         _V,
     ),
@@ -155,7 +160,7 @@ OF_LOADS: Final = (
     Kind("load turned the wrong way", ("wrong way",), _with(is_back=True), ("gradient",)),
     Kind(
         "products left out of the gravity gradient",
-        ("I12", "I13", "I23", "products"),
+        ("no products of inertia",),
         _with(inertia=lambda g, s, e: np.diag(np.diag(g.inertia))),
         ("gradient",),
     ),
@@ -165,7 +170,9 @@ OF_LOADS: Final = (
         _with(times=lambda p, s, e: tuple(t + float(s.times[1]) for t in p.times)),
         ("pulse",),
     ),
-    Kind("pulses left out", ("0.", "moment", "from t ="), _with(size=0.0), ("pulse",)),
+    Kind(
+        "pulses left out", ("moment left out", "every `", "from t ="), _with(size=0.0), ("pulse",)
+    ),
     Kind(
         "controller at another rate",
         ("taken every", "every ="),
@@ -177,7 +184,7 @@ OF_LOADS: Final = (
     Kind("controller continuous", ("continuous",), _continuous, _S),
     Kind(
         "controller of another gain",
-        ("in value of m", "of states", "every `"),
+        ("every `",),
         _with(gain=lambda c, s, e: (1 + e) * c.gain),
         _S,
     ),

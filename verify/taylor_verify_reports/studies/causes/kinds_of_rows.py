@@ -74,6 +74,17 @@ def _body_turned(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
     return rows._replace(v=v, q=np.array([2 * turned(q, p[1:]) + p[0] * q for q in rows.q]))
 
 
+def _of_angles(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    """Return rows with the rates of roll, pitch and yaw in the place of omega."""
+    v = rows.v.copy()
+    for k, (turn, w) in enumerate(zip(_turns(rows), rows.v[:, -3:], strict=True)):
+        roll, pitch = np.arctan2(turn[2, 1], turn[2, 2]), -np.arcsin(turn[2, 0])
+        about_roll = np.array([[np.cos(roll), -np.sin(roll)], [np.sin(roll), np.cos(roll)]]) @ w[1:]
+        turns = about_roll[1] / np.cos(pitch)
+        v[k, -3:] = w[0] + turns * np.sin(pitch), about_roll[0], turns
+    return rows._replace(v=v)
+
+
 def _exchanged(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
     v, n = rows.v.copy(), s.n
     v[:, [n - 3, n - 2]] = v[:, [n - 2, n - 3]]
@@ -150,17 +161,21 @@ def _alone(s: Sample, d: Draw, size: float) -> Rows:
     return integrated(s, own)
 
 
+_PACE: Final = ("clock", "factor of the gyroscopic term", "factor of the Coriolis terms")
 _AXES: Final = ("fixed rotation", "space axes turned", "contradicts")
 OF_ROWS: Final = (
-    Kind("times in frames", ("clock", "factor of the"), _frames),
+    Kind("times in frames", _PACE, _frames),
     Kind("times by a float32 sum", ("float32", "times", "clock"), _float32_sum),
     Kind("times that scatter", ("times scatter", "times are rounded"), _jitter),
     Kind("rows dropped", ("rows dropped", "jump"), _dropped),
     Kind("rows saved twice", ("saved twice", "repeat", "held"), _changed(_twice)),
     Kind("one row wrong", ("one row is wrong",), _changed(_outlier)),
     Kind("body frame turned", _AXES, _changed(_body_turned), (*RIGID, "fluid")),
+    Kind(
+        "rates of Euler angles", ("rates of Euler angles",), _changed(_of_angles), (*RIGID, "fluid")
+    ),
     Kind("axes exchanged", ("other axes", "contradicts"), _changed(_exchanged)),
-    Kind("scale of an axis", ("factor", "contradicts"), _changed(_scaled)),
+    Kind("scale of an axis", ("has factors", "contradicts"), _changed(_scaled)),
     Kind("velocity of another point", ("another point",), _changed(_other_point), _WITH_PATH),
     Kind("constant current", ("moving frame", "drifts"), _changed(_moving_frame), _WITH_PATH),
     Kind("depth upward", ("other sign on axis 3",), _path(_depth), _WITH_PATH, has_centre=True),
@@ -174,5 +189,5 @@ OF_ROWS: Final = (
     Kind("path that drifts", ("drifts",), _path(_drifting), _WITH_PATH, has_centre=True),
     Kind("cubic interpolation", ("interpolation",), _cubic),
     Kind("speed capped", ("first two rows", "jump"), _capped),
-    Kind("attitude alone", ("factor of the", "clock"), _alone, ("free", "wheels"), has_rates=False),
+    Kind("attitude alone", _PACE, _alone, ("free", "wheels"), has_rates=False),
 )

@@ -117,17 +117,22 @@ _STEPS: Final[dict[str, _Step]] = {
     "one Newton step of backward Euler": _newton,
     "components updated in place": _in_turn,
 }
-_HELD: Final = ("attitude", "q + h q omega / 2")
+_HELD: Final = ("q + h q omega / 2 with the rate at the begin",)
 OF_STEPS: Final = (
-    *(Kind(name, (name, "attitude"), by(step, mean)) for name, step in _STEPS.items()),
-    Kind("momentum turned", ("momentum turned", "attitude"), _of_momentum(is_turned=True), RIGID),
+    *(Kind(name, (name, "attitude turned by"), by(step, mean)) for name, step in _STEPS.items()),
+    Kind(
+        "momentum turned",
+        ("momentum turned", "attitude turned by"),
+        _of_momentum(is_turned=True),
+        RIGID,
+    ),
     Kind(
         "momentum of fixed size",
-        ("its size restored", "attitude"),
+        ("its size restored", "attitude turned by"),
         _of_momentum(is_turned=False),
         RIGID,
     ),
-    Kind("semi-implicit Euler", ("explicit Euler", "attitude"), by(euler, _end)),
+    Kind("semi-implicit Euler", ("explicit Euler", "attitude turned by"), by(euler, _end)),
     Kind(
         "attitude by Euler steps",
         _HELD,

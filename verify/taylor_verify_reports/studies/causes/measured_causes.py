@@ -33,6 +33,8 @@ from taylor_verify_reports.studies.finished_parts import Parts
 SIZES: Final = (3e-3, 0.06, 0.5)
 OUTCOMES: Final = ("right", "several", "half", "silent", "passes", "false")
 _QUANTITIES: Final = ("omega", "impulse", "attitude", "centre")
+# Kinds with two faults, of which a sentence may name one.
+_TWO: Final = ("two faults", "a fault and Euler steps", "RK4 and another load")
 _LARGEST: Final = 1e3
 _TRIES: Final = 20
 
@@ -117,7 +119,8 @@ def _outcome(kind: Kind, sentences: tuple[str, ...]) -> str:
     others = [any(word in text for word in kind.words) for text in rest]
     if not all(hit or other for hit, other in zip(hits, others, strict=True)):
         return "false"
-    if kind.name in ("two faults", "a fault and Euler steps") and " and " not in "".join(titles):
+    is_whole = any(word in "".join(titles) for word in (" and ", " beside "))
+    if kind.name in _TWO and not is_whole:
         return "half"
     return "right" if all(hits) and not any(rest) else "several"
 

@@ -1,0 +1,67 @@
+"""Rows of simulators with one fault, by SciPy, and the causes of a file of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from builders.trajectories import QUATERNION, Columns, named, write_csv
+from builders.wrong_dynamics import failure, turned
+from taylor_verify.judge.causes.likely import explained
+from taylor_verify.judge.causes.material import material_of_file
+from taylor_verify.judge.conventions.fits import Conventions
+from taylor_verify.judge.conventions.worlds import World
+from taylor_verify.numbers.precision import rung
+from taylor_verify.records.answers import LikelyCause
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.solvers.files.file import read as read_file
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+# The rates of v at a time, from v and q.
+Law = Callable[[float, Array, Array], Array]
+
+
+def rows(law: Law, v0: Sequence[float], q0: Array, times: Array, edges: Sequence[float]) -> Array:
+    """The states at the times by SciPy, begun anew at each of the edges."""
+    n, z, parts = len(v0), np.array([*v0, *q0]), []
+    for begin, end in pairwise([times[0], *edges, times[-1]]):
+        inside = times[(times > begin) & (times <= end)]
+        solved = solve_ivp(
+            lambda t, z: np.concatenate([law(t, z[:n], z[n:]), turned(z[n:], z[n - 3 : n])]),
+            (begin, end - 1e-13),
+            z,
+            "DOP853",
+            t_eval=np.minimum(inside, end - 1e-13),
+            rtol=3e-14,
+            atol=1e-16,
+        )
+        z = solved.y[:, -1]
+        parts.append(solved.y.T)
+    return np.vstack([[*v0, *q0], *parts])
+
+
+def columns(times: Array, made: Array, names: Sequence[str]) -> Columns:
+    q = made[:, len(names) :]
+    unit = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return named(("t",), times[:, None]) | named(names, made[:, :-4]) | named(QUATERNION, unit)
+
+
+def titles(path: Path, scene: str, made: Columns) -> list[str]:
+    """The causes of a file whose states failed, without what they leave."""
+    return [cause.sentence.partition("; leaves")[0] for cause in causes(path, scene, made)]
+
+
+def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
+    asked, known = read(scene, "scene"), ("omega", "impulse", "attitude")
+    file = read_file(str(write_csv(path / "mine.csv", made)))
+    plain = Conventions((), World(asked), {})
+    failures = [failure(asked, quantity) for quantity in known]
+    with np.errstate(all="ignore"):
+        answer = material_of_file(file, rung("f64"), plain, failures)
+        assert answer is not None
+        return explained(answer).causes

@@ -1,0 +1,127 @@
+"""Likely causes of a vehicle whose scene names an added mass: its parts, and those of the Munk moment."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from builders.caused_rows import Array, columns, rows, titles
+from builders.turns import by_turns
+
+VEHICLE = """
+title = "Vehicle"
+model = "kirchhoff"
+track = ["attitude"]
+[body]
+mass = 31.9
+inertia = [0.12, 4.2, 4.2]
+centre_of_mass = [0, 0, 0.02]
+added_mass = [0.86, 30.3, 28.3, 0.035, 3.6, 3.5]
+[initial]
+linear_velocity = [1.5, 0.1, -0.05]
+angular_velocity = [0.05, 0.1, 0.15]
+[time]
+end = 3
+samples = 61
+"""
+
+
+def crossed(v: Array) -> Array:
+    return np.cross(np.eye(3), v)
+
+
+def coriolis(matrix: Array, nu: Array) -> Array:
+    """Fossen's C(nu) of a mass matrix."""
+    linear, angular = crossed(matrix[:3] @ nu), crossed(matrix[3:] @ nu)
+    return np.block([[np.zeros((3, 3)), -linear], [-linear, -angular]])
+
+
+def body(factor: float = 1.0) -> tuple[Array, Array]:
+    """The rigid body of the vehicle, and its added mass times a factor."""
+    arm = crossed(np.array([0, 0, 0.02]))
+    lower = np.diag([0.12, 4.2, 4.2]) - 31.9 * arm @ arm
+    own = np.block([[31.9 * np.eye(3), -31.9 * arm], [31.9 * arm, lower]])
+    return own, factor * np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
+
+
+@pytest.mark.parametrize(
+    ("entries", "factor", "of_mass", "words"),
+    [
+        ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
+        ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
+        ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
+        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
+        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
+        ("every", 0.0, 0.0, "added mass left out"),
+    ],
+)
+def test_an_added_mass_that_a_scene_names_is_named(
+    entries: Any, factor: float, of_mass: float, words: str, tmp_path: Path
+) -> None:
+    """Entries of C_A, and the whole of it in one place or in both, have their names."""
+    own, added = body()
+    factors = np.ones((6, 6))
+    for i, k in np.ndindex(6, 6) if entries == "every" else [(i - 1, k - 1) for i, k in entries]:
+        factors[i, k] = factor
+    mass = own + of_mass * added
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        matrix = coriolis(own, nu) + factors * coriolis(added, nu)
+        return np.linalg.solve(mass, -matrix @ nu)
+
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
+    names = ("u1", "u2", "u3", "w1", "w2", "w3")
+    assert titles(tmp_path, VEHICLE, columns(times, made, names))[0].startswith(words)
+
+
+FULL = np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
+FULL[1, 5] = FULL[5, 1] = 2.0
+FULL[2, 4] = FULL[4, 2] = -1.5
+CUT, HALF_CUT = np.diag(np.diag(FULL)), FULL.copy()
+HALF_CUT[1, 5] = HALF_CUT[5, 1] = 0.0
+
+
+def munk(matrix: Array, nu: Array, part: float = 1.0, coupling: float = 0.0) -> Array:
+    """Part of the Munk moment of the masses, and of the coupling, of a mass matrix."""
+    momentum = part * matrix[:3, :3] @ nu[:3] + coupling * matrix[:3, 3:] @ nu[3:]
+    return np.r_[np.zeros(3), np.cross(momentum, nu[:3])]
+
+
+@pytest.mark.parametrize(
+    ("in_mass", "in_terms", "without", "words"),
+    by_turns(
+        [
+            (CUT, CUT, munk, "added mass cut to its diagonal"),
+            (FULL, CUT, munk, "added mass cut to its diagonal in the Coriolis terms alone"),
+            (HALF_CUT, HALF_CUT, munk, None),
+            (FULL, FULL, munk, "no Munk moment of the masses"),
+            (FULL, FULL, partial(munk, coupling=1.0), "no Munk moment"),
+            (FULL, FULL, partial(munk, part=0.9), None),
+        ],
+        3,
+    ),
+)
+def test_parts_of_an_added_mass_are_named(
+    in_mass: Array, in_terms: Array, without: Any, words: str | None, tmp_path: Path
+) -> None:
+    """An added mass cut to its diagonal, and a Munk moment left out, have their names; near ones do not."""
+    own, _ = body()
+    is_cut = in_terms is not FULL
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        terms = -coriolis(own + in_terms, nu) @ nu
+        return np.linalg.solve(own + in_mass, terms - (not is_cut) * without(own + FULL, nu))
+
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
+    scene = VEHICLE.replace("[0.86, 30.3, 28.3, 0.035, 3.6, 3.5]", str(FULL.tolist()))
+    named_ones = titles(tmp_path, scene, columns(times, made, ("u1", "u2", "u3", "w1", "w2", "w3")))
+    near = ("added mass cut to its diagonal", "no Munk moment")
+    if words is None:
+        assert not any(title.startswith(near) for title in named_ones)
+    else:
+        assert named_ones == [words]

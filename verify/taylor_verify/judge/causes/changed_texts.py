@@ -1,0 +1,250 @@
+"""Loads whose texts are others: a part of them left out, turned round or in other axes, or other names.
+
+A part is some terms of the sums of a vector, weight, or buoyancy.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Final
+
+from taylor_verify.judge.causes.texts import HANGING, Place, places
+from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.scenes.loads.loads import Hung, Loads
+from taylor_verify.scenes.loads.vocabulary import VECTORS, Entry
+
+NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
+_AXES: Final = (1, 2, 3)
+_PAIRS: Final = tuple(product(_AXES, repeat=2))
+_Names = Mapping[str, str]
+_ALWAYS: Final[dict[str, _Names]] = {
+    "the loads have R for R^T": {f"r{i}{k}": f"r{k}{i}" for i, k in _PAIRS},
+    "the loads read the quaternion with the scalar last, which comes first": {
+        f"q{k}": f"q{(k - 1) % 4}" for k in range(4)
+    },
+    "the loads read the quaternion with the scalar first, which comes last": {
+        f"q{k}": f"q{(k + 1) % 4}" for k in range(4)
+    },
+    "the loads have no products of inertia": {f"I{i}{k}": "0" for i, k in _PAIRS if i != k},
+    "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
+    "the loads take omega in radians for degrees": {f"w{i}": f"(pi/180*w{i})" for i in _AXES},
+}
+# What is done to three parts of texts, one for each axis, beside which three others stay.
+_Change = Callable[[Sequence[str], int], str]
+_CHANGES: Final[dict[str, _Change]] = {
+    "left out": lambda parts, i: "0",
+    "with the other sign": lambda parts, i: _sum([("-1", parts[i])]),
+    "in space axes": lambda parts, i: _sum(
+        zip((f"r{k}{i + 1}" for k in _AXES), parts, strict=True)
+    ),
+}
+
+
+def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield loads with other texts, with what is other in words."""
+    for words, names in (*_ALWAYS.items(), *_of_scene(loads)):
+
+        def changed(text: str, names: _Names = names) -> str:
+            return NAME.sub(lambda match: names.get(match.group(), match.group()), text)
+
+        other = rewritten(loads, changed)
+        if other != loads:
+            yield words, other
+    yield from _hung_otherwise(loads)
+    for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
+        yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
+
+
+def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:
+    """Return the loads with every text changed, or every text of one key."""
+    texts = [place for place in places(loads) if isinstance(place.entry, str)]
+    for place in texts:
+        if key in ("", key_of(place)):
+            same = next(each for each in places(loads) if each.key == place.key)
+            loads = same.put(change(str(place.entry)))
+    return loads
+
+
+def key_of(place: Place) -> str:
+    return place.key.partition("[")[0]
+
+
+# Other arguments.
+
+
+def _of_scene(loads: Loads) -> Iterator[tuple[str, _Names]]:
+    """Yield the exchanges by the vectors that are given in space axes, and by the current."""
+    for name, entries in loads.space:
+        turned = {f"{name}{i}": _turned(entries, "r{0}{1}", i) for i in _AXES}
+        yield f"{name} of [space] is turned the wrong way, by R for R^T", turned
+        plain = {f"{name}{i}": f"({entry})" for i, entry in zip(_AXES, entries, strict=True)}
+        yield f"{name} of [space] is not turned into body axes", plain
+    if any(loads.current):
+        ground = {f"u{i}": f"(u{i} + {_turned(loads.current, 'r{1}{0}', i)})" for i in _AXES}
+        yield "the loads take the velocity over ground, not that through the water", ground
+
+
+def _turned(entries: tuple[object, ...], entry: str, i: int) -> str:
+    terms = (f"{entry.format(i, k)}*({x})" for k, x in zip(_AXES, entries, strict=True))
+    return f"({' + '.join(terms)})"
+
+
+# Parts of the loads.
+
+
+def _parts(
+    loads: Loads,
+) -> Iterator[tuple[str, tuple[str, ...], Callable[[str], bool]]]:
+    """Yield parts of the vectors' texts: a noun, the vectors, and whether a term belongs to the part.
+
+    What the equations say without texts is left to them: all of a vector, and of both.
+    """
+    moving = moving_names(loads)
+    reads = {
+        name: {
+            _reads(moving, term) for text in map(str, own) for term in terms(text) if term != "0"
+        }
+        for name, own in loads.vectors
+    }
+    some = [name for name, own in reads.items() if own]
+    for names in [*((name,) for name in some), *[tuple(some)] * (len(some) > 1)]:
+        noun, has_still = " and ".join(names), all(False in reads[name] for name in names)
+        if loads.hung:
+            yield f"{noun}, but for weight and buoyancy,", names, lambda term: True
+        if has_still and any(True in reads[name] for name in names):
+            without = f"terms of {noun} without velocities"
+            yield without, names, lambda term: not _reads(moving, term)
+
+
+def _reads(names: frozenset[str], text: str) -> bool:
+    return not names.isdisjoint(NAME.findall(text))
+
+
+def _with_part(
+    loads: Loads, names: Sequence[str], is_part: Callable[[str], bool], change: _Change
+) -> Loads:
+    """Return the loads with a change of the terms of some vectors."""
+    vectors = dict(loads.vectors)
+    for name in names:
+        split = [_split(str(entry), is_part) for entry in vectors[name]]
+        parts = [part for _, part in split]
+        vectors[name] = tuple(_plus(stay, change(parts, i)) for i, (stay, _) in enumerate(split))
+    return replace(loads, vectors=tuple(vectors.items()))
+
+
+def _split(text: str, is_part: Callable[[str], bool]) -> tuple[str, str]:
+    """Return the sum of the terms that are no part, and that of those that are."""
+    sums = ["", ""]
+    for term in terms(text):
+        sums[is_part(term)] += term
+    stay, part = (each.strip().removeprefix("+").strip() or "0" for each in sums)
+    return stay, part
+
+
+def _plus(one: Entry, other: str) -> str:
+    """Return the sum of two texts."""
+    if other == "0":
+        return str(one)
+    return f"({one}) + {other}" if str(one) != "0" else other
+
+
+def _sum(terms: Iterable[tuple[str, str]]) -> str:
+    """Return the sum of products, of which those with a zero are left out."""
+    return " + ".join(f"{a}*({b})" for a, b in terms if b != "0" and a != "(0)") or "0"
+
+
+def terms(text: str) -> list[str]:
+    """Return the terms of a sum with their signs; their texts one behind the other are the sum.
+
+    A choice between two values is one term, in brackets.
+    """
+    outside = text
+    while (shorter := re.sub(r"\([^()]*\)", "", outside)) != outside:
+        outside = shorter
+    if " if " in outside:
+        return [f"({text})"]
+    parts, depth, begin = list[str](), 0, 0
+    for k, letter in enumerate(text):
+        depth += (letter == "(") - (letter == ")")
+        before = text[begin:k].strip()
+        is_exponent = bool(re.search(r"\d[eE]$", before)) and letter in "+-"
+        if (
+            letter in "+-"
+            and not depth
+            and before
+            and before[-1] not in "*/^(,"
+            and not is_exponent
+        ):
+            parts.append(text[begin:k])
+            begin = k
+    return [*parts, text[begin:]]
+
+
+def moving_names(loads: Loads) -> frozenset[str]:
+    """Return the names of velocities, and of all definitions that read one."""
+    names = {f"{letter}{i}" for letter in "uw" for i in _AXES}
+    for _ in loads.definitions:
+        for name, entry in loads.definitions:
+            if isinstance(entry, str) and not names.isdisjoint(NAME.findall(entry)):
+                names.add(name)
+    return frozenset(names)
+
+
+# Weight and buoyancy.
+
+
+def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield weight and buoyancy, each and both, left out, at the origin, or fixed in body axes."""
+    has_force = [k for k, hung in enumerate(loads.hung) if any(hung.force)]
+    for which in ([k] for k in has_force), [has_force] * (len(has_force) > 1):
+        for some in which:
+            noun = " and ".join(HANGING[k] for k in some)
+            without = _with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
+            yield f"{noun} left out", without
+            if any(any(loads.hung[k].at) for k in some):
+                yield (
+                    f"{noun} at the origin",
+                    _with_hung(loads, some, lambda hung: Hung(hung.force)),
+                )
+            for k in some:
+                without = added(without, _texts_of(loads.hung[k], is_in_body=True))
+            yield f"{noun} fixed in body axes", without
+
+
+def _with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:
+    hung = (change(each) if k in some else each for k, each in enumerate(loads.hung))
+    return replace(loads, hung=tuple(hung))
+
+
+def written_out(loads: Loads) -> Loads:
+    """Return the same loads with weight and buoyancy as texts of force and couple."""
+    for hung in loads.hung:
+        loads = added(loads, _texts_of(hung))
+    return replace(loads, hung=())
+
+
+def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
+    """Return the force and the couple of a hung force; with ``is_in_body`` it is fixed in body axes."""
+    force = [
+        str(hung.force[i])
+        if is_in_body
+        else _sum((f"r{k}{i + 1}", str(f)) for k, f in zip(_AXES, hung.force, strict=True))
+        for i in range(3)
+    ]
+    places = ((1, 2), (2, 0), (0, 1))
+    couple = [
+        _sum([(f"({hung.at[j]})", force[k]), (f"({-hung.at[k]})", force[j])]) for j, k in places
+    ]
+    return {"force": force, "couple": couple}
+
+
+def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:
+    """Return the loads with more texts in each of the vectors."""
+    own, none = dict(loads.vectors), tuple[Entry, ...](ZERO_VECTOR)
+    vectors = {
+        name: tuple(map(_plus, own.get(name, none), more[name])) for name in VECTORS[loads.model]
+    }
+    return replace(loads, vectors=tuple(vectors.items()))
