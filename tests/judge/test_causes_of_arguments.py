@@ -165,8 +165,6 @@ def test_loads_that_read_something_else_are_named(
         (SATELLITE, LAST[:2]),
         (SATELLITE, PRODUCTS[:2]),
         (VEHICLE, [GROUND[0], DOUBLED[1]]),
-        (VEHICLE, [*THRUST[:2], DOUBLED[1]]),
-        (VEHICLE, [*IN_SPACE[:1], *IN_SPACE[4:]]),
     ],
 )
 def test_loads_that_do_so_here_and_there_have_no_name(

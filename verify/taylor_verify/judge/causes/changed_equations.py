@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Final
 
@@ -28,8 +29,9 @@ Changes = Mapping[str, Any]
 _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
 _AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
 AXES: Final = _AXES | _AXES_OF_NUMBERS
-# The work of texts, for each component once, and for each state.
-_TEXTS: Final = 70.0
+# The work of texts, once, for each of their steps, and for each state.
+_TEXTS: Final = 80.0
+_STEP: Final = 3.0
 _TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 
@@ -228,7 +230,9 @@ class Equations:
         once = 18.0 + 12.0 * (components > self.size) + 25.0 * self._reads_frame
         each = (0.016 if self._reads_frame else 0.008) * components
         if self.acting is not None:
-            once, each = once + _TEXTS * self.size * (1 + bool(self.own)), each + _TEXTS_OF_ONE
+            steps = len(self.acting.written.piece(Fraction(0)).steps)
+            once += (_TEXTS + _STEP * steps) * (1 + bool(self.own))
+            each += _TEXTS_OF_ONE
         return once + each * states
 
     def _expressions(self, time: Floats, z: Floats, nu: Floats, R: Any) -> Floats:
