@@ -199,19 +199,15 @@ def moving_names(loads: Loads) -> frozenset[str]:
 def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield weight and buoyancy, each and both, left out, at the origin, or fixed in body axes."""
     has_force = [k for k, hung in enumerate(loads.hung) if any(hung.force)]
-    for which in ([k] for k in has_force), [has_force] * (len(has_force) > 1):
-        for some in which:
-            noun = " and ".join(HANGING[k] for k in some)
-            without = _with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
-            yield f"{noun} left out", without
-            if any(any(loads.hung[k].at) for k in some):
-                yield (
-                    f"{noun} at the origin",
-                    _with_hung(loads, some, lambda hung: Hung(hung.force)),
-                )
-            for k in some:
-                without = added(without, _texts_of(loads.hung[k], is_in_body=True))
-            yield f"{noun} fixed in body axes", without
+    for some in [*([k] for k in has_force), *[has_force] * (len(has_force) > 1)]:
+        noun = " and ".join(HANGING[k] for k in some)
+        without = _with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
+        yield f"{noun} left out", without
+        if any(any(loads.hung[k].at) for k in some):
+            yield f"{noun} at the origin", _with_hung(loads, some, lambda hung: Hung(hung.force))
+        for k in some:
+            without = added(without, _texts_of(loads.hung[k], is_in_body=True))
+        yield f"{noun} fixed in body axes", without
 
 
 def _with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:

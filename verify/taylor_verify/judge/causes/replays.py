@@ -110,23 +110,19 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         known = {**known, "loads": HELD}
     for steps in _each_best(_Replays(arcs, stride, [{}]).steps(known, _ALONE)):
         if steps.left < max(_LEAVES, _CLEAR * arcs.floor):
-            h, changes = steps.step(answer), {}
+            h = steps.step(answer)
             words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
             if steps.method.order > 1:
                 words = f"truncation of order {steps.method.order}: {steps.name}"
-            name = f"{words}, h = {h:.6g}"
-            if steps.method is HELD:
-                name, changes = (
-                    f"loads taken every {h:.6g} and held in between",
-                    held_over_steps(answer, h),
-                )
+            is_held = steps.method is HELD
+            held = f"loads taken every {h:.6g} and held in between"
             yield Candidate(
-                name=name,
+                name=held if is_held else f"{words}, h = {h:.6g}",
                 kind="method",
                 defects=steps.left,
                 motion=partial(_motion, steps.method, steps.count),
                 near=_LEAVES,
-                changes=changes,
+                changes=held_over_steps(answer, h) if is_held else {},
                 method=(steps.method, steps.count),
             )
 
