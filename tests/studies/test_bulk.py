@@ -92,7 +92,6 @@ def test_what_was_made_before_an_interrupt_stays(
         raise KeyboardInterrupt
 
     monkeypatch.setattr("taylor_verify.batch.work.run_all", interrupted)
-    monkeypatch.setattr("taylor_verify_reports.studies.stored.run_all", interrupted)
     for kind, lacks in missing(report).lacking[1:]:
         with pytest.raises(KeyboardInterrupt):
             list(kind.make(report, lacks, Progress()))

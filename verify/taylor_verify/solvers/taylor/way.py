@@ -110,7 +110,7 @@ class Way:
         ran = self._went(_stretches(grid, self._calls), rate)
         if self._was_too_fast(ran, grid, rate):
             fastest = self._fastest(*_some(ran, grid))
-            grid, samples = self._looks
+            grid, samples = self._watched
             is_close = ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate
             if is_close:
                 ran = self._went(_stretches(grid, self._calls), fastest)
@@ -207,7 +207,7 @@ class Way:
         return max(self._calls, min(max(_FEWEST_LOOKS, ceil(wanted)), _MOST_LOOKS))
 
     @cached_property
-    def _looks(self) -> tuple[np.ndarray[Any, Any], Places]:
+    def _watched(self) -> tuple[np.ndarray[Any, Any], Places]:
         """The instants with those among them at which the rate is looked at."""
         return self._instants(self._look_count)
 
