@@ -88,6 +88,10 @@ def test_a_zero_that_is_touched_is_undecided() -> None:
     assert same(crossed, Events("", Fraction(8), DIGITS, touched.undecided))
     assert not touched.times
     assert not touched.passed
+    first, second = str(touched).splitlines()
+    assert first == "0 times of w2^2 = 0, proven, and others that are undecided"
+    assert second.startswith("undecided: touched or crossed at t = ")
+    assert str(crossed).splitlines()[0] == "1 time of w2 = 0, none missed"
     assert len(events(GENERIC, "w2^2 = 1e-30", 8, DIGITS)) == 2
 
 

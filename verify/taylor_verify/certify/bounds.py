@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import asin, atan, hypot, inf, pi, sqrt
 from typing import Final
@@ -53,15 +54,13 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
         needed = " ".join(column for group in scene.groups for column in group.columns)
         raise refusal(f"columns of the scene ({needed})", " ".join(pieces.columns), "answer")
     until = _reached(scene, pieces, scene.clock.instants[-1])
+    nothing = Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
     if until == scene.clock.start:
-        return Certificate(scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance)
+        return nothing
     try:
         errors, worst, nodes = _settled(scene, pieces, measured, until)
     except (Unsettled, Domain) as doubt:
-        because = f"undecided: {doubt} @ {scene.name}"
-        return Certificate(
-            scene.name, {}, {}, gaps=tuple(gaps), tolerance=tolerance, because=because
-        )
+        return replace(nothing, because=f"undecided: {doubt} @ {scene.name}")
     gaps += list(_jumps(measured, nodes, errors))
     bound = {name: each.bound for name, each in worst.items()}
     return Certificate(
@@ -102,11 +101,9 @@ def _settled(
 def _reached(scene: Scene, pieces: Pieces, last: Fraction) -> Fraction:
     """The end of the span, or that of the pieces where they end before; the start where none is."""
     begin = scene.clock.start
-    if not pieces.between(*sorted((begin, last))):
+    if not (each := pieces.between(*sorted((begin, last)))):
         return begin
-    if last >= begin:
-        return max(begin, min(last, pieces.each[-1].end))
-    return min(begin, max(last, pieces.each[0].begin))
+    return min(last, each[-1].end) if last > begin else max(last, each[0].begin)
 
 
 def _largest(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> Largest:

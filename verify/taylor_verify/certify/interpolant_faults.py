@@ -121,11 +121,7 @@ def findings(
 
 
 def _at_nodes(nodes: Sequence[Node]) -> float:
-    return max(min(_norm(node.error), _norm(node.before)) for node in nodes)
-
-
-def _norm(vector: Floats) -> float:
-    return float(np.sqrt((vector * vector).sum()))
+    return max(min(hypot(*node.error), hypot(*node.before)) for node in nodes)
 
 
 def _fault(nodes: Sequence[Node], bound: float, scale: float) -> Fault | None:
@@ -143,14 +139,14 @@ def _fault(nodes: Sequence[Node], bound: float, scale: float) -> Fault | None:
 
 def _is_single(nodes: Sequence[Node]) -> bool:
     """True if the errors at the nodes are shifts of time as large as roundings to float32, and differ."""
-    worst = max(nodes, key=lambda node: _norm(node.error))
+    worst = max(nodes, key=lambda node: hypot(*node.error))
     shifts = []
     for node in nodes:
         square = float(node.rate @ node.rate)
         if not square > 0:
             return False
         shift = float(node.error @ node.rate) / square
-        if _norm(node.error - shift * node.rate) > _LEFT * _norm(worst.error):
+        if hypot(*(node.error - shift * node.rate)) > _LEFT * hypot(*worst.error):
             return False
         shifts.append(shift / abs(node.time) if node.time else 0.0)
     sizes = np.abs(shifts)
@@ -162,6 +158,6 @@ def _is_single(nodes: Sequence[Node]) -> bool:
 
 def _are_of_step_before(nodes: Sequence[Node]) -> bool:
     """True if the slopes at the nodes are wrong, and are the true rates at the nodes before."""
-    wrong = max(_norm(node.slope - node.rate) for node in nodes)
-    shifted = max(_norm(after.slope - before.rate) for before, after in pairwise(nodes))
+    wrong = max(hypot(*(node.slope - node.rate)) for node in nodes)
+    shifted = max(hypot(*(after.slope - before.rate)) for before, after in pairwise(nodes))
     return shifted <= _LEFT * wrong

@@ -13,7 +13,7 @@ from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.exact.event_times import events_of
 from taylor_verify.exact.printed import document
-from taylor_verify.exact.printed_events import events_document
+from taylor_verify.exact.printed_events import event_lines, events_document
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
@@ -53,17 +53,10 @@ def _of_events(options: argparse.Namespace) -> Answer:
 
 
 def _text_of_events(content: Mapping[str, Any]) -> str:
-    page = Page()
-    count = len(content["events"])
-    how = "proven, and others that are undecided" if content["undecided"] else "none missed"
-    page.line(
-        bold(content["scene"]),
-        f": {count} {'time' if count == 1 else 'times'} of {content['event']}, {how}",
-    )
-    for event in content["events"]:
-        page.line(f"t = {event['t']}   (radius {event['radius']})")
-    for event in content["undecided"]:
-        page.line(f"undecided: touched or crossed at t = {event['t']}, within {event['radius']}")
+    page, (first, *rest) = Page(), event_lines(content)
+    page.line(bold(content["scene"]), f": {first}")
+    for line in rest:
+        page.line(line)
     return page.text()
 
 

@@ -64,6 +64,11 @@ class Events:
     times: tuple[EventTime, ...]
     undecided: tuple[EventTime, ...] = ()
 
+    def __str__(self) -> str:
+        from taylor_verify.exact.printed_events import event_lines, events_document
+
+        return "\n".join(event_lines(events_document(self)))
+
     def __iter__(self) -> Iterator[EventTime]:
         return iter(self.times)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from taylor_verify.exact.event_times import Events, EventTime
@@ -14,6 +15,7 @@ _LEAST_DIGITS: Final = 6
 def events_document(events: Events) -> dict[str, Any]:
     """Return the events of `exact --json`: each time with a bound of its error, absolute."""
     return {
+        "event": events.text,
         "digits": events.digits,
         "events": [event_row(time, events.digits) for time in events.times],
         "undecided": [event_row(time, events.digits) for time in events.undecided],
@@ -24,3 +26,14 @@ def event_row(time: EventTime, digits: int) -> dict[str, str]:
     """Return a time to at most so many digits, and a bound of its error."""
     text, radius = enclosed_number(time.t, time.radius, digits, _LEAST_DIGITS)
     return {"t": text, "radius": radius}
+
+
+def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
+    """Yield how many events there are, and a line for each."""
+    count = len(document["events"])
+    how = "proven, and others that are undecided" if document["undecided"] else "none missed"
+    yield f"{count} {'time' if count == 1 else 'times'} of {document['event']}, {how}"
+    for row in document["events"]:
+        yield f"t = {row['t']}   (radius {row['radius']})"
+    for row in document["undecided"]:
+        yield f"undecided: touched or crossed at t = {row['t']}, within {row['radius']}"
