@@ -109,9 +109,9 @@ def add(
     store = Answers(folder / OWN / engine.name / name)
     if anew:
         rmtree(store.folder, ignore_errors=True)
-    for file, answer in store.every().items():
+    for place, answer in store.every().items():
         if not (answer.row.is_judged or answer.row.standing is Standing.UNSUITED):
-            file.unlink()
+            place.unlink()
     asked = entry_list(name).scene
     chosen = tuple(scene for scene in asked if not scenes or scene.name in scenes)
     entries = EntryList(chosen, (engine.entry,))
