@@ -10,7 +10,8 @@ from typing import Any, Final
 import numpy as np
 from flint import fmpq, fmpq_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, fraction, merged, polynomial, rational
+from taylor_verify.certify.pieces import Piece, Pieces, merged, polynomial
+from taylor_verify.numbers.irrational import fraction, rational
 from taylor_verify.records.faults import Faults, Refused, brief, cut, near, refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.reading.table import exact_number

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from flint import fmpq, fmpq_poly
 
+from taylor_verify.numbers.irrational import fraction, rational
 from taylor_verify.records.faults import Faults, Refused
 
 MOST_DEGREE: Final = 60
@@ -58,16 +59,8 @@ class Piece:
         return Piece(begin, end, {name: p(inner) for name, p in self.polynomials.items()})
 
 
-def rational(value: Fraction | float) -> fmpq:
-    return fmpq(*value.as_integer_ratio())
-
-
 def nearest(value: fmpq) -> float:
     return int(value.p) / int(value.q)
-
-
-def fraction(value: fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
 
 
 def polynomial(coefficients: Iterable[Any], unit: Fraction = Fraction(1)) -> fmpq_poly:
