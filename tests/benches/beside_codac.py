@@ -1,7 +1,8 @@
 """Widths of `enclose` beside those of codac: `python -m benches.beside_codac`, with tests on the path.
 
 Each example goes from a point that doubles hold to t = 1. codac's tubes have steps of 1/500. The true error
-is that of the middle of a box; the truth has 40 digits.
+is that of the middle of a box; the truth has 40 digits. A second table has our widths of what CAPD and
+TaylorModels.jl print of themselves.
 """
 
 from __future__ import annotations
@@ -41,6 +42,19 @@ EXAMPLES: Final[dict[str, tuple[dict[str, float], Sequence[str]]]] = {
     "pendulum": ({"a": 2, "b": 0}, ("b", "-sin(a)")),
 }
 
+# The start, the rates, the first and the last time of each.
+PRINTED: Final[dict[str, tuple[dict[str, Any], dict[str, str], int, float]]] = {
+    "CAPD, ITimeMapSolutionCurveExample": (
+        {"x": 1, "v": 2}, {"x": "v", "v": "sin(t) - sin(x)"}, 4, 10,
+    ),
+    "ReachabilityAnalysis.jl, issue 415": (
+        {"x": "1.4", "v": "2.4"}, {"x": "v", "v": "(1 - x^2)*v - x"}, 0, 0.17843191487722487,
+    ),
+    "TaylorModels.jl, issue 114": (
+        {"x": 1, "y": 1}, {"x": "1 + x^2*y - 2.5*x", "y": "1.5*x - x^2*y"}, 0, 30,
+    ),
+}  # fmt: skip
+
 
 def main() -> None:
     """Print a row for each example: width, error of the middle and processor time of both."""
@@ -56,6 +70,15 @@ def main() -> None:
             *_figures([mpf(high) - mpf(low) for low, high in box], middles, truth, seconds),
         ]
         print("|", " | ".join((name, *figures)), "|")
+    print("| printed by | width | time |")
+    print("|---|---|---|")
+    for name, (begin, texts, first, last) in PRINTED.items():
+        entries, ours = _by_enclose(texts, begin, DIGITS, first, last)
+        print(
+            "|",
+            " | ".join((name, mp.nstr(max(2 * e for _, e in entries), 2), f"{ours:.2g} s")),
+            "|",
+        )
 
 
 def _as_ours(rate: str) -> str:
@@ -83,11 +106,11 @@ def _by_codac() -> Any:
 
 
 def _by_enclose(
-    rates: dict[str, str], start: dict[str, float], digits: int
+    rates: dict[str, str], start: dict[str, Any], digits: int, begin: int = 0, end: float = 1
 ) -> tuple[list[tuple[Any, Any]], float]:
     """The middle and the proven error of each number at the end, and the processor time."""
     began = time.process_time()
-    motion = enclose(rates, start, [1], digits)
+    motion = enclose(rates, start, [end], digits, begin)
     seconds = time.process_time() - began
     return [(motion[name][0], motion.errors[name][0]) for name in start], seconds
 

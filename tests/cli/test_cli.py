@@ -497,6 +497,20 @@ def test_an_interrupt_ends_run_and_workers_with_one_line(
 
 
 @needs_processes
+def test_sigterm_ends_a_run_as_an_interrupt_does(
+    working: subprocess.Popen[str], tmp_path: Path
+) -> None:
+    """A system that stops a job leaves no report, no lock and no process."""
+    workers = children(working.pid)
+    os.kill(working.pid, signal.SIGTERM)
+    out, error = working.communicate(timeout=PATIENCE)
+    assert (working.returncode, out) == (130, "")
+    assert re.fullmatch(r"taylor-verify: interrupted(: \d+ of \d+ scenes .* --resume .*)?\n", error)
+    assert not (tmp_path / "out").exists()
+    assert not any(is_alive(worker) for worker in workers)
+
+
+@needs_processes
 def test_workers_do_not_outlive_a_run_that_is_killed(working: subprocess.Popen[str]) -> None:
     """After kill -9 of the run its workers are gone, in the middle of work of a minute."""
     workers = children(working.pid)

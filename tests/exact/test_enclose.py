@@ -104,6 +104,27 @@ def test_random_fields_lie_within_the_errors(seed: int) -> None:
         assert verdict(field, replace(field, start=off)) in ("outside", "not judged")
 
 
+def test_the_motion_lies_in_the_boxes_that_capd_prints() -> None:
+    """A pendulum is in the boxes of another enclosure: those in CAPD's two ITimeMap examples, whole."""
+    printed = {
+        "x": (
+            ("2.0719023157504193", "2.0719023157504308"),
+            ("1.2048370333482143", "1.2048370333483036"),
+        ),
+        "v": (
+            ("0.12013839737212174", "0.12013839737213276"),
+            ("1.1704148266177143", "1.170414826617781"),
+        ),
+    }
+    motion = enclose({"x": "v", "v": "sin(t) - sin(x)"}, {"x": 1, "v": 2}, [5, 10], DIGITS, begin=4)
+    with mp.workdps(2 * DIGITS):
+        for name, boxes in printed.items():
+            for value, error, (low, high) in zip(
+                motion[name], motion.errors[name], boxes, strict=True
+            ):
+                assert mpf(low) <= value - error <= value + error <= mpf(high)
+
+
 def test_the_clock_may_begin_anywhere() -> None:
     """A time-dependent field reads the clock: y' = 2 t from t = 3 is t^2, forwards and backwards."""
     motion = enclose({"y": "2*t"}, {"y": 9}, [5, 1], DIGITS, begin=3)

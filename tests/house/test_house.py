@@ -134,11 +134,31 @@ def is_small(module: str, source: str) -> Iterator[str]:
         yield f"expected at most 400 lines, got {lines} @ {module}"
 
 
+# A file of another program, which a docstring names.
+_OF_OTHERS: Final = frozenset({"heyoka.py", "remus100.py"})
+_TEXTS: Final = (ast.Module, ast.ClassDef, ast.FunctionDef)
+_FILE_NAME: Final = re.compile(r"(?<![\w./])[a-z_0-9/]+\.py\b")
+
+
+def names_files_that_are_there(module: str, source: str) -> Iterator[str]:
+    """A file that a docstring or a comment names stands beside it, or is named from the package on."""
+    holders = [node for node in ast.walk(parse(source)) if isinstance(node, _TEXTS)]
+    texts = [ast.get_docstring(node) or "" for node in holders]
+    texts += [line for line in source.splitlines() if line.lstrip().startswith("#")]
+    package, *rooms = module.split(".")
+    folders = {SOURCES.joinpath(package, *rooms), SOURCES.joinpath(package, *rooms[:-1])}
+    for name in _FILE_NAME.findall("\n".join(texts)):
+        places = folders | {SOURCES / "taylor_verify", TESTS.parent}
+        if name not in _OF_OTHERS and not any((place / name).exists() for place in places):
+            yield f"expected a file that is there, got {name} @ {module}"
+
+
 RULES: Final = (
     hides_no_import,
     asks_the_registry,
     stands_in_its_own_environment,
     names_a_noun,
+    names_files_that_are_there,
     is_small,
 )
 
@@ -227,6 +247,7 @@ PLANTED = [
     ),
     (names_a_noun, "taylor_verify.exact.utils", "", "utils"),
     (names_a_noun, "taylor_verify.core.exact", "", "core"),
+    (names_files_that_are_there, "taylor_verify.exact.theta", '"""As axes.py."""', "axes.py"),
     (is_small, "taylor_verify.exact.theta", "x = 1\n" * 401, "401"),
 ]
 

@@ -44,9 +44,9 @@ def drift(sign):
         own = np.r_[np.cross(p, v[3:]), np.cross(q, v[3:]) + np.cross(p, v[:3])]
         return (own + sign * plugin_force(v)) / (rigid - Ma)
 
-    v, h = np.array([1.5, 0.2, -0.1, 0.1, 0.05, 0.2]), 0.001
+    v, h = np.array([1.5, 0.2, -0.1, 0.1, 0.05, 0.2]), 0.01
     sizes = []
-    for _ in range(10_000):
+    for _ in range(1000):
         a = rates(v)
         b = rates(v + h / 2 * a)
         c = rates(v + h / 2 * b)
@@ -55,6 +55,7 @@ def drift(sign):
     return max(sizes) / min(sizes) - 1
 
 
+got = drift(1)
 print(f"expected  the momentum stays: the sign turned changes it by {drift(-1):.1e}")
-print(f"got       the plugin changes it by {drift(1):.2g}")
-sys.exit(1 if drift(1) > 1e-3 else 0)
+print(f"got       the plugin changes it by {got:.2g}")
+sys.exit(1 if got > 1e-3 else 0)

@@ -4,7 +4,7 @@ Legend, Hydromechanics 49: z = x3, F^2 = x.x and FG = x.y; p, p', q, q', r, r' a
 coefficients of T, f = r^2 X3. A polynomial is a tuple of Fractions, the highest power first.
 
 About an axis n of another length than 1, nu = n.n, all of this is of sqrt(nu) x and sqrt(nu) y and of the
-coefficients over sqrt(nu), as axes.py says: z = n.x, and F^2, FG and m1 are nu times as large.
+coefficients over sqrt(nu) (axis_of_revolution.py): z = n.x, and F^2, FG and m1 are nu times as large.
 """
 
 from __future__ import annotations

@@ -24,7 +24,6 @@ from __future__ import annotations
 
 import os
 import sys
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -52,6 +51,7 @@ from question import (
     floats,
     read,
     serve,
+    timed,
     unit,
 )
 
@@ -298,17 +298,20 @@ def stepped(body: Body, step: float, start: Callable[[], Engine], remark: str = 
     """
     counts = body.steps(step)
 
-    def seconds_and_rows() -> tuple[float, list[Row]]:
+    def rows_and_seconds() -> tuple[list[Row], float]:
         advance, row = body.accompanied(start, step)
-        began = time.perf_counter()
-        rows = [row()]
-        for before, count in pairwise(counts):
-            advance(count - before)
-            rows.append(row())
-        return time.perf_counter() - began, rows
 
-    first, _ = seconds_and_rows()
-    second, rows = seconds_and_rows()
+        def propagate() -> list[Row]:
+            rows = [row()]
+            for before, count in pairwise(counts):
+                advance(count - before)
+                rows.append(row())
+            return rows
+
+        return timed(propagate)
+
+    _, first = rows_and_seconds()
+    rows, second = rows_and_seconds()
     compiling = max(0.0, first - second)
     return Solved(
         rows,

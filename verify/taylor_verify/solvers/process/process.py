@@ -29,7 +29,7 @@ from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
 PREFIX: Final = "process:"
 _MANY: Final = "many"
-# Seconds for one scene: a hundred times what rk4.py takes for any shipped one at a step of 0.02.
+# Seconds for one scene: a hundred times what solvers/outside/rk4.py takes for a shipped one, step 0.02.
 DEFAULT_LIMIT: Final = 300.0
 
 # A step of any method is many operations, and takes more than a tenth of a nanosecond. A claim of

@@ -26,8 +26,8 @@ _LEGEND: Final = (
     "*rows* are the numbers of the row's runs, from the largest step to the smallest: `taylor-verify board "
     "--board NAME --row N --out row.json` makes the trajectory of one of them, in seconds, and says how "
     "`check` judges it.",
-    "*time* is that of the engine's own calls for a second of the motion at the smallest step, in "
-    "microseconds. It comes from one run beside others: only its order of magnitude is reliable.",
+    "*time* is the processor's time in the engine's own calls for a second of the motion at the smallest "
+    "step, in microseconds. It comes from a single run: only its order of magnitude is reliable.",
 )
 
 

@@ -39,9 +39,8 @@ _LEGEND: Final = (
     "angle in radians, *energy* and *H in space* the largest relative drift.",
     "*order* is the observed order of the error over the steps, of omega and of the attitude; a dash "
     "means that the steps show no order.",
-    "*time* is the time of the engine's own calls for a second of the motion, in microseconds, "
-    "without starting and compiling. It comes from a single run beside another one on the same "
-    "machine: only its order of magnitude is reliable.",
+    "*time* is the processor's time in the engine's own calls for a second of the motion, in microseconds, "
+    "without starting and compiling. It comes from a single run: only its order of magnitude is reliable.",
     "*best step* is the coarsest of the steps with the least error. Steps are decimal, and every sample is "
     "at a whole number of steps.",
     "Adapters switch off sleeping, damping and caps on the velocity if an engine has them. The table "
