@@ -402,6 +402,20 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual == omega.remains <= 1e-13
 
 
+def test_the_angular_velocity_of_a_solid_in_a_fluid_drifts_with_its_clock(tmp_path: Path) -> None:
+    """A clock that runs fast is told of Omega too, which is no state."""
+    scene = load("kirchhoff/whole-motion")
+    instants = scene.clock.instants[:60:3]
+    columns = columns_at(scene, [t * Fraction(1001, 1000) for t in instants])
+    columns = {name: columns[name] for name in VECTORS["omega"]} | {
+        "t": [float(t) for t in instants]
+    }
+    verdicts = check(scene, write_csv(tmp_path / "mine.csv", columns)).verdicts
+    omega = next(v for v in verdicts if v.quantity == "omega")
+    assert omega.shift == "drifting"
+    assert omega.trend == pytest.approx(-1e-3, rel=1e-6)
+
+
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])
 def test_a_clock_that_is_early_and_drifts_is_told_both(with_first: bool) -> None:
     """A constant and a rate together are no constant, whether or not the first row is the start."""

@@ -10,7 +10,8 @@ from typing import Any, Final
 import numpy as np
 from flint import fmpq, fmpq_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, fraction, merged, polynomial, rational
+from taylor_verify.certify.pieces import Piece, Pieces, finite, merged, polynomial
+from taylor_verify.numbers.irrational import fraction, rational
 from taylor_verify.records.faults import Faults, Refused, brief, cut, near, refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.reading.table import exact_number
@@ -164,9 +165,9 @@ def _bernstein(coefficients: Sequence[float], length: Fraction) -> fmpq_poly:
 
 
 def _of_spline(answer: Any, names: Sequence[str]) -> Pieces:
-    k, t = int(answer.k), [rational(x) for x in np.asarray(answer.t).tolist()]
+    k, t = int(answer.k), [finite(x) for x in np.asarray(answer.t).tolist()]
     c = np.asarray(answer.c, dtype=float)
-    columns = [[rational(x) for x in row] for row in c.reshape(len(c), -1).T.tolist()]
+    columns = [[finite(x) for x in row] for row in c.reshape(len(c), -1).T.tolist()]
     places = [j for j in range(k, len(t) - k - 1) if t[j] < t[j + 1]]
     return Pieces.of(
         Piece(fraction(t[j]), fraction(t[j + 1]), dict(zip(names, row, strict=True)))

@@ -14,10 +14,11 @@ from typing import Any, Final
 import numpy as np
 from flint import arb, arb_poly
 
-from taylor_verify.certify.pieces import Piece, Pieces, nearest, rational
+from taylor_verify.certify.pieces import Piece, Pieces, nearest
 from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.event_times import parts_of, system
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
 from taylor_verify.scenes.scene import Scene

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from flint import fmpq, fmpq_poly
 
+from taylor_verify.numbers.irrational import fraction, rational
 from taylor_verify.records.faults import Faults, Refused, refusal
 
 MOST_DEGREE: Final = 60
@@ -58,10 +59,10 @@ class Piece:
         return Piece(begin, end, {name: p(inner) for name, p in self.polynomials.items()})
 
 
-def rational(value: Fraction | float) -> fmpq:
-    """Return an exact or a binary number. Raises Refused for one that is not finite."""
+def finite(value: Fraction | float) -> fmpq:
+    """Return a coefficient. Raises Refused for one that is not finite."""
     try:
-        return fmpq(*value.as_integer_ratio())
+        return rational(value)
     except (ValueError, OverflowError):
         raise refusal("finite coefficients", value, "answer") from None
 
@@ -70,15 +71,11 @@ def nearest(value: fmpq) -> float:
     return int(value.p) / int(value.q)
 
 
-def fraction(value: fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
-
-
 def polynomial(coefficients: Iterable[Any], unit: Fraction = Fraction(1)) -> fmpq_poly:
     """Return the polynomial of exact numbers, or of binary ones as they are, in powers of u/unit."""
     entries, power, factor = [], fmpq(1), rational(unit)
     for coefficient in coefficients:
-        entries.append(rational(coefficient) / power)
+        entries.append(finite(coefficient) / power)
         power *= factor
     return fmpq_poly(entries)
 

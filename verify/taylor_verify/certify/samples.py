@@ -12,8 +12,9 @@ import numpy as np
 from flint import fmpq_poly
 
 from taylor_verify.certify.dense import columns_of, finite_number, named, of_scipy
-from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, nearest, polynomial, rational
+from taylor_verify.certify.pieces import MOST_DEGREE, Pieces, nearest, polynomial
 from taylor_verify.certify.slopes import slopes_of
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.records.faults import brief, refusal
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.scene import Scene

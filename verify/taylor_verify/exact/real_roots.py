@@ -5,12 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq, fmpq_poly
+from flint import arb, fmpq_poly
 
-
-def rational(number: Fraction) -> fmpq:
-    """Return a rational number of flint's."""
-    return fmpq(number.numerator, number.denominator)
+from taylor_verify.numbers.irrational import rational
 
 
 def polynomial(*coefficients: Fraction) -> fmpq_poly:

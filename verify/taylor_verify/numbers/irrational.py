@@ -255,7 +255,17 @@ def ball(value: Fraction | int | Irrational | arb) -> arb:
         return value
     if isinstance(value, Irrational):
         return value.around(ctx.prec) * 1
-    return arb(fmpq(*value.as_integer_ratio()))
+    return arb(rational(value))
+
+
+def rational(value: Fraction | float) -> fmpq:
+    """Return an exact number as FLINT has it."""
+    return fmpq(*value.as_integer_ratio())
+
+
+def fraction(value: fmpq) -> Fraction:
+    """Return a rational number of FLINT."""
+    return Fraction(int(value.p), int(value.q))
 
 
 def generator(constants: tuple[Constant, ...], place: int) -> Irrational:

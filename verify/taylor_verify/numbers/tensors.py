@@ -12,6 +12,8 @@ from operator import mul
 
 import flint
 
+from taylor_verify.numbers.irrational import fraction, rational
+
 Vector = tuple[Fraction, ...]
 Matrix = tuple[Vector, ...]
 
@@ -94,7 +96,7 @@ def leading_minors(matrix: Matrix) -> Iterator[Fraction]:
         yield from accumulate((row[i] for i, row in enumerate(matrix)), mul)
         return
     for size in range(1, len(matrix) + 1):
-        yield _fraction(_flint(tuple(row[:size] for row in matrix[:size])).det())
+        yield fraction(_flint(tuple(row[:size] for row in matrix[:size])).det())
 
 
 def is_positive_definite(matrix: Matrix) -> bool:
@@ -113,17 +115,13 @@ def inverse(matrix: Matrix) -> Matrix:
     """Return the inverse; ZeroDivisionError if the matrix is singular."""
     if is_diagonal(matrix):
         return diagonal(tuple(1 / row[i] for i, row in enumerate(matrix)))
-    return tuple(tuple(map(_fraction, row)) for row in _flint(matrix).inv().tolist())
+    return tuple(tuple(map(fraction, row)) for row in _flint(matrix).inv().tolist())
 
 
 def characteristic(matrix: Matrix) -> tuple[Fraction, ...]:
     """Return the coefficients of det(z - matrix), that of z^0 first."""
-    return tuple(map(_fraction, _flint(matrix).charpoly().coeffs()))
+    return tuple(map(fraction, _flint(matrix).charpoly().coeffs()))
 
 
 def _flint(matrix: Matrix) -> flint.fmpq_mat:
-    return flint.fmpq_mat([[flint.fmpq(c.numerator, c.denominator) for c in row] for row in matrix])
-
-
-def _fraction(value: flint.fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
+    return flint.fmpq_mat([[rational(c) for c in row] for row in matrix])

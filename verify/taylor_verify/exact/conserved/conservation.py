@@ -22,9 +22,10 @@ from taylor_verify.exact.conserved.derivation import (
     mapped,
     product,
 )
-from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong, rational
+from taylor_verify.exact.conserved.polynomial import Polynomial, TooLong
 from taylor_verify.exact.conserved.potential import Factors, Potential, potentials
 from taylor_verify.exact.registry import kind_of
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.loads import CENTRE, Loads, Piece
 from taylor_verify.scenes.scene import Scene

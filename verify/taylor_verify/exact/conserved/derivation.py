@@ -20,13 +20,13 @@ from taylor_verify.exact.conserved.polynomial import (
     TooLong,
     multiplied,
     rate_of,
-    rational,
     reduced,
     symbols_of,
 )
 from taylor_verify.exact.quadratic_forms import Equations, Exact
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers import rotation
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.loads.loads import CENTRE, QUATERNION, Piece

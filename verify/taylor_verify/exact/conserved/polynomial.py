@@ -11,8 +11,9 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Final
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 
+from taylor_verify.numbers.irrational import fraction
 from taylor_verify.scenes.loads.loads import QUATERNION
 
 Polynomial = fmpq_mpoly
@@ -31,11 +32,6 @@ def symbols_of(names: Iterable[str]) -> dict[str, Polynomial]:
     """The symbols of these names, and of q0..q3, each a polynomial by itself."""
     every = (*QUATERNION, *sorted({*names} - {*QUATERNION}))
     return dict(zip(every, fmpq_mpoly_ctx.get(every, Ordering.lex).gens(), strict=True))
-
-
-def rational(number: Fraction) -> fmpq:
-    """The number as FLINT has it."""
-    return fmpq(number.numerator, number.denominator)
 
 
 def multiplied(first: Polynomial, second: Polynomial) -> Polynomial:
@@ -70,4 +66,4 @@ def terms(polynomial: Polynomial) -> Iterator[tuple[Monomial, Fraction]]:
     names = polynomial.context().names()
     for powers, number in polynomial.to_dict().items():
         monomial = (name for name, n in zip(names, powers, strict=True) for _ in range(int(n)))
-        yield tuple(monomial), Fraction(int(number.p), int(number.q))
+        yield tuple(monomial), fraction(number)

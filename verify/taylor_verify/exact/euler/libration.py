@@ -27,13 +27,13 @@ from taylor_verify.exact.conserved.derivation import Derivation
 from taylor_verify.exact.conserved.polynomial import (
     Polynomial,
     TooLong,
-    rational,
     symbols_of,
     terms,
 )
 from taylor_verify.exact.euler import heavy
 from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.solution import Number, Solution, Time
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody

@@ -15,10 +15,10 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import Undecidable, balls, midpoint, sign
 from taylor_verify.exact.gyrostat.pencil import FreeGyrostat
-from taylor_verify.exact.real_roots import polynomial, rational, real_roots
+from taylor_verify.exact.real_roots import polynomial, real_roots
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.irrational import ball
+from taylor_verify.numbers.irrational import ball, rational
 from taylor_verify.numbers.rotation import scalar_product
 from taylor_verify.numbers.tensors import Matrix, Vector
 

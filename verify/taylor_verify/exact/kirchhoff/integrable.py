@@ -20,11 +20,12 @@ from fractions import Fraction
 from typing import Any, Final
 
 import numpy as np
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx
 
 from taylor_verify.exact.kirchhoff.solid import solid
 from taylor_verify.exact.row_arithmetic import Array, norms
 from taylor_verify.numbers import tensors
+from taylor_verify.numbers.irrational import fraction, rational
 from taylor_verify.records.quantities import IMPULSES
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse, Motion
@@ -246,7 +247,7 @@ def _terms(formula: Callable[..., Any], coefficients: Sequence[Any]) -> Terms:
     state = fmpq_mpoly_ctx.get(IMPULSES, Ordering.lex).gens()
     polynomial = formula(state[:3], state[3:], *map(_rational, coefficients))
     return {
-        tuple(int(power) for power in powers): Fraction(int(c.p), int(c.q))
+        tuple(int(power) for power in powers): fraction(c)
         for powers, c in polynomial.to_dict().items()
     }
 
@@ -255,7 +256,7 @@ def _rational(value: Any) -> Any:
     """A number, or a list of some, as flint multiplies a polynomial by it."""
     if isinstance(value, list):
         return [_rational(entry) for entry in value]
-    return fmpq(value.numerator, value.denominator)
+    return rational(value)
 
 
 def _derivative(polynomial: Terms, place: int) -> Terms:

@@ -234,17 +234,16 @@ class Compared:
 
     def _rate(self, rows: Mapping[str, Floats], units: Mapping[str, int], part: str) -> Floats:
         """Return the rate of a part over its scale, from those of the momenta where it is a velocity."""
+        scale = self._scales[part]
         if part in rows:
-            factor = float(mp.ldexp(1, units[part]) / self._scales[part])
+            factor = float(mp.ldexp(1, units[part]) / scale)
             return factor * rows[part].reshape(len(rows[part]), -1)
         forms = velocity_forms(self.run.scene.body).forms[part]
-        total: Floats = sum(
-            rows[name]
-            @ (exact_matrix(matrix).T * (mp.ldexp(1, units[name]) / self._scales[part])).astype(
-                float
-            )
+        parts = [
+            rows[name] @ (exact_matrix(matrix).T * (mp.ldexp(1, units[name]) / scale)).astype(float)
             for name, matrix in forms.items()
-        )
+        ]
+        total: Floats = np.sum(parts, axis=0)
         return total
 
     def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
