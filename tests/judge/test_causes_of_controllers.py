@@ -66,6 +66,11 @@ def names(changed: str) -> list[str]:
                 BODY.replace(TENTH, 'every = "1/5"').replace("1/20", "1/10"),
                 "m and a taken every 0.2 and 0.2, 2 times the scene's time",
             ),
+            (
+                BODY.replace(TENTH, 'every = "3/20"').replace("1/20", "3/40"),
+                "m and a taken every 0.15 and 0.15, 3/2 of the scene's time",
+            ),
+            (BODY.replace(TENTH, 'every = "13/100"').replace("1/20", "7/100"), None),
             (BODY.replace('["m1", "m2", "m3"]', '["-kp*w1 + 0.1*w2", "-kp*w2", "-kp*w3"]'), None),
             (BODY.replace('"a1", "a2", "a3"', '"m1", "m2", "m3"'), "a without its delay"),
             (
@@ -86,7 +91,16 @@ def names(changed: str) -> list[str]:
         ],
         2,
     ),
-    ids=["rate", "taken later", "no delay", "late", "continuous", "gain"],
+    ids=[
+        "rate",
+        "half more",
+        "another rate and offset",
+        "taken later",
+        "no delay",
+        "late",
+        "continuous",
+        "gain",
+    ],
 )
 def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
     """Another rate or gain, a sample more or no delay has its name; another instant has none."""

@@ -18,13 +18,13 @@ class Budget:
     left: float = field(default=300_000.0)
 
     @contextmanager
-    def of_its_own(self, work: float) -> Iterator[None]:
-        """Do something with at most so much work, which is not taken from what is left for others."""
-        left, self.left = self.left, min(self.left, work)
+    def at_most(self, work: float) -> Iterator[None]:
+        """Do something with at most so much of what is left. It raises Spent beyond that."""
+        rest, self.left = max(self.left - work, 0.0), min(self.left, work)
         try:
             yield
         finally:
-            self.left = left
+            self.left = max(self.left, 0.0) + rest
 
     def spend(self, work: float) -> None:
         """Take some work from the budget. Raises Spent at its end."""

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
-from taylor_verify.judge.causes.budget import Budget, Spent
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
@@ -44,7 +44,7 @@ from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
 _PAIR_ROUNDINGS: Final = 100.0
 _PAIR_NUMBERS: Final = 6
-# Beside the steps of a method the search has this work of its own.
+# Beside the steps of a method at least this work may be done.
 _BESIDE: Final = 100_000.0
 # Kinds that are one class: no two of them make a pair.
 _OF_INERTIA: Final = dict.fromkeys(
@@ -111,10 +111,9 @@ def in_numbers(answer: Answer) -> Cause | None:
 
     At most half of the work that may be done is done for it.
     """
-    part = replace(answer, budget=Budget(answer.budget.left / 2))
-    with suppress(Spent):
-        search = _search_from_start(part)
-        return search.cause([*search.fitted(_written(part))])
+    with suppress(Spent), answer.budget.at_most(answer.budget.left / 2):
+        search = _search_from_start(answer)
+        return search.cause([*search.fitted(_written(answer))])
     return None
 
 
@@ -169,15 +168,19 @@ class Search:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
-            cause = self.cause(self._pairs(linear), PAIR)
+            budget = self.answer.budget
+            with suppress(Spent), budget.at_most(budget.left / 2):
+                cause = self.cause(self._pairs(linear), PAIR)
         return cause or self._beside_steps(linear, stride)
 
     def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""
         few = [each.slopes for each in linear if each.family.count <= FEW]
-        faults = [fault.changes for fault in faults_of_terms(self.answer.right)]
-        budget = self.answer.budget
-        with budget.of_its_own(_BESIDE), suppress(Spent):
+        right, budget = self.answer.right, self.answer.budget
+        texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
+        faults = [fault.changes for fault in (*faults_of_terms(right), *texts)]
+        budget.left = max(budget.left, _BESIDE)
+        with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
@@ -271,7 +274,7 @@ class Search:
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
                 fit = gauss_newton(self.evidence, family)
-                if family.kind == "clock" and isinstance(self.evidence, Arcs):
+                if family.kind == "clock" and isinstance(self.evidence, Arcs) and 0 not in counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
                     candidate = self._fitted(family, fit.size, fit.numbers)

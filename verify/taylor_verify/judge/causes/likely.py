@@ -50,7 +50,7 @@ _MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
 # What may be spent on the load that explains the rows: it is told where the search has ended.
-_FOR_A_LOAD: Final = 3_000_000.0
+_FOR_A_LOAD: Final = 600_000.0
 
 
 @dataclass(frozen=True)

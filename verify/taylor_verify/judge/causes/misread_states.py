@@ -17,25 +17,8 @@ from taylor_verify.judge.causes.written_numbers import Number
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
-_RATES: Final = tuple(
-    Fraction(f)
-    for f in (
-        "2",
-        "1/2",
-        "3/2",
-        "2/3",
-        "3",
-        "1/3",
-        "4",
-        "1/4",
-        "5",
-        "1/5",
-        "10",
-        "1/10",
-        "5/4",
-        "4/5",
-    )
-)
+_TIMES: Final = ("2", "3/2", "3", "4", "5", "10", "5/4")
+_RATES: Final = tuple(Fraction(times) ** sign for times in _TIMES for sign in (1, -1))
 _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 
 

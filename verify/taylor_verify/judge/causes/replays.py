@@ -35,9 +35,10 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, which are this many roundings at least.
 _LEAVES: Final = 0.02
 _CLEAR: Final = 30.0
-# The steps of an arc by which the error of a method is measured, and how many times finer ones are measured
-# again; of explicit and implicit ones the most.
+# The steps of an arc by which the error of a method is measured, fewer where they are dear, and how many
+# times finer ones are measured again; of explicit and dear ones the most.
 _FINE: Final = 16
+_FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
 _MOST_IMPLICIT: Final = 64
@@ -162,7 +163,7 @@ class _Replays:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
-            rests = self._stepped(method, _FINE, self.sets)
+            rests = self._stepped(method, _fine(method), self.sets)
             for place, count in self._near(method, defects, rests, near):
                 (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
                 if np.all(np.isfinite(rest)):
@@ -177,9 +178,9 @@ class _Replays:
         """
         most = _MOST_IMPLICIT if method.is_dear else _MOST
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
-            counts = self._counts(method, place, own, own - rest, near, _FINE)
+            counts = self._counts(method, place, own, own - rest, near, _fine(method))
             steps = counts[0] * self.stride if counts else 0
-            if _MUCH_FINER * _FINE < steps <= most:
+            if _MUCH_FINER * _fine(method) < steps <= most:
                 (finer,) = self._stepped(method, steps, [self.sets[place]])
                 counts = self._counts(method, place, own, own - finer, near, steps) or counts
             around = {max(1, count) + more for count in counts for more in (-1, 0, 1)}
@@ -227,6 +228,10 @@ class _Replays:
     def _compared(self, defects: Floats) -> Floats:
         n, arcs = self.arcs.answer.n, len(self.arcs.first)
         return defects[:, :n, :arcs].reshape(len(defects), -1)
+
+
+def _fine(method: Method) -> int:
+    return _FINE_OF_DEAR if method.is_dear else _FINE
 
 
 def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:

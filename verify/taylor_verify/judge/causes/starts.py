@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 from typing import Final
 
 import numpy as np
@@ -159,13 +160,13 @@ def wrong_spans(answer: Answer, defects: Floats) -> list[tuple[int, int]]:
 
 
 def piece(answer: Answer, first: int, last: int) -> Answer:
-    """Return some of the rows, begun at the first of them, with a budget of their own.
+    """Return some of the rows, begun at the first; they have a budget of their own if little is left.
 
     The truth is the right motion from there; where the rows are too far from it to reach it, it is the
     scene's own.
     """
     part = answer.begun_at(first).at(np.s_[: last - first + 1])
-    part = replace(part, budget=Budget(max(Budget().left, answer.budget.left)))
+    part = replace(part, budget=max(answer.budget, Budget(), key=attrgetter("left")))
     truth = whole(part, part.right)
     if truth is None:
         return part
