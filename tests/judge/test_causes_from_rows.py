@@ -171,11 +171,31 @@ def test_rows_that_are_held_or_stepped_have_their_cause(
     assert titles(tmp_path, RIGID.format(load=""), made())[0].startswith(words)
 
 
-def test_wheels_that_are_missing_beside_steps_are_named(tmp_path: Path) -> None:
-    """Wheels left out by a coarse method have their name beside its own."""
-    scene = RIGID.format(load="rotor = [0.4, -0.3, 0.5]")
-    (title,) = titles(tmp_path, scene, in_steps(lambda t, w, q: 0 * w))
-    assert title == "wheels left out, beside steps of explicit Euler, h = 0.02"
+WHEELS = np.array([0.4, -0.3, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("moment", "words"),
+    by_turns(
+        [
+            (lambda t, w, q: 0 * w, "wheels left out, beside steps of explicit Euler, h = 0.02"),
+            (
+                lambda t, w, q: np.cross(WHEELS * [1, 0, 1], w),
+                "wheel 2 left out, beside steps of explicit Euler, h = 0.02",
+            ),
+            (lambda t, w, q: -0.05 * w**3, None),
+            (lambda t, w, q: 0.5 * np.cross(WHEELS, w) - 0.05 * w**3, None),
+        ],
+        3,
+        lambda moment, words: words is None,
+    ),
+)
+def test_wheels_that_are_missing_beside_steps_are_named(
+    moment: Law, words: str | None, tmp_path: Path
+) -> None:
+    """Wheels left out by a coarse method have their name beside its own; two faults beside it have none."""
+    scene = RIGID.format(load=f"rotor = {WHEELS.tolist()}")
+    assert [*titles(tmp_path, scene, in_steps(moment))] == ([] if words is None else [words])
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
-"""Likely causes of a vehicle whose scene names an added mass."""
+"""Likely causes of a vehicle whose scene names an added mass: its parts, and those of the Munk moment."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from builders.caused_rows import Array, columns, rows, titles
+from builders.turns import by_turns
 
 VEHICLE = """
 title = "Vehicle"
@@ -74,3 +76,52 @@ def test_an_added_mass_that_a_scene_names_is_named(
     made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
     names = ("u1", "u2", "u3", "w1", "w2", "w3")
     assert titles(tmp_path, VEHICLE, columns(times, made, names))[0].startswith(words)
+
+
+FULL = np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
+FULL[1, 5] = FULL[5, 1] = 2.0
+FULL[2, 4] = FULL[4, 2] = -1.5
+CUT, HALF_CUT = np.diag(np.diag(FULL)), FULL.copy()
+HALF_CUT[1, 5] = HALF_CUT[5, 1] = 0.0
+
+
+def munk(matrix: Array, nu: Array, part: float = 1.0, coupling: float = 0.0) -> Array:
+    """Part of the Munk moment of the masses, and of the coupling, of a mass matrix."""
+    momentum = part * matrix[:3, :3] @ nu[:3] + coupling * matrix[:3, 3:] @ nu[3:]
+    return np.r_[np.zeros(3), np.cross(momentum, nu[:3])]
+
+
+@pytest.mark.parametrize(
+    ("in_mass", "in_terms", "without", "words"),
+    by_turns(
+        [
+            (CUT, CUT, munk, "added mass cut to its diagonal"),
+            (FULL, CUT, munk, "added mass cut to its diagonal in the Coriolis terms alone"),
+            (HALF_CUT, HALF_CUT, munk, None),
+            (FULL, FULL, munk, "no Munk moment of the masses"),
+            (FULL, FULL, partial(munk, coupling=1.0), "no Munk moment"),
+            (FULL, FULL, partial(munk, part=0.9), None),
+        ],
+        3,
+    ),
+)
+def test_parts_of_an_added_mass_are_named(
+    in_mass: Array, in_terms: Array, without: Any, words: str | None, tmp_path: Path
+) -> None:
+    """An added mass cut to its diagonal, and a Munk moment left out, have their names; near ones do not."""
+    own, _ = body()
+    is_cut = in_terms is not FULL
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        terms = -coriolis(own + in_terms, nu) @ nu
+        return np.linalg.solve(own + in_mass, terms - (not is_cut) * without(own + FULL, nu))
+
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
+    scene = VEHICLE.replace("[0.86, 30.3, 28.3, 0.035, 3.6, 3.5]", str(FULL.tolist()))
+    named_ones = titles(tmp_path, scene, columns(times, made, ("u1", "u2", "u3", "w1", "w2", "w3")))
+    near = ("added mass cut to its diagonal", "no Munk moment")
+    if words is None:
+        assert not any(title.startswith(near) for title in named_ones)
+    else:
+        assert named_ones == [words]

@@ -97,6 +97,9 @@ THRUST = [
     ('"-0.5*abs', '"0.4*r12 - 0.5*abs'),
     ('"-0.6*abs', '"0.4*r13 - 0.6*abs'),
 ]
+WEIGHT = "weight = { force = [0, 0, 20], at = [0, 0, 0.05] }"
+BUOYANCY = "buoyancy = { force = [0, 0, -20], at = [0.02, 0, 0] }"
+FIXED = [(WEIGHT, ""), ('"-0.6*abs', '"20 - 0.6*abs')]
 F = ["0.4 - 0.3*abs(u1)*u1 - 0.1*u1", "-0.5*abs(u2)*u2 - 0.1*u2", "-0.6*abs(u3)*u3 - 0.1*u3"]
 C = ["-0.1*w1", "-0.1*w2", "-0.2*w3"]
 
@@ -106,7 +109,24 @@ def in_space(texts: list[str], axis: int) -> str:
     return " + ".join(f"r{k + 1}{axis + 1}*({text})" for k, text in enumerate(texts))
 
 
+def of_state(every: str) -> list[tuple[str, str]]:
+    """The loads of the vehicle in states that are held."""
+    couple = [f"{C[0]} - r32", f"{C[1]} + r31 + 0.4*r33", f"{C[2]} - 0.4*r32"]
+    names = ((F, "f", F), (C, "g", couple))
+    states = [
+        f'{n} = {{ every = "{every}", value = {own!r} }}'.replace("'", '"') for _, n, own in names
+    ]
+    own = [(f'"{old}"', f'"{n}{i + 1}"') for texts, n, _ in names for i, old in enumerate(texts)]
+    return [
+        *own,
+        (WEIGHT, ""),
+        (BUOYANCY, ""),
+        ("[initial]", "\n".join(["[states]", *states, "[initial]"])),
+    ]
+
+
 IN_SPACE = [(f'"{text}"', f'"{in_space(own, k)}"') for own in (F, C) for k, text in enumerate(own)]
+LATE = of_state("2/15")
 PLAIN = [("o1", "(cos(0.3*t))"), ("o2", "(sin(0.3*t))"), ("o3", "0")]
 
 
@@ -146,6 +166,8 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (VEHICLE, [("at = [0.02, 0, 0]", "at = [0, 0, 0]")], "buoyancy at the origin"),
             (VEHICLE, THRUST, "terms of force without velocities in space axes"),
             (VEHICLE, IN_SPACE, "force and couple, but for weight and buoyancy, in space axes"),
+            (VEHICLE, FIXED, "weight fixed in body axes"),
+            (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
         3,
         lambda text, pairs, name: text,
@@ -165,6 +187,10 @@ def test_loads_that_read_something_else_are_named(
         (SATELLITE, LAST[:2]),
         (SATELLITE, PRODUCTS[:2]),
         (VEHICLE, [GROUND[0], DOUBLED[1]]),
+        (VEHICLE, [*THRUST[:2], DOUBLED[1]]),
+        (VEHICLE, [*IN_SPACE[:1], *IN_SPACE[4:]]),
+        (VEHICLE, [*FIXED, DOUBLED[0]]),
+        (VEHICLE, of_state("1/7")),
     ],
 )
 def test_loads_that_do_so_here_and_there_have_no_name(
