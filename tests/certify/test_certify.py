@@ -80,6 +80,25 @@ def test_the_bound_is_above_every_probe_and_near_the_largest(method: str) -> Non
     assert np.allclose(dense.sol(float(spread[0])), _double(pieces, spread[0]), rtol=1e-13)
 
 
+def test_a_state_that_begins_at_zero_counts_by_its_size_so_far() -> None:
+    """The integral of an error grows from zero: a probe early in the first step is below the bound too."""
+    scene = until("loads/pid")
+    nodes, columns = np.linspace(0, END, 101), ("i1", "i2", "i3")
+    rows = exact(scene, [Fraction(t) for t in nodes], 18)["i"].astype(float)
+    answer = {"i": CubicSpline(nodes, rows)}
+    bound, pieces = certify(scene, answer).bound["i"], pieces_of(answer, scene)
+    times = [Fraction(t) for t in np.geomspace(1e-6, 3.99, 60)]
+    with mp.workdps(40):
+        size, errors = mpf(0), []
+        for time, row in zip(times, exact(scene, times, 30)["i"], strict=True):
+            size = max(size, mp.norm(list(row)))
+            piece = next(iter(pieces.between(time, time)))
+            values = [piece.value(column, time) for column in columns]
+            off = [mpf(v.numerator) / v.denominator - i for v, i in zip(values, row, strict=True)]
+            errors.append(mp.norm(off) / size)
+        assert 0 < max(errors) <= bound <= mpf("1.1") * max(errors)
+
+
 def _double(pieces: Any, time: float) -> list[float]:
     piece = pieces.between(Fraction(time), Fraction(time))[0]
     return [float(piece.value(column, Fraction(time))) for column in ("w1", "w2", "w3")]

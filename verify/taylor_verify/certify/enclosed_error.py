@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -32,6 +33,9 @@ _NEGLIGIBLE: Final = 2.0**-36
 _ROUNDED: Final = 2.0**-50
 _LEAST: Final = 1e-140
 _SHARES: Final = tuple(arb(k) / 8 for k in range(9))
+# The parts of a step from whose beginnings on a state that begins at zero has a size so far, which grows by
+# little within each: from a millionth of the step to its end.
+_FINER: Final = (Fraction(0), *(Fraction((15 / 16) ** k) for k in range(214, -1, -1)))
 
 
 @dataclass(frozen=True)
@@ -124,7 +128,8 @@ class _Part:
         for piece in pieces.between(low, high):
             a, b = max(low, piece.begin), min(high, piece.end)
             for each, group, entry in groups:
-                entry.intervals.append(self._interval(piece, group, each, a, b, entry))
+                for c, d, size in self._sized(each, group, entry, a, b):
+                    entry.intervals.append(self._interval(piece, group, c, d, size))
         # What comes later in this part is no size so far of its intervals.
         for _, group, entry in groups:
             self._measure(group, entry, _SHARES[1:])
@@ -133,21 +138,35 @@ class _Part:
         """Bound how large the truth is, from below, by its values at a few times."""
         for share in shares:
             values = [self._functions[column].over(share) for column in group]
-            size = sum((v.abs_lower() ** 2 for v in values), arb(0)).sqrt().lower()
-            errors.largest = max(errors.largest, float(size) * (1 - _ROUNDED))
+            errors.largest = max(errors.largest, _least(values))
             if errors.last is not None:
-                moved = [(v - w).abs_lower() ** 2 for v, w in zip(values, errors.last, strict=True)]
-                errors.way += float(sum(moved, arb(0)).sqrt().lower()) * (1 - _ROUNDED)
+                errors.way += _least([v - w for v, w in zip(values, errors.last, strict=True)])
             errors.last = values
 
+    def _sized(
+        self, of: Measured, group: Sequence[str], so_far: Errors, a: Fraction, b: Fraction
+    ) -> Iterator[tuple[Fraction, Fraction, float]]:
+        """Yield the parts of an interval, each with the size by which its errors count.
+
+        That of an own state is its largest so far, at the beginning of the part. One that begins at zero
+        has none there: a millionth of the step counts by the size at its end.
+        """
+        counts = of.quantity.measure is Measure.SO_FAR
+        if not counts or so_far.largest:
+            yield a, b, so_far.largest if counts else 1.0
+            return
+        size = 0.0
+        for begin, end in pairwise(_FINER):
+            at = begin or end
+            values = [self._functions[c].over(arb(at.numerator) / at.denominator) for c in group]
+            size = max(size, _least(values))
+            ends = sorted(self._begin + self._length * share for share in (begin, end))
+            low, high = max(a, ends[0]), min(b, ends[1])
+            if low < high:
+                yield low, high, size or 1.0
+
     def _interval(
-        self,
-        piece: Piece,
-        group: Sequence[str],
-        of: Measured,
-        a: Fraction,
-        b: Fraction,
-        so_far: Errors,
+        self, piece: Piece, group: Sequence[str], a: Fraction, b: Fraction, scale: float
     ) -> Interval:
         middle, half = rational(a + b) / 2, rational(b - a) / 2
         begin, length = rational(self._begin), rational(self._length)
@@ -156,15 +175,18 @@ class _Part:
         truth = [self._polynomials[c](ours) for c in group]
         answer = [arb_poly(piece.polynomials[c])(theirs) for c in group]
         beside = [self._functions[c].beside for c in group]
-        scale = 1.0
         if tuple(group) == QUATERNION:
             differences, beside, scale = _turned(truth, answer, beside)
         else:
             differences = [y - z for y, z in zip(answer, truth, strict=True)]
-        if of.quantity.measure is Measure.SO_FAR:
-            scale = so_far.largest or 1.0
         rows, bounds = _rounded(differences, beside)
         return Interval(nearest(middle), nearest(half), rows, bounds, scale)
+
+
+def _least(values: Sequence[arb]) -> float:
+    """A lower bound of the length of a vector."""
+    squares = sum((value.abs_lower() ** 2 for value in values), arb(0))
+    return float(squares.sqrt().lower()) * (1 - _ROUNDED)
 
 
 def _turned(
