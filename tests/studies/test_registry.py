@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 from builders.verdicts import row
 
+from taylor_verify import run
 from taylor_verify.cli import main
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.records import store
@@ -189,7 +190,7 @@ def test_files_that_are_not_committed_are_made_when_they_are_missing(
     folder: Path, capsys: Captured
 ) -> None:
     """They are counted in words, and their pattern is one of those that git leaves out."""
-    store.write(folder, [row()], [])
+    store.write(folder, list(run("euler/generic", rung="f64").verdicts), [])
     assert "data/smallest/" in bulk.patterns()
     assert "1 big files" in bulk.missing(folder, {}).data
     assert call(folder, "--missing") == 0

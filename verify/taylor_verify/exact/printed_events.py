@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from taylor_verify.exact.event_times import Events, EventTime
 from taylor_verify.exact.printed import enclosed_number
+
+if TYPE_CHECKING:
+    from taylor_verify.exact.event_times import Events, EventTime
 
 # Digits of the middle of an interval that proves none.
 _LEAST_DIGITS: Final = 6

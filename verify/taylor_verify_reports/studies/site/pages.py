@@ -1,4 +1,4 @@
-"""Pages that only the site has: the front, the list of scenes, and each scene."""
+"""Pages that only the site has: the front, the list of scenes, each scene, and all gates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from taylor_verify.draw.moving import moving, page
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records.file_names import of_scene
 from taylor_verify.records.runs import gravest
-from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, worst
+from taylor_verify.words.cells import NOTHING, judged, main_error, ratio, verdict_table, worst
 from taylor_verify.words.markdown import code, prose, table
 from taylor_verify_reports.studies.site.extension import SCENES
 from taylor_verify_reports.studies.site.scene_page import (
@@ -33,6 +33,7 @@ from taylor_verify_reports.studies.site.stage import (
 )
 from taylor_verify_reports.studies.source import Document, Report
 
+_GATES: Final = f"{REPORTS}/tables/gates.md"
 _RESULTS: Final = f"{DOCS}/results.md"
 # Fewer pictures are drawn in this process, because to start others takes as long as some drawings.
 _MANY: Final = 20
@@ -40,7 +41,21 @@ _SCENES: Final = (
     "A scene is one motion, given in exact numbers. A number is the largest error of the main quantity, "
     "relative to its size: the angular velocity of a rigid body, the impulse of a solid in a fluid. *Over "
     "attainable* is the largest of all state quantities and rungs; near 1, a solver does all that its "
-    "arithmetic allows. The page of a scene has every quantity with its bound."
+    "arithmetic allows. [Gates](tables/gates.md) has every quantity with its bound."
+)
+_WHAT: Final = (
+    "Every quantity that was compared, and its bound. The reason of each bound is on the page of its "
+    "scene."
+)
+_COLUMNS: Final = (
+    "scene",
+    "rung",
+    "quantity",
+    "max:",
+    "at t:",
+    "bound:",
+    "over attainable:",
+    "verdict",
 )
 
 
@@ -62,6 +77,7 @@ def staged(folder: Path, stored: Drawings) -> Stage:
     stage.add_pages(
         {
             f"{SCENES}.md": _scenes(report),
+            _GATES: _gates(report),
             **{
                 f"{SCENES}/{of_scene(scene)}.md": scene_page(scene, report, drawn, scene in motions)
                 for scene, drawn in pictures.items()
@@ -106,7 +122,8 @@ def _svg(picture: Picture) -> str:
 
 def front(stage: Stage) -> dict[str, str]:
     """Return the front page, made of the README, and the page of results, which lists the report."""
-    pages = sorted({SCENES, *stage.report_pages}, key=_reading_order)
+    made = {SCENES, _GATES.removesuffix(".md")}
+    pages = sorted({*made, *stage.report_pages}, key=_reading_order)
     listed = "\n".join(["```{toctree}", ":hidden:", "", *(f"/{page}" for page in pages), "```"])
     front, results = f"{stage.text(README)}\n{stage.toctrees()}\n", stage.text(_RESULTS)
     if results:
@@ -139,3 +156,9 @@ def _scene_row(report: Report, scene: str) -> list[str]:
         *(main_error(runs.get(rung)) for rung in report.rungs),
         ratio(most) if most else NOTHING,
     ]
+
+
+def _gates(report: Report) -> str:
+    """Return the page with all verdicts in one searchable table."""
+    verdicts = [verdict for run in report.runs for verdict in run.verdicts]
+    return f"# Gates\n\n{_WHAT}\n\n{verdict_table(_COLUMNS, verdicts)}\n"

@@ -29,8 +29,6 @@ PACKED: Final = ".tar.xz"
 # Parts of a drawing that its page does not need.
 _FONTS: Final = re.compile(r"font-family: [^;\"}]*")
 _METADATA: Final = re.compile(r"<metadata>.*?</metadata>\s*", re.DOTALL)
-# Thousands of lines for a search in an editor; on the site the page of each scene has its own.
-_LISTS: Final = ("gates.md",)
 _FOLDERS: Final = ("tables", "reference", "upstream", "upstream/engines")
 # The name of a sheet, which the site has and a clone makes.
 _SHEET: Final = re.compile(r"`([\w/-]+\.csv)`")
@@ -70,8 +68,6 @@ class Stage:
         """Yield the path and the file of each page of the report and of docs."""
         for folder in (self.folder, *(self.folder / name for name in _FOLDERS)):
             for file in sorted(folder.glob("*.md")):
-                if file.name in _LISTS:
-                    continue
                 yield f"{REPORTS}/{file.relative_to(self.folder).as_posix()}", file
         for file in sorted(self.docs.rglob("*.md")) if self.docs else ():
             place = file.relative_to(self.docs or file)
