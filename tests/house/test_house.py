@@ -142,6 +142,8 @@ _FILE_NAME: Final = re.compile(r"(?<![\w./])[a-z_0-9/]+\.py\b")
 
 def names_files_that_are_there(module: str, source: str) -> Iterator[str]:
     """A file that a docstring or a comment names stands beside it, or is named from the package on."""
+    if not _FILE_NAME.search(source):
+        return
     holders = [node for node in ast.walk(parse(source)) if isinstance(node, _TEXTS)]
     texts = [ast.get_docstring(node) or "" for node in holders]
     texts += [line for line in source.splitlines() if line.lstrip().startswith("#")]

@@ -138,9 +138,11 @@ class _Part:
         """Bound how large the truth is, from below, by its values at a few times."""
         for share in shares:
             values = [self._functions[column].over(share) for column in group]
-            errors.largest = max(errors.largest, _least(values))
+            errors.largest = max(errors.largest, _length_from_below(values))
             if errors.last is not None:
-                errors.way += _least([v - w for v, w in zip(values, errors.last, strict=True)])
+                errors.way += _length_from_below(
+                    [v - w for v, w in zip(values, errors.last, strict=True)]
+                )
             errors.last = values
 
     def _sized(
@@ -159,7 +161,7 @@ class _Part:
         for begin, end in pairwise(_FINER):
             at = begin or end
             values = [self._functions[c].over(arb(at.numerator) / at.denominator) for c in group]
-            size = max(size, _least(values))
+            size = max(size, _length_from_below(values))
             ends = sorted(self._begin + self._length * share for share in (begin, end))
             low, high = max(a, ends[0]), min(b, ends[1])
             if low < high:
@@ -183,7 +185,7 @@ class _Part:
         return Interval(nearest(middle), nearest(half), rows, bounds, scale)
 
 
-def _least(values: Sequence[arb]) -> float:
+def _length_from_below(values: Sequence[arb]) -> float:
     """A lower bound of the length of a vector."""
     squares = sum((value.abs_lower() ** 2 for value in values), arb(0))
     return float(squares.sqrt().lower()) * (1 - _ROUNDED)

@@ -95,9 +95,7 @@ def _turned(entries: tuple[object, ...], entry: str, i: int) -> str:
 # Parts of the loads.
 
 
-def _parts(
-    loads: Loads,
-) -> Iterator[tuple[str, tuple[str, ...], Callable[[str], bool]]]:
+def _parts(loads: Loads) -> Iterator[tuple[str, tuple[str, ...], Callable[[str], bool]]]:
     """Yield parts of the vectors' texts: a noun, the vectors, and whether a term belongs to the part.
 
     What the equations say without texts is left to them: all of a vector, and of both.
@@ -151,9 +149,9 @@ def _plus(one: Entry, other: str) -> str:
     return f"({one}) + {other}" if str(one) != "0" else other
 
 
-def _sum(terms: Iterable[tuple[str, str]]) -> str:
+def _sum(products: Iterable[tuple[str, str]]) -> str:
     """Return the sum of products, of which those with a zero are left out."""
-    return " + ".join(f"{a}*({b})" for a, b in terms if b != "0" and a != "(0)") or "0"
+    return " + ".join(f"{a}*({b})" for a, b in products if b != "0" and a != "(0)") or "0"
 
 
 def terms(text: str) -> list[str]:
@@ -205,9 +203,10 @@ def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
         yield f"{noun} left out", without
         if any(any(loads.hung[k].at) for k in some):
             yield f"{noun} at the origin", _with_hung(loads, some, lambda hung: Hung(hung.force))
+        fixed = without
         for k in some:
-            without = added(without, _texts_of(loads.hung[k], is_in_body=True))
-        yield f"{noun} fixed in body axes", without
+            fixed = added(fixed, _texts_of(loads.hung[k], is_in_body=True))
+        yield f"{noun} fixed in body axes", fixed
 
 
 def _with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:

@@ -41,7 +41,7 @@ _FINE: Final = 16
 _FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
-_MOST_IMPLICIT: Final = 64
+_MOST_OF_DEAR: Final = 64
 # Evaluations of an implicit step, about.
 _EVALUATIONS: Final = 12
 # What a method leaves of the defects to first order, alone and beside a fault, and how small its part is.
@@ -111,20 +111,25 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     for steps in _each_best(_Replays(arcs, stride, [{}]).steps(known, _ALONE)):
         if steps.left < max(_LEAVES, _CLEAR * arcs.floor):
             h = steps.step(answer)
-            words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
-            if steps.method.order > 1:
-                words = f"truncation of order {steps.method.order}: {steps.name}"
-            is_held = steps.method is HELD
-            held = f"loads taken every {h:.6g} and held in between"
             yield Candidate(
-                name=held if is_held else f"{words}, h = {h:.6g}",
+                name=_name(steps, answer.n, h),
                 kind="method",
                 defects=steps.left,
                 motion=partial(_motion, steps.method, steps.count),
                 near=_LEAVES,
-                changes=held_over_steps(answer, h) if is_held else {},
+                changes=held_over_steps(answer, h) if steps.method is HELD else {},
                 method=(steps.method, steps.count),
             )
+
+
+def _name(steps: Steps, n: int, h: float) -> str:
+    """Return the name of steps of the length h, of the motion of n components."""
+    if steps.method is HELD:
+        return f"loads taken every {h:.6g} and held in between"
+    words = _WORDS.get(steps.name, steps.name) if n == 3 else steps.name
+    if steps.method.order > 1:
+        words = f"truncation of order {steps.method.order}: {steps.name}"
+    return f"{words}, h = {h:.6g}"
 
 
 def steps_beside(
@@ -176,7 +181,7 @@ class _Replays:
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
         """
-        most = _MOST_IMPLICIT if method.is_dear else _MOST
+        most = _MOST_OF_DEAR if method.is_dear else _MOST
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
             counts = self._counts(method, place, own, own - rest, near, _fine(method))
             steps = counts[0] * self.stride if counts else 0
