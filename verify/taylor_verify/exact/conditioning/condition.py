@@ -26,7 +26,7 @@ import numpy as np
 
 from taylor_verify.exact.conditioning.by_differences import settled
 from taylor_verify.exact.conditioning.linearised import Flow, Steps
-from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame
+from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, is_of_run
 from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
@@ -244,9 +244,8 @@ def path(scene: Scene, digits: int = DIGITS) -> Path:
     """
     elapsed, flow = scene.clock.elapsed, Flow.of(scene)
     _refuse_far_decay(scene, elapsed)
-    if scene.body.loads is not None:
-        times = times_of_run(scene)
-        return Path(scene, flow, times, enclosed(scene, flow, times, digits))
+    if is_of_run(scene):
+        return path_of_run(scene, digits)
     coarse = _along(scene, flow, few(elapsed))
     if coarse.is_regular:
         return coarse
@@ -261,6 +260,15 @@ def path(scene: Scene, digits: int = DIGITS) -> Path:
             if is_dear or followed.is_resolved:
                 return followed
     return sharp(scene, flow, points, _sharp_exponent(growth) or coarse.exponent)
+
+
+def path_of_run(scene: Scene, digits: int = DIGITS) -> Path:
+    """The orbit of a scene at its samples and some times between, from one run of the enclosure.
+
+    Raises Unsettled where the motion is not reached.
+    """
+    flow, times = Flow.of(scene), times_of_run(scene)
+    return Path(scene, flow, times, enclosed(scene, flow, times, digits))
 
 
 def _sharp_exponent(growth: float) -> int:

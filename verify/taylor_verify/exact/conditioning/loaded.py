@@ -1,4 +1,4 @@
-"""The derivative of a motion under loads that a scene writes down, from the steps that enclose it.
+"""The derivative of a motion without closed form, as under written loads, from the steps that enclose it.
 
 Each step bounds the derivative of its flow. A product of them leads from time to time. Attitude and centre
 are in the state where a load depends on them or the scene tracks them: e is the quaternion since the start,
@@ -47,9 +47,14 @@ def frame(scene: Scene) -> frozenset[str]:
     return scene.track.union(("attitude", "centre") if loads.reads_centre else ("attitude",))
 
 
+def is_of_run(scene: Scene) -> bool:
+    """Return True if the motion has no closed form: one run of the enclosure gives it with its derivative."""
+    return scene.body.loads is not None or solution(scene).route == "taylor"
+
+
 def truth(scene: Scene, digits: int) -> Solution:
-    """Return the exact solution; under written loads that which comes with the derivative of its motion."""
-    if scene.body.loads is None or len(scene.clock.elapsed) > MOST_OF_RUN:
+    """Return the exact solution; without closed form that which comes with the derivative of its motion."""
+    if not is_of_run(scene) or len(scene.clock.elapsed) > MOST_OF_RUN:
         return solution(scene)
     return Linearised(scene, digits)
 

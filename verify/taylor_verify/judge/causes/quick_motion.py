@@ -31,7 +31,7 @@ def quick_motion(
     """Return the motion of a rounded scene at ``times``, each from the nearest of the rows at ``since``.
 
     ``known`` has the rows by quantity, as the motion that is returned. Times are since the start of the
-    scene. None where the body has loads or terms of its own. What float64 does not follow is wrong.
+    scene. None where the body has loads or terms of its own; NaN where float64 does not follow.
     """
     names = MOMENTA[scene.model]
     if scene.body.loads is not None or not are_known(scene.body) or not set(names) <= set(known):
@@ -64,14 +64,18 @@ def _ends(rates: Any, begin: Floats, since: Floats, times: Floats, steps: int) -
 
 
 def _settled(ends: Any, steps: int) -> Floats:
-    """Return the ends of as many steps as they need, or of the most."""
-    before = after = ends(steps)
+    """Return the ends of as many steps as they need; NaN where the most are too few."""
+    after = ends(steps)
+    has_settled = np.zeros(len(after), dtype=bool)
     for _ in range(_DOUBLINGS):
         steps, before = 2 * steps, after
         after = ends(steps)
-        if np.all(np.abs(after - before) <= _SETTLED * np.max(np.abs(after), axis=0)):
+        has_settled = np.all(
+            np.abs(after - before) <= _SETTLED * np.nanmax(np.abs(after), axis=0), axis=1
+        )
+        if np.all(has_settled):
             break
-    return np.asarray(after)
+    return np.where(has_settled[:, None], after, np.nan)
 
 
 def _by_name(ends: Floats, rows: Mapping[str, Floats], names: tuple[str, ...]) -> dict[str, Floats]:

@@ -26,7 +26,7 @@ _HALVINGS: Final = 3
 # The iteration ends if an evaluation leaves more than this part of the error before it.
 _PROGRESS: Final = 0.9
 # Beyond this error (relative, or radians) first order may have the wrong direction.
-_FAR: Final = 0.1
+FAR: Final = 0.1
 # The search: this many steps of half a radian of the fastest turn, in each direction.
 _SEARCH_STEPS: Final = 16
 _SEARCH_STEP: Final = 0.5
@@ -101,13 +101,18 @@ def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
     return None
 
 
+def reach(fit: Shifted) -> float:
+    """Return the largest shift of the search, in the scene's unit of time."""
+    return float(_SEARCH_STEPS * _SEARCH_STEP / fit.rate * float(fit.unit))
+
+
 def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     """Return the fit to start from: ``fit``, or the best of many shifts if the error is large.
 
     For a periodic motion many shifts are equally good. The smallest shift is taken among those whose
     error equals the least, up to the error that half the distance between two of them can cause.
     """
-    is_far = np.max(np.abs(fit.error)) * fit.size > _FAR
+    is_far = np.max(np.abs(fit.error)) * fit.size > FAR
     if not is_far or not fit.rate:
         return fit
     times = compared.run.times

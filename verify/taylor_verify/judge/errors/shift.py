@@ -19,6 +19,7 @@ import numpy as np
 
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import courses
+from taylor_verify.judge.errors.passage import is_passed_by
 from taylor_verify.judge.errors.shifted import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.reason import Kind, TimeShift
@@ -111,6 +112,8 @@ def _shift(compared: Compared) -> Shift | None:
     start = compared.fit(run.truth, run.rates, run.unshifted)
     if not start.is_finite:
         return None
+    if _passes_too_far(compared, start):
+        return _without_evaluation(compared, start)
     fits = best = _Fits.of(compared, start)
     nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
     single = courses.fitted(compared, nearest, courses.single)
@@ -130,6 +133,37 @@ def _shift(compared: Compared) -> Shift | None:
         at_samples=tuple(single.shift.tolist()),
         course=tuple(course.tolist()),
         strays=tuple(run.instants[k] for k in best.strays),
+    )
+
+
+def _passes_too_far(compared: Compared, start: Shifted) -> bool:
+    """Return True if the exact motion, at whatever time, is too far from more rows than may be strays.
+
+    Only a search among enclosures is so slow that this is asked first.
+    """
+    largest = compared.largest(start)
+    if compared.run.exact.route != "taylor" or largest <= courses.FAR or not start.rate:
+        return False
+    # The error of several parts is that of the worst, and a distance is at most this much larger.
+    within = LEAVES * largest * float(np.sqrt(len(compared.errors.parts)))
+    most = max(1, int(_STRAYS * len(compared.run.elapsed)))
+    return not is_passed_by(compared, courses.reach(start), within, most)
+
+
+def _without_evaluation(compared: Compared, start: Shifted) -> Shift:
+    """Return the shift of an error that none explains, with the numbers that first order tells."""
+    run = compared.run
+    best = start.with_first_order(courses.constant(start, run.times))
+    single = courses.single(start, run.times) * (float(start.unit) * start.size)
+    return Shift(
+        time_shift=float(best.shift[0]),
+        residual=compared.largest(best),
+        kind=Kind.NONE,
+        remains=compared.largest(start),
+        trend=0.0,
+        times=run.instants,
+        at_samples=tuple(single.tolist()),
+        course=(0.0,) * len(run.instants),
     )
 
 

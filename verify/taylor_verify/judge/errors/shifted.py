@@ -157,13 +157,15 @@ class Run:
 
         An enclosure takes much longer than float64 from the exact rows, which is enough for a search.
         """
-        if self.exact.route == "taylor":
-            known, since, times = self.truth.quantities, _floats(self.elapsed), _floats(elapsed)
-            quick = quick_motion(self.scene, known, since, times)
-            if quick is not None:
-                return quick
+        quick = self.along(_floats(elapsed)) if self.exact.route == "taylor" else None
+        if quick is not None:
+            return quick
         motion = self.motion(elapsed, _SEARCH_DIGITS)
         return None if motion is None else motion.quantities
+
+    def along(self, times: Floats) -> Mapping[str, Any] | None:
+        """Return the motion in float64 at times since the start; None if it has loads."""
+        return quick_motion(self.scene, self.truth.quantities, _floats(self.elapsed), times)
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
@@ -258,8 +260,19 @@ class Compared:
         for first in range(0, len(elapsed), len(rows)):
             some = {name: each[first : first + len(rows)] for name, each in motion.items()}
             error, size = self._relative(some, rows)
-            left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
+            square = float(np.mean(np.sum(error**2, axis=1))) * size**2
+            left.append(square if np.isfinite(square) else inf)
         return left
+
+    def over_scales(self, motion: Mapping[str, Any]) -> Floats:
+        """Return the rows of a motion over the scales of the errors, flattened, in float64."""
+        body = self.run.scene.body
+        rows = {p: motion[p] if p in motion else velocity(p, body, motion) for p in self._scales}
+        parts = [
+            each.reshape(len(each), -1).astype(float) * float(1 / self._scales[p])
+            for p, each in rows.items()
+        ]
+        return np.concatenate(parts, axis=1)
 
     def largest(self, fit: Shifted) -> float:
         """Return the largest remaining error, in the unit of the error."""

@@ -27,7 +27,7 @@ import numpy as np
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import Path, path, transition
-from taylor_verify.exact.conditioning.loaded import DIGITS
+from taylor_verify.exact.conditioning.loaded import DIGITS, is_of_run
 from taylor_verify.exact.damping import growths, without_damping
 from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
@@ -285,17 +285,17 @@ def floor(
 
 def _orbits(given: Scene, asked: Scene, bits: int) -> Iterator[Path]:
     yield orbit_of_run(given, asked, bits)
-    if given.body.loads is None:
+    if not is_of_run(given):
         yield orbit_of(given)
 
 
 def orbit_of_run(given: Scene, asked: Scene, bits: int) -> Path:
     """Return the orbit of a run on a rung of ``bits`` bits, of the rounded scene ``given``.
 
-    Under written loads it comes with the exact motion of this scene. Elsewhere it is that of the scene
+    Without closed form it comes with the exact motion of this scene. Elsewhere it is that of the scene
     ``asked``, which all rungs share.
     """
-    return orbit_of(asked) if given.body.loads is None else orbit_of(given, truth_digits(bits))
+    return orbit_of(given, truth_digits(bits)) if is_of_run(given) else orbit_of(asked)
 
 
 @lru_cache(maxsize=32)

@@ -20,7 +20,7 @@ from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.row_arithmetic import quaternions
 from taylor_verify.models.functions import functions_of
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.loads.loads import Piece as Steps
 from taylor_verify.scenes.loads.steps import Step
 
@@ -74,9 +74,8 @@ class Along:
 
     @property
     def loads(self) -> Loads:
-        loads = self.path.scene.body.loads
-        assert loads is not None
-        return loads
+        scene = self.path.scene
+        return scene.body.loads or Loads(scene.model, ())
 
     @cached_property
     def state(self) -> Floats:
@@ -238,7 +237,9 @@ class Along:
             rows = self.path.carried.own[state.name]
             inputs |= dict(zip(state.components, rows.T, strict=True))
         inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
-        return inputs | {f"q{i}": rows for i, rows in enumerate(self.quaternions.T)}
+        if self.loads.inputs.isdisjoint(QUATERNION):
+            return inputs
+        return inputs | dict(zip(QUATERNION, self.quaternions.T, strict=True))
 
     @cached_property
     def quaternions(self) -> Floats:

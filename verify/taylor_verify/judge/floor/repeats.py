@@ -22,6 +22,7 @@ import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.conditioning.linearised import applied
+from taylor_verify.exact.conditioning.loaded import is_of_run
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers.precision import floor_log2
@@ -92,7 +93,7 @@ def _courses(path: Path) -> list[Course]:
     if "attitude" in path.blocks:
         courses.append(_turns(path, courses[0]))
     if "centre" in path.blocks:
-        courses.append(_centre(path))
+        courses.append(_followed_centre(path) if is_of_run(path.scene) else _centre(path))
     return courses
 
 
@@ -103,15 +104,20 @@ def _by_differences(path: Path) -> list[Course]:
     if "attitude" in path.blocks:
         courses.append(_turns(path, momenta))
     if "centre" in path.blocks:
-        length = path.units["centre"]
-        start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
-        courses.append(_differences(path, path.centre + start))
+        courses.append(_followed_centre(path))
     taken = {state.name for state in path.scene.own_states if isinstance(state, Held)}
     for name, rows in path.carried.own.items():
         x = rows / float(path.units[name])
         still = np.zeros_like(x)
         courses.append(Course(x, still, still) if name in taken else _differences(path, x))
     return courses
+
+
+def _followed_centre(path: Path) -> Course:
+    """Return the course of a centre that the path follows closely."""
+    length = path.units["centre"]
+    start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
+    return _differences(path, path.centre + start)
 
 
 def _differences(path: Path, x: Floats) -> Course:

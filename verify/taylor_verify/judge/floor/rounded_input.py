@@ -22,7 +22,8 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.loaded import frame
+from taylor_verify.exact.conditioning.condition import differs_dearly, path_of_run
+from taylor_verify.exact.conditioning.loaded import frame, is_of_run
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
@@ -65,11 +66,13 @@ class InputRounding:
 def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> InputRounding:
     """Return the response to a rounding of each nonzero number of the body and of the start.
 
-    If the rung cannot represent every time, such as 0.1, the times are changed too. The response is
+    If the rung cannot represent every time, such as 0.1, the times are changed too. Where the motion has no
+    closed form the response is that of its derivative: each changed motion would cost as much as the truth.
+    Elsewhere it is
     computed at the samples of the floor, for the scene ``asked``: near an unstable axis the response is
     large during short passages, which evenly chosen samples could miss.
     """
-    if given.body.loads is not None:
+    if is_of_run(given) or differs_dearly(given):
         return _by_derivative(given, rung)
     nodes = looked_at(orbit_of(given if asked is None else asked))
     instants = tuple(given.clock.instants[k] for k in nodes)
@@ -96,8 +99,8 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
 
 
 def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
-    """Return the response under written loads, whose numbers are inputs too."""
-    path = orbit_of_run(given, given, rung.bits)
+    """Return the response of a motion that comes with its derivative; numbers of loads are inputs too."""
+    path = orbit_of_run(given, given, rung.bits) if is_of_run(given) else path_of_run(given)
     nodes = looked_at(path)
     places = {time: k for k, time in enumerate(path.elapsed)}
     rows = [places[given.clock.elapsed[k]] for k in nodes]
