@@ -1,48 +1,57 @@
 """How near the exact motion passes the rows of an answer, at whatever time.
 
 Where it passes most of them too far off, no shift of time explains their errors. This asks for one motion
-in float64, a search of shifts for many enclosures.
+in float64, a search of shifts for many.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.errors.shifted import Compared, Floats, Run
 
-# Points between two rows, and on either side of all of them.
+# Points between the first and the last row, and on either side of them.
 _BETWEEN: Final = 2048
 _BEYOND: Final = 256
 # Rows that are compared with all points at once.
 _AT_ONCE: Final = 512
 
 
-def is_passed_by(compared: Compared, window: float, within: float, most: int) -> bool:
-    """Return True if at most so many rows are further than ``within`` from the exact motion.
+@dataclass(frozen=True)
+class Passage:
+    """The exact motion of a run from ``window`` before its first row to as long after its last one."""
 
-    The motion is followed from ``window`` before the first row to as long after the last one. ``within`` is
-    in the unit of the error. True if the motion cannot be followed in float64.
-    """
-    along = compared.run.along(_times(compared.run, window))
-    if along is None:
-        return True
-    points, rows = compared.over_scales(along), compared.over_scales(compared.run.answer.quantities)
-    if not np.all(np.isfinite(points)):
-        return True
-    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    # A point of the motion is at most half of a gap from one of its points; its arc is longer than the gap.
-    off = _distances(rows, points) - np.max(gaps)
-    return int(np.count_nonzero(off > within)) <= most
+    run: Run
+    window: float
 
+    @cached_property
+    def points(self) -> Mapping[str, Any] | None:
+        """The motion at many times in order, in float64; None if it has loads."""
+        elapsed = np.array(sorted(float(t) for t in self.run.elapsed))
+        inner = np.linspace(elapsed[0], elapsed[-1], _BETWEEN)
+        outer = np.linspace(0.0, self.window, _BEYOND + 1)[1:]
+        times = np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
+        return self.run.along(times)
 
-def _times(run: Run, window: float) -> Floats:
-    """Return times since the start in order."""
-    elapsed = np.array(sorted(float(t) for t in run.elapsed))
-    inner = np.linspace(elapsed[0], elapsed[-1], _BETWEEN)
-    outer = np.linspace(0.0, window, _BEYOND + 1)[1:]
-    return np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
+    def distances(self, compared: Compared) -> Floats:
+        """Return at most the distance of each row of the answer from the motion, in the unit of the error.
+
+        Zero where the motion is not known.
+        """
+        rows = compared.over_scales(self.run.answer.quantities)
+        if self.points is None:
+            return np.zeros(len(rows))
+        points = compared.over_scales(self.points)
+        if not np.all(np.isfinite(points)):
+            return np.zeros(len(rows))
+        # The motion between two points is no further from both than they are apart, about.
+        gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        return _distances(rows, points) - np.max(gaps)
 
 
 def _distances(rows: Floats, points: Floats) -> Floats:

@@ -19,7 +19,7 @@ import numpy as np
 
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.errors import courses
-from taylor_verify.judge.errors.passage import is_passed_by
+from taylor_verify.judge.errors.passage import Passage
 from taylor_verify.judge.errors.shifted import Compared, Floats, Run, Shifted
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.records.reason import Kind, TimeShift
@@ -101,19 +101,38 @@ def time_shifts(
     ``truth`` is the exact motion of ``scene`` at its instants to ``digits`` digits. The shift is None if an
     error is not finite or a rate is beyond float64. If the motion rests, no shift explains anything.
     """
-    run = Run(scene, exact, truth, answer, digits)
-    return [_shift(Compared(run, errors)) for errors in of]
+    every = [Compared(Run(scene, exact, truth, answer, digits), errors) for errors in of]
+    starts = [_start(compared) for compared in every]
+    reaches = [courses.reach(start) for start in starts if start is not None and start.rate]
+    passage = Passage(every[0].run, max(reaches, default=0.0)) if every else None
+    return [
+        None if start is None or passage is None else _shift(compared, start, passage)
+        for compared, start in zip(every, starts, strict=True)
+    ]
 
 
-def _shift(compared: Compared) -> Shift | None:
+def _start(compared: Compared) -> Shifted | None:
+    """Return the comparison without a shift; None if a number is beyond float64."""
     run = compared.run
     if not all(error <= _LARGEST_ERROR for error in compared.errors.values):
         return None
     start = compared.fit(run.truth, run.rates, run.unshifted)
-    if not start.is_finite:
-        return None
-    if _passes_too_far(compared, start):
-        return _without_evaluation(compared, start)
+    return start if start.is_finite else None
+
+
+def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
+    """Return the best shift; where the exact motion is dear, one in float64 is asked first."""
+    if compared.run.exact.route == "taylor" and compared.largest(start) > courses.FAR:
+        if _passes_too_far(compared, start, passage):
+            return _without_evaluation(compared, start)
+        quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)
+        if quick.kind is Kind.NONE:
+            return quick
+    return _searched(compared, start)
+
+
+def _searched(compared: Compared, start: Shifted) -> Shift:
+    run = compared.run
     fits = best = _Fits.of(compared, start)
     nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
     single = courses.fitted(compared, nearest, courses.single)
@@ -136,18 +155,12 @@ def _shift(compared: Compared) -> Shift | None:
     )
 
 
-def _passes_too_far(compared: Compared, start: Shifted) -> bool:
-    """Return True if the exact motion, at whatever time, is too far from more rows than may be strays.
-
-    Only a search among enclosures is so slow that this is asked first.
-    """
-    largest = compared.largest(start)
-    if compared.run.exact.route != "taylor" or largest <= courses.FAR or not start.rate:
-        return False
+def _passes_too_far(compared: Compared, start: Shifted, passage: Passage) -> bool:
+    """Return True if the exact motion, at whatever time, is too far from more rows than may be strays."""
     # The error of several parts is that of the worst, and a distance is at most this much larger.
-    within = LEAVES * largest * float(np.sqrt(len(compared.errors.parts)))
+    within = LEAVES * compared.largest(start) * float(np.sqrt(len(compared.errors.parts)))
     most = max(1, int(_STRAYS * len(compared.run.elapsed)))
-    return not is_passed_by(compared, courses.reach(start), within, most)
+    return int(np.count_nonzero(passage.distances(compared) > within)) > most
 
 
 def _without_evaluation(compared: Compared, start: Shifted) -> Shift:

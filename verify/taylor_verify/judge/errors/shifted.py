@@ -27,6 +27,7 @@ from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -117,13 +118,17 @@ class Shifted:
 
 @dataclass(frozen=True)
 class Run:
-    """An answer and the exact motion, for all quantities of a scene."""
+    """An answer and the exact motion, for all quantities of a scene.
+
+    If it ``is_quick``, the motion at other times than the samples is taken in float64.
+    """
 
     scene: Scene
     exact: Solution
     truth: Motion
     answer: Motion
     digits: int
+    is_quick: bool = False
 
     @cached_property
     def rates(self) -> Rates:
@@ -169,6 +174,10 @@ class Run:
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
+        quick = self.along(_floats(elapsed)) if self.is_quick else None
+        if quick is not None:
+            rows = {name: real(each, self.truth[name]) for name, each in quick.items()}
+            return Motion(rows, np.array([mp.zero] * len(elapsed), dtype=object))
         try:
             return self.exact.motion(elapsed, digits)
         except Unsettled:
