@@ -34,6 +34,21 @@ def test_draws_give_the_sum_of_single_moves(body: Body, monkeypatch: pytest.Monk
         assert np.all(sizes <= 2 * drawn[name])
 
 
+@pytest.mark.parametrize("name", ["kirchhoff/swimmer-vehicle", "kirchhoff/general-body"])
+def test_the_derivative_tells_what_exact_motions_beside_tell(name: str) -> None:
+    """Without closed form the same draws are carried by the derivative, to first order in a rounding."""
+    scene = asked_at(name, Fraction(1, 2), Fraction(1))
+    carried = input_rounding(scene, F64)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rounded_input, "is_of_run", lambda scene: False)
+        patch.setattr(rounded_input, "differs_dearly", lambda scene: False)
+        beside = input_rounding(scene, F64)
+    assert carried.moved == beside.moved
+    assert set(carried.at_samples) == set(beside.at_samples)
+    for quantity, sizes in beside.at_samples.items():
+        assert carried.at_samples[quantity] == pytest.approx(sizes, rel=1e-4)
+
+
 def times_alone(*instants: Fraction) -> InputRounding:
     """The response to roundings of these times, of a scene whose numbers are not moved."""
     scene = asked_at("euler/generic", *instants)

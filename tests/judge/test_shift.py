@@ -22,7 +22,9 @@ from taylor_verify.check import check
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.errors.passage import Passage
 from taylor_verify.judge.errors.shift import Shift, time_shifts
+from taylor_verify.judge.errors.shifted import Compared, Run
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
@@ -400,6 +402,49 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual is not None
     # Rounding to doubles is left, of Omega and of the times.
     assert omega.residual == omega.remains <= 1e-13
+
+
+def fluid(late: Fraction, factor: float = 1.0) -> dict[str, Shift | None]:
+    """The shifts of a solid without closed form, all of its impulses late and multiplied."""
+    scene, exact = asked("kirchhoff/general-body")
+    motion = exact.motion([t - late for t in scene.clock.elapsed], DIGITS)
+    rows = {name: factor * rows for name, rows in motion.quantities.items()}
+    return judged(scene, exact, Motion(rows, motion.radius))
+
+
+def test_a_shift_is_exact_where_the_motion_was_searched_in_float64() -> None:
+    """An error as large as the motion is searched in float64; what is found is settled by the enclosure."""
+    shift = fluid(Fraction(2, 5))["impulse"]
+    assert shift is not None
+    assert shift.kind is Kind.CONSTANT
+    assert shift.time_shift == pytest.approx(0.4, rel=1e-14)
+    # The shift is a double, and 2/5 is none.
+    assert shift.remains < 1e-15
+
+
+def test_where_the_motion_passes_too_far_no_enclosure_is_asked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Impulses twice as large are near no point of the exact motion: no shift is searched at all."""
+    _, exact = asked("kirchhoff/general-body")
+    asked_for = []
+    monkeypatch.setattr(Run, "motion", lambda *given: asked_for.append(given))
+    shift = fluid(Fraction(0), 2.0)["impulse"]
+    assert shift is not None
+    assert shift.kind is Kind.NONE
+    assert not asked_for
+
+
+def test_a_distance_is_at_most_that_of_the_exact_motion() -> None:
+    """Rows that lie on the motion at times of their own have none, whatever points are taken."""
+    scene, exact = asked("kirchhoff/general-body")
+    truth = exact.motion(scene.clock.elapsed, DIGITS)
+    answer = exact.motion([t - Fraction(1, 3) for t in scene.clock.elapsed], DIGITS)
+    with mp.workdps(2 * DIGITS):
+        (errors,) = state_errors(scene, truth, answer)
+        compared = Compared(Run(scene, exact, truth, answer, DIGITS), errors)
+        distances = Passage(compared.run, 1.0).distances(compared)
+    assert np.all(distances <= 1e-6)
 
 
 def test_the_angular_velocity_of_a_solid_in_a_fluid_drifts_with_its_clock(tmp_path: Path) -> None:

@@ -112,7 +112,8 @@ def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
         here = moves.here(rows)
         draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
-        words = f"each of the {moves.count} numbers of body, loads and start that are not zero"
+        parts = "body and start" if given.body.loads is None else "body, loads and start"
+        words = f"each of the {moves.count} numbers of {parts} that are not zero"
         if not all(rung.holds(t) for t in instants):
             for name, squares in _squares(scene, here, moves.late(rows, roundoff)).items():
                 total[name] = total[name] + squares
