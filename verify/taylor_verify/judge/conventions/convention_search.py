@@ -13,7 +13,7 @@ for example space axes of a body that starts aligned with them, so longer beginn
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -27,7 +27,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.causes.quick_motion import quick_motion
-from taylor_verify.judge.conventions.axis_orders import Frames, renamings
+from taylor_verify.judge.conventions.axis_orders import Axes, Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
     EXPLAINS,
@@ -39,6 +39,7 @@ from taylor_verify.judge.conventions.fits import (
     simplest,
 )
 from taylor_verify.judge.conventions.meanings import readings, rotations
+from taylor_verify.judge.conventions.unrefuted_axes import unrefuted
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
@@ -190,7 +191,7 @@ class _Search:
         only = [group for group in self.values if not GROUPS[group].is_frame]
         columns = COLUMNS[only[0]] if len(only) == len(self.values) == 1 else ()
         fits = []
-        for renamed in frames or self.frames:
+        for renamed in frames or self._unrefuted(truth, near):
             groups: dict[str, BestReading] = {}
             for group in self.values:
                 groups[group] = read = self._best(group, truth, near, renamed)
@@ -200,6 +201,34 @@ class _Search:
                 words = renamed.words(columns)
                 fits.append(Fit(replace(world, frames=renamed, axes_words=words), groups))
         return fits
+
+    def _unrefuted(self, truth: Mapping[str, Floats], near: Sequence[int]) -> Iterator[Frames]:
+        """Yield the renamings of axes, without most of those that leave a group of vectors unexplained."""
+        possible = [
+            self._axes(group, truth, near)
+            for group in self.values
+            if near and not GROUPS[group].is_frame
+        ]
+        for frames in self.frames:
+            if all(frames.body in body or frames.space in space for body, space in possible):
+                yield frames
+
+    def _axes(
+        self, group: str, truth: Mapping[str, Floats], near: Sequence[int]
+    ) -> tuple[set[Axes], set[Axes]]:
+        """Return the axes of the body, and those of space, that some reading of vectors may have."""
+        columns, right, R = self.values[group][list(near)], truth[group], truth["attitude"]
+        enough = self.plain.groups[group].explained(_motion(group, right), self.noise)
+        most, size = 2 * enough, _largest(right) or 1.0
+        of_body, of_space = set[Axes](), set[Axes]()
+        is_placed = GROUPS[group].moves_with == "space"
+        for reading in readings(group, Frames(), self.spacing):
+            vectors, known = reading.read(columns, R), right
+            if reading.in_space:
+                vectors, known = (np.einsum("nij,nj->ni", R, rows) for rows in (vectors, right))
+            axes = of_space if reading.in_space or is_placed else of_body
+            axes |= unrefuted(vectors, known, most * size)
+        return of_body, of_space
 
     @cached_property
     def own_truth(self) -> _Truth:
@@ -268,7 +297,7 @@ class _Search:
         good = [(r, e) for r, e in zip(known, errors, strict=True) if e <= enough]
         cost = good[0][0].cost
         alike = [reading for reading, _ in good if reading.cost == cost]
-        motion = _distance(group, np.broadcast_to(right[0], right.shape), right)
+        motion = _motion(group, right)
         return BestReading(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
 
     def _is_possible(self, world: World) -> bool:
@@ -295,6 +324,11 @@ def _distance(group: str, values: Floats, right: Floats) -> float:
     size = np.sqrt(2) if GROUPS[group].is_frame else _largest(right) or 1.0
     # Beyond doubles both may be infinite: then no reading is correct.
     return float(largest / size) if size < inf else inf
+
+
+def _motion(group: str, right: Floats) -> float:
+    """Return the distance that the exact motion goes over the rows."""
+    return _distance(group, np.broadcast_to(right[0], right.shape), right)
 
 
 def _has_another(values: Floats, right: Floats, error: float) -> bool:

@@ -75,7 +75,11 @@ class BestReading:
     others: tuple[Reading, ...]
 
     def is_explained(self, plain: BestReading, noise: float) -> bool:
-        return self.error <= max(noise, EXPLAINS * max(plain.error, self.motion))
+        return self.error <= plain.explained(self.motion, noise)
+
+    def explained(self, motion: float, noise: float) -> float:
+        """Return the largest error that explains this one, of an exact motion that goes so far."""
+        return max(noise, EXPLAINS * max(self.error, motion))
 
 
 @dataclass(frozen=True)

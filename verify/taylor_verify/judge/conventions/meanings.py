@@ -33,12 +33,13 @@ class Reading:
 
     If two readings explain a file equally well, the reading with fewer departures is taken. ``read``
     returns the group in the scene's conventions: vectors (n, 3), quaternions (n, 4) or matrices (n, 3,
-    3). ``is_factor`` if it multiplies by the factor of a unit.
+    3). ``is_factor`` if it multiplies by the factor of a unit, ``in_space`` if it turns space axes.
     """
 
     words: tuple[str, ...]
     read: Read
     is_factor: bool = False
+    in_space: bool = False
 
     @property
     def cost(self) -> int:
@@ -85,9 +86,8 @@ def _vectors(group: str, spacing: Fraction | None, frames: Frames) -> Iterator[R
         for in_space in (False,) if is_placed else (False, True):
             words = [*in_unit, *[f"{together} are in space axes"] * in_space]
             axes = frames.space if in_space or is_placed else frames.body
-            yield Reading(
-                tuple(words), partial(_read_vectors, axes, pis, in_space=in_space), bool(unit)
-            )
+            read = partial(_read_vectors, axes, pis, in_space=in_space)
+            yield Reading(tuple(words), read, bool(unit), in_space)
         if group == "omega" and not frames.cost:
             rates = f"{together} are rates of Euler angles, roll' pitch' yaw', and no body rates"
             yield Reading((*in_unit, rates), partial(_read_rates, frames.body, pis), bool(unit))

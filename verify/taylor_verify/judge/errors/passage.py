@@ -1,4 +1,4 @@
-"""How near the exact motion passes the rows of an answer, at whatever time.
+"""The exact motion beside the rows of an answer: how near it passes them, at whatever time.
 
 Where it passes most of them too far off, no shift of time explains their errors. This asks for one motion
 in float64, a search of shifts for many.
