@@ -350,7 +350,7 @@ def test_rows_that_begin_late_have_their_cause(
 @pytest.mark.parametrize(
     ("sign", "count", "shift"),
     by_turns(
-        [(1, 1601, 2), (-1, 1601, 2), (1, 1601, 4), (-1, 1601, 4), (-1, 401, 1), (1, 401, 1)], 4
+        [(-1, 401, 1), (1, 1601, 2), (-1, 1601, 2), (1, 1601, 4), (-1, 1601, 4), (1, 401, 1)], 6
     ),
 )
 def test_rows_are_counted_in_the_file(sign: int, count: int, shift: int, tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ LONG = [
 @pytest.mark.parametrize(
     ("model", "rung", "count", "rows", "every"),
     [
-        *((model, rung, max(1, count // 8), *rest) for model, rung, count, *rest in GROUPS),
+        *((model, rung, max(1, count // 16), *rest) for model, rung, count, *rest in GROUPS),
         *(pytest.param(*group, marks=pytest.mark.slow) for group in (*GROUPS, *LONG)),
     ],
 )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from builders.honest import Answer, Push, Rows, answers
 from builders.scenes import LOADED, TENSOR, sample_scene, tracking_all, vector
+from builders.turns import by_turns
 
 from taylor_verify import check
 from taylor_verify.exact.conditioning.condition import path
@@ -91,7 +92,7 @@ GENERIC = {
 }
 
 
-@pytest.mark.parametrize("name", GENERIC)
+@pytest.mark.parametrize("name", by_turns(GENERIC))
 def test_floor_of_a_generic_orbit_is_that_of_independent_roundings(name: str) -> None:
     """Increments that vary by many units, or that are zero, leave each rounding as it is."""
     assert (repeated(GENERIC[name], 50, 53) == 1.0).all()
@@ -144,7 +145,7 @@ def biased(units: int) -> Push:
     return lambda before, after: after + np.float32(units) * np.spacing(after)
 
 
-@pytest.mark.parametrize("name", SPINS)
+@pytest.mark.parametrize("name", by_turns(SPINS, 2))
 def test_sentence_says_that_roundings_add_up(name: str) -> None:
     """The reason says in words why the floor grows in proportion to the number of steps."""
     scene = spun(*SPINS[name])
@@ -156,7 +157,7 @@ def test_sentence_says_that_roundings_add_up(name: str) -> None:
         assert 1 < verdict.reason.floor.alike <= verdict.reason.floor.steps
 
 
-@pytest.mark.parametrize("name", SPINS)
+@pytest.mark.parametrize("name", by_turns(SPINS, 2))
 def test_bias_of_ten_units_in_each_step_is_caught(name: str) -> None:
     """A broken twin whose steps all err one way, ten times as much as a rounding, fails every gate."""
     scene = spun(*SPINS[name])
