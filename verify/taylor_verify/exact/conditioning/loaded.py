@@ -48,7 +48,7 @@ def frame(scene: Scene) -> frozenset[str]:
 
 
 def is_of_run(scene: Scene) -> bool:
-    """Return True if one run of the enclosure gives the motion with its derivative: it has no closed form."""
+    """Return True if one run of the enclosure gives motion and derivative: there is no closed form."""
     return scene.body.loads is not None or solution(scene).route == "taylor"
 
 

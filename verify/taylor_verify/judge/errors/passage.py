@@ -51,7 +51,7 @@ class Passage:
             return np.zeros(len(rows))
         # The motion between two points is no further from both than they are apart, about.
         gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        return _distances(rows, points) - np.max(gaps)
+        return np.asarray(_distances(rows, points) - np.max(gaps))
 
 
 def _distances(rows: Floats, points: Floats) -> Floats:

@@ -1,4 +1,4 @@
-"""The effect of a rounding of the input under written loads, by the derivative of the motion.
+"""The effect of a rounding of the input on a motion without closed form, by its derivative.
 
 With eta an error of momentum, turn and centre, and p a number of body, loads or start,
 
