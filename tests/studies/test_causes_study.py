@@ -50,9 +50,11 @@ def test_a_finished_answer_is_not_made_again(
 ) -> None:
     """After an interrupt the study goes on with the answers that are not finished yet."""
     kind = next(kind for kind in KINDS if kind.name == "degrees")
-    (first,) = measured(1, 1, [kind], Parts(tmp_path))
-    monkeypatch.setattr(measure, "_answer", lambda *asked: None)
-    assert [*measured(1, 2, [kind], Parts(tmp_path))] == [first]
+    (first,) = measured(1, 1, Parts(tmp_path), [kind])
+    asked = list[object]()
+    monkeypatch.setattr(measure, "run_all", lambda work, waiting, **_: asked.extend(waiting))
+    assert measured(1, 2, Parts(tmp_path), [kind]) == [first]
+    assert asked == [(1, kind.name, 1)]
 
 
 # What the contract of likely causes names, and given files, each with its kind.

@@ -16,14 +16,12 @@ _SEED: Final = 1
 def _measure(folder: Path, progress: Progress, count: int = 20) -> Measured:
     """Write the confusion table, and below it each false sentence; go on after an interrupt."""
     from taylor_verify_reports.studies.causes.kinds import KINDS
-    from taylor_verify_reports.studies.causes.measured_causes import Named, measured, page
+    from taylor_verify_reports.studies.causes.measured_causes import measured, page
     from taylor_verify_reports.studies.finished_parts import Parts, unfinished
 
-    finished, answers = progress.counting(len(KINDS)), list[Named]()
+    finished = progress.counting(count * len(KINDS))
     with unfinished(STUDY.name, folder) as place:
-        for kind in KINDS:
-            answers += measured(_SEED, count, [kind], Parts(place))
-            finished(kind.name)
+        answers = measured(_SEED, count, Parts(place), finished=finished)
         return Measured(replace_files(folder, {_PAGE: page(answers)}))
 
 
@@ -36,7 +34,7 @@ def _positive(text: str) -> int:
 STUDY: Final[Study[None]] = Study(
     name="causes",
     title="how often likely causes are right, on random bodies with known faults",
-    duration="half an hour",
+    duration="an hour",
     measure=_measure,
     needs_heyoka=False,
     options=(Option("count", "make N answers of each kind; default: 20", _positive),),

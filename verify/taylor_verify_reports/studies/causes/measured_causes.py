@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from itertools import product
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
 
+from taylor_verify.batch.work import run_all
 from taylor_verify.judge.causes.float_answer import Motion, steady_signs
 from taylor_verify.judge.causes.likely import explained
 from taylor_verify.judge.causes.material import material, material_of_attitudes
@@ -49,20 +51,44 @@ class Named:
     sentences: tuple[str, ...]
 
 
+# A seed, the name of a kind, and a number of an answer.
+Asked = tuple[int, str, int]
+
+
 def measured(
-    seed: int, count: int, kinds: Iterable[Kind] = KINDS, stored: Parts | None = None
-) -> Iterator[Named]:
-    """Yield what is said of so many answers of each kind; those that are ``stored`` are not made again."""
-    for kind, number in product(kinds, range(count)):
-        key = json.dumps([seed, kind.name, number]).encode()
-        text = None if stored is None else stored.find(key)
-        if text is None:
-            answer = _answer(kind, seed, number)
-            text = json.dumps(None if answer is None else asdict(_named(kind, *answer)))
-            if stored is not None:
-                stored.keep(key, text)
-        if (fields := json.loads(text)) is not None:
-            yield Named(**{**fields, "sentences": tuple(fields["sentences"])})
+    seed: int,
+    count: int,
+    stored: Parts,
+    kinds: Iterable[Kind] = KINDS,
+    finished: Callable[[str], None] = lambda label: None,
+) -> list[Named]:
+    """Return what is said of so many answers of each kind, made by all cores, the first of each kind first.
+
+    Those that are ``stored`` are not made again; ``finished`` is called with each label as it ends.
+    """
+    asked = [(seed, kind.name, number) for kind, number in product(kinds, range(count))]
+    waiting = [each for each in asked if stored.find(_key(each)) is None]
+
+    def ended(each: Asked, text: str) -> None:
+        stored.keep(_key(each), text)
+        finished(f"{each[1]} {each[2] + 1}")
+
+    run_all(said_of, waiting, expense=itemgetter(2), ended=ended)
+    texts = (stored.find(_key(each)) or "null" for each in asked)
+    fields = [json.loads(text) for text in texts]
+    return [Named(**{**f, "sentences": tuple(f["sentences"])}) for f in fields if f is not None]
+
+
+def _key(asked: Asked) -> bytes:
+    return json.dumps(asked).encode()
+
+
+def said_of(asked: Asked) -> str:
+    """Return what is said of an answer, as JSON; null where no answer of the kind is of moderate size."""
+    seed, name, number = asked
+    kind = next(kind for kind in KINDS if kind.name == name)
+    answer = _answer(kind, seed, number)
+    return json.dumps(None if answer is None else asdict(_named(kind, *answer)))
 
 
 def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
