@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import SORTS, Acting, Floats, Sample, sample
-from taylor_verify_reports.studies.causes.simulated import rotation
+from taylor_verify_reports.studies.causes.simulated import cross, rotation
 
 LOADED: Final = ("solid", "vehicle", "gradient", "pulse", "sampled")
 
@@ -44,7 +44,7 @@ class Vehicle:
         through = v + np.r_[turn.T @ self.wind, 0, 0, 0]
         load = -self.drag * np.abs(through) * through
         load[0] += self.thrust * (t < self.until)
-        load[3:] += np.cross(self.arm, turn.T @ np.array([0, 0, self.weight]))
+        load[3:] += cross(self.arm, turn.T @ np.array([0, 0, self.weight]))
         return np.asarray(load)
 
 
@@ -78,7 +78,7 @@ class Gradient:
         """Return the moment; ``is_back`` turns the direction the wrong way."""
         turn = rotation(q)
         o = (turn if self.is_back else turn.T) @ np.array([1.0, 0, 0])
-        return np.asarray(3 * self.n**2 * np.cross(o, self.inertia @ o))
+        return np.asarray(3 * self.n**2 * cross(o, self.inertia @ o))
 
 
 @dataclass(frozen=True)

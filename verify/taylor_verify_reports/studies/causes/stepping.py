@@ -8,7 +8,14 @@ from typing import Any
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.simulated import Rows, integrated, law, stepped, turned
+from taylor_verify_reports.studies.causes.simulated import (
+    Rows,
+    cross,
+    integrated,
+    law,
+    stepped,
+    turned,
+)
 
 Draw = np.random.Generator
 Make = Callable[[Sample, Draw, float], Rows]
@@ -41,7 +48,7 @@ def turn(q: Floats, w: Floats, h: float) -> Floats:
     half = h * np.linalg.norm(w) / 2
     u = np.sinc(half / np.pi) * h * w / 2
     a = np.cos(half)
-    return np.array([q[0] * a - q[1:] @ u, *(q[0] * u + a * q[1:] + np.cross(q[1:], u))])
+    return np.array([q[0] * a - q[1:] @ u, *(q[0] * u + a * q[1:] + cross(q[1:], u))])
 
 
 def begin(q: Floats, before: Floats, after: Floats, h: float) -> Floats:
