@@ -106,14 +106,14 @@ tab = { times = [0, 2, 4, 6], values = [0.1, -0.05, 0.08, 0.02] }"""
             KNOTS,
             lambda t, w, q: np.array([[0.1, -0.05, 0.08, 0.02][min(int(t / 2), 3)], 0, 0]),
             (2, 4, 6),
-            ["up to t = 6: table tab is hold, where the scene has linear"],
+            ["table tab is hold, where the scene has linear"],
         ),
     ],
 )
 def test_a_part_of_the_run_has_its_cause(
     load: str, moment: Law, edges: Sequence[float], words: Sequence[str], tmp_path: Path
 ) -> None:
-    """A fault that begins or ends within the run is said with the times of its ends."""
+    """A fault that begins or ends within the run has its times, unless it is one of the whole run."""
     named_ones = titles(tmp_path, RIGID.format(load=load), rigid(moment=moment, edges=edges))
     assert len(named_ones) == len(words)
     assert all(title.startswith(own) for title, own in zip(named_ones, words, strict=True))

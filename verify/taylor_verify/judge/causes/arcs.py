@@ -18,10 +18,13 @@ from taylor_verify.scenes.instants import evenly
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
 _ARCS: Final = 48
 _CLEAR: Final = 300.0
+_RIGHT: Final = 3.0
 _FEWEST: Final = 16
 # Most steps of an arc, and the accuracy that derivatives need.
 _STEPS: Final = 32
 _COARSE: Final = 1e-6
+# Nor need an arc be nearer than this part of the defects, which tells any two causes apart.
+_TELLING: Final = 1e-9
 _FINEST: Final = 2e-14
 _ORDER: Final = 2.0**8
 # The error of a smooth arc falls by more than this if its steps are halved.
@@ -46,7 +49,13 @@ def moved(
     switches = equations.switches
     parts = _parted(since, spans, switches) if len(switches) else [(since, spans)]
     for at, span in parts:
-        begin = _in_blocks(answer, equations, begin, at, span, steps)
+        some = np.flatnonzero(span)
+        if len(some) == len(span) or equations.has_loads_of_arcs:
+            begin = _in_blocks(answer, equations, begin, at, span, steps)
+        elif len(some):
+            ends = _in_blocks(answer, equations, begin[:, :, some], at[some], span[some], steps)
+            begin = begin.copy()
+            begin[:, :, some] = ends
     return begin
 
 
@@ -186,15 +195,16 @@ class Arcs(Evidence):
 
     @cached_property
     def steps(self) -> int:
-        """The fewest steps of an arc whose error is below a tenth of the rounding of the file."""
-        goal = np.maximum(0.1 * self.answer.rounding, _FINEST)[:, None]
-        return self.steps_given or self._steps(goal)
+        """The fewest steps of an arc whose error is below a tenth of the file's rounding, or no cause."""
+        coarse = self.defects([{}], self.few_steps)[0]
+        telling = _TELLING * np.sqrt(np.mean(coarse**2)) if np.all(np.isfinite(coarse)) else 0.0
+        goal = np.maximum(0.1 * self.answer.rounding, max(_FINEST, telling))[:, None]
+        return self.steps_given or max(self.few_steps, self._steps(goal))
 
     @cached_property
     def few_steps(self) -> int:
         """The steps of an arc for derivatives."""
-        goal = np.full((self.answer.n, 1), _COARSE)
-        return self.steps_given or min(self.steps, self._steps(goal))
+        return self.steps_given or self._steps(np.full((self.answer.n, 1), _COARSE))
 
     def _steps(self, goal: Floats) -> int:
         n, right = self.answer.n, self.answer.right
@@ -287,7 +297,10 @@ def telling_arcs(answer: Answer) -> tuple[Arcs, int]:
         starts = np.array(evenly(answer.count - stride, _ARCS))
         arcs = Arcs(answer, starts, starts + stride)
         ratio = np.max(np.abs(arcs.of_right) / (2 * arcs.rounding[:, None]), axis=0)
-        is_clear = np.median(np.where(np.isfinite(ratio), ratio, np.inf)) >= _CLEAR
+        ratio = np.where(np.isfinite(ratio), ratio, np.inf)
+        middle = np.median(ratio)
+        # A fault in a part of the run stands out of arcs that are right: longer ones would tell no more.
+        is_clear = middle >= _CLEAR or (middle <= _RIGHT and np.max(ratio) >= _CLEAR)
         if is_clear or 4 * stride > answer.count or answer.count - stride < _FEWEST:
             return arcs, stride
         stride *= 2

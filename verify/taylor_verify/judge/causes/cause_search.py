@@ -17,7 +17,7 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.dynamics import dynamics, in_numbers, in_states
+from taylor_verify.judge.causes.dynamics import Dynamics, dynamics, in_numbers, in_states
 from taylor_verify.judge.causes.float_answer import (
     Answer,
     Motion,
@@ -99,9 +99,7 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     if has_wrong_attitude and _turns_too_little(answer):
         moving = []
     if moving:
-        # Another pulse is nearer than a part of the run without it.
-        causes = _some(in_numbers(answer)) if len(answer.right.switches) else []
-        causes = causes or _pieces(answer) or _some(dynamics(answer))
+        causes = _of_moving_part(answer)
         cause = causes[-1] if causes else None
     if not has_wrong_attitude:
         return causes
@@ -115,6 +113,23 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     if cause is None and moving:
         return causes
     return _with_attitude(answer, cause, causes)
+
+
+def _of_moving_part(answer: Answer) -> list[Cause]:
+    """Return the causes of the moving part: a fault without numbers is nearer than a part of the run."""
+    search, simple = Dynamics(answer), None
+    with suppress(Spent):
+        simple = search.without_numbers()
+    if simple is None:
+        defects = starts.roundings(answer)
+        # Another pulse is nearer than a part of the run without it.
+        wrong = starts.wrong_arcs(defects)
+        is_part = len(answer.right.switches) and 0 < 2 * len(wrong) < len(defects)
+        causes = _some(in_numbers(answer, wrong)) if is_part else []
+        return causes or _pieces(answer, defects) or _some(search.cause())
+    with suppress(Spent):
+        return _some(search.cause() or simple)
+    return [simple]
 
 
 def _turns_too_little(answer: Answer) -> bool:
@@ -141,9 +156,8 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
 _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
 
 
-def _pieces(answer: Answer) -> list[Cause] | None:
+def _pieces(answer: Answer, defects: Floats) -> list[Cause] | None:
     """Return the causes of an answer that is right in pieces, each with the times of its ends."""
-    defects = starts.roundings(answer)
     cause = starts.exact_in_pieces(answer, defects)
     if cause is not None:
         return [cause]

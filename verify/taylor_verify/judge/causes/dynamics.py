@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import combinations
 from typing import Final
 
@@ -27,7 +27,7 @@ from taylor_verify.judge.causes.fit import (
     gauss_newton,
     orthonormal,
 )
-from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
 from taylor_verify.judge.causes.other_bodies import (
@@ -62,6 +62,8 @@ _ALONG: Final = (0.5, 0.3)
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
+# An arc over what is wrong between two switches passes so many rows.
+_ROWS_OF_RUN: Final = 4
 
 
 @dataclass(frozen=True)
@@ -73,19 +75,48 @@ class _Linear:
     left: float
 
 
+@dataclass(frozen=True)
+class Dynamics:
+    """The search for the cause of the errors of the moving part, by the arcs of an answer."""
+
+    answer: Answer
+
+    def without_numbers(self) -> Cause | None:
+        """Return the proven cause that has no number to fit."""
+        return self._search.cause(self._faults) if self._search.is_clear else None
+
+    def cause(self) -> Cause | None:
+        """Return the proven cause, with all others that explain as well."""
+        return self._search.by_arcs(self._faults, self._families, self._arcs[1])
+
+    @cached_property
+    def _arcs(self) -> tuple[Arcs, int]:
+        return telling_arcs(self.answer.thinned(FIT_ROWS))
+
+    @cached_property
+    def _search(self) -> Search:
+        return _search_by(self.answer, self._arcs[0])
+
+    @cached_property
+    def _faults(self) -> list[Candidate]:
+        right = self.answer.right
+        faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
+        return [*self._search.without_numbers([*faults, *faults_of_texts(right)])]
+
+    @property
+    def _families(self) -> list[Family]:
+        right, sizes = self.answer.right, Sizes.of(self.answer)
+        of_texts = numbers(right.loads) if right.loads is not None else []
+        return [
+            *families_of_terms(right, sizes),
+            *families_of_bodies(right, sizes),
+            *(number.family(right) for number in of_texts),
+        ]
+
+
 def dynamics(answer: Answer) -> Cause | None:
     """Return the proven cause of the errors of the moving part, with all others that explain as well."""
-    few, right, sizes = answer.thinned(FIT_ROWS), answer.right, Sizes.of(answer)
-    arcs, stride = telling_arcs(few)
-    search = Search(
-        answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
-    )
-    faults = [*faults_of_terms(right), *faults_of_added_mass(right), *faults_of_bodies(right)]
-    families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
-    if right.loads is not None:
-        faults += faults_of_texts(right)
-        families += [number.family(right) for number in numbers(right.loads)]
-    return search.by_arcs(faults, families, stride)
+    return Dynamics(answer).cause()
 
 
 def in_states(answer: Answer) -> Cause | None:
@@ -106,15 +137,37 @@ def in_states(answer: Answer) -> Cause | None:
     return cause
 
 
-def in_numbers(answer: Answer) -> Cause | None:
+def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
     """Return the one number of the loads' texts with which the scene moves as the answer does.
 
-    At most half of the work that may be done is done for it.
+    ``wrong`` are the rows that the next one does not follow from. Numbers that move a switch come first. At
+    most half of the work that may be done is done for it.
     """
+    moves_switch, others = list[Family](), list[Family]()
+    for family in _written(answer):
+        switches = answer.right.changed(family.ahead[0]).switches
+        is_same = np.array_equal(switches, answer.right.switches)
+        (others if is_same else moves_switch).append(family)
     with suppress(Spent), answer.budget.at_most(answer.budget.left / 2):
-        search = _search_from_start(answer)
-        return search.cause([*search.fitted(_written(answer))])
+        search = _search_by(answer, _arcs_over(answer, wrong))
+        cause = search.cause([*search.fitted(moves_switch)]) if moves_switch else None
+        return cause or search.cause([*search.fitted(others)])
     return None
+
+
+def _arcs_over(answer: Answer, wrong: Places) -> Arcs:
+    """Return arcs that begin and end at rows on either side of what is wrong, each over a few rows."""
+    runs = np.split(wrong, np.flatnonzero(np.diff(wrong) > 1) + 1)
+    first = np.array([row for run in runs for row in run[::_ROWS_OF_RUN]])
+    ends = [min(row + _ROWS_OF_RUN, run[-1] + 1) for run in runs for row in run[::_ROWS_OF_RUN]]
+    return Arcs(answer, first, np.array(ends))
+
+
+def _search_by(answer: Answer, arcs: Arcs) -> Search:
+    right = answer.right
+    return Search(
+        answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
+    )
 
 
 def _search_from_start(answer: Answer) -> Search:
@@ -147,13 +200,18 @@ class Search:
         self.choice = Choice(answer, groups, self.floor)
         self.cause = self.choice.cause
 
+    @property
+    def is_clear(self) -> bool:
+        """True if the defects are more than the rounding of the file."""
+        return self.evidence.size > 0 and self.floor * 2 < 1
+
     def by_arcs(
-        self, faults: Sequence[Fault], families: Sequence[Family], stride: int
+        self, faults: Sequence[Candidate], families: Sequence[Family], stride: int
     ) -> Cause | None:
         """Return the cause by faults, methods and families, or two families, or a fault beside steps."""
-        if not self.evidence.size > 0 or not self.floor * 2 < 1:
+        if not self.is_clear:
             return None
-        candidates = [*self.without_numbers(faults)]
+        candidates = [*faults]
         is_stepped = self.answer.stepping is not None
         if not is_stepped and not any(map(self._is_exact, candidates)):
             stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
@@ -220,11 +278,20 @@ class Search:
     def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
         faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
-        every = self.evidence.defects([fault.changes for fault in faults])
-        for fault, defects in zip(faults, every, strict=True):
+        near = [*self._near(faults)]
+        every = self.evidence.defects([fault.changes for fault in near]) if near else []
+        for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
                 yield self._candidate(fault, left, fault.changes)
+
+    def _near(self, faults: Sequence[Fault]) -> Iterator[Fault]:
+        """Yield the faults that leave little by few steps, whose error the right scene has too."""
+        evidence = self.evidence
+        right, *every = evidence.defects([{}, *(f.changes for f in faults)], evidence.few_steps)
+        for fault, defects in zip(faults, every, strict=True):
+            if np.linalg.norm(evidence.of_right + defects - right) < 2 * _FAULT * evidence.size:
+                yield fault
 
     def fitted(self, families: Sequence[Family]) -> Iterator[Candidate]:
         """Yield families with the numbers that fit best."""

@@ -126,6 +126,9 @@ def _wheels(right: Equations, sizes: Sizes) -> Iterator[Family]:
     unit, size = np.eye(3), float(np.linalg.norm(right.rotor))
     if size:
         yield linear(right, "factor of the wheels", "wheels", 1.0, [1], rotor=right.rotor[None])
+        title, products = "factor of the tensor in the gyroscopic term", coriolis_of(right.mass)
+        extra = [right.basis.factors(products=products)]
+        yield linear(right, title, "gyroscopic term", 1.0, [1], extra=extra)
     size = size or float(np.max(sizes.load)) / sizes.pace
     for i in range(3):
         name = f"wheel {i + 1}"

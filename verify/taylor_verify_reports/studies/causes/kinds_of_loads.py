@@ -156,7 +156,13 @@ OF_LOADS: Final = (
         _V,
     ),
     Kind("drag over ground", ("ground",), _with(wind=lambda v, s, e: s.current), _V),
-    Kind("loads held over a step", ("held in between",), _held, (*_V, "pulse", "gradient")),
+    # A pulse that is held is a pulse that begins and ends later.
+    Kind(
+        "loads held over a step",
+        ("held in between", "loads late"),
+        _held,
+        (*_V, "pulse", "gradient"),
+    ),
     Kind("load turned the wrong way", ("wrong way",), _with(is_back=True), ("gradient",)),
     Kind(
         "products left out of the gravity gradient",

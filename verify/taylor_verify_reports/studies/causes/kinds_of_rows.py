@@ -189,5 +189,11 @@ OF_ROWS: Final = (
     Kind("path that drifts", ("drifts",), _path(_drifting), _WITH_PATH, has_centre=True),
     Kind("cubic interpolation", ("interpolation",), _cubic),
     Kind("speed capped", ("first two rows", "jump"), _capped),
-    Kind("attitude alone", _PACE, _alone, ("free", "wheels"), has_rates=False),
+    Kind(
+        "attitude alone",
+        (*_PACE, "factor of the tensor"),
+        _alone,
+        ("free", "wheels"),
+        has_rates=False,
+    ),
 )

@@ -105,7 +105,8 @@ def _answer(kind: Kind, seed: int, number: int) -> tuple[Sample, Rows] | None:
 
 def _named(kind: Kind, body: Sample, rows: Rows) -> Named:
     has_momenta = body.sort == "momenta"
-    v, noise = printed(rows.v @ body.mass.T if has_momenta else rows.v, body.digits)
+    mass = body.mass if rows.mass is None else rows.mass
+    v, noise = printed(rows.v @ mass.T if has_momenta else rows.v, body.digits)
     q, of_q = printed(rows.q, body.digits)
     scene = body.scene
     given = adopt(scene, rung("f64"), [Fraction(str(t)) for t in rows.times]).given

@@ -17,12 +17,16 @@ from taylor_verify_reports.studies.causes.bodies import Acting, Floats, Sample
 
 
 class Rows(NamedTuple):
-    """The rows of an answer: v (or momenta), unit quaternions and the centre at some times."""
+    """The rows of an answer: v, unit quaternions and the centre at some times.
+
+    ``mass`` is the matrix of the simulator, by which it writes momenta; without it, that of the scene.
+    """
 
     times: Floats
     v: Floats
     q: Floats
     c: Floats | None = None
+    mass: Floats | None = None
 
 
 @dataclass
@@ -148,10 +152,10 @@ def integrated(
         ask = np.union1d(inside, [end])
         solved = solve_ivp(slope, (begin, end), z0, method, t_eval=ask, rtol=rtol, atol=1e-3 * rtol)
         if not solved.success:
-            return _rows(times, np.full((len(times), n + 7), np.nan), n)
+            return _rows(times, np.full((len(times), n + 7), np.nan), law)
         parts.append(solved.y.T[np.isin(ask, inside)])
         z0 = solved.y[:, -1]
-    return _rows(times, np.vstack(parts)[:, : n + 7], n)
+    return _rows(times, np.vstack(parts)[:, : n + 7], law)
 
 
 def _edges(law: Law, begin: float, end: float) -> list[float]:
@@ -185,12 +189,13 @@ def stepped(
             q = update(q, v[-3:], after[-3:], h)
             q, v = q / np.linalg.norm(q), after
         rows.append(np.concatenate([v, q]))
-    return _rows(sample.times, np.array(rows), sample.n)
+    return _rows(sample.times, np.array(rows), used)
 
 
-def _rows(times: Floats, z: Floats, n: int) -> Rows:
+def _rows(times: Floats, z: Floats, law: Law) -> Rows:
+    n = len(law.mass)
     q, c = z[:, n : n + 4], z[:, n + 4 :]
-    return Rows(times, z[:, :n], q / np.linalg.norm(q, axis=1, keepdims=True), c)
+    return Rows(times, z[:, :n], q / np.linalg.norm(q, axis=1, keepdims=True), c, law.mass)
 
 
 def printed(values: Floats, digits: int) -> tuple[Floats, Any]:
