@@ -169,6 +169,16 @@ def wheels_turned_round(w: Array, q: Array, n: Numbers) -> Array:
     return np.linalg.solve(n.tensor, np.cross(n.tensor @ w - n.rotor, w))
 
 
+def of_tensor(factor: float, of_rotor: float = 1.0) -> Rate:
+    """Euler's equations with a factor of the tensor in the gyroscopic term, and of the wheels in it."""
+
+    def rate(w: Array, q: Array, n: Numbers) -> Array:
+        momentum = factor * n.tensor @ w + of_rotor * n.rotor
+        return np.linalg.solve(n.tensor, np.cross(momentum, w))
+
+    return rate
+
+
 def damped_alone(w: Array, q: Array, n: Numbers) -> Array:
     return -0.05 * w
 
@@ -194,6 +204,8 @@ def single(i: int, j: int, k: int, power: int = 0) -> Rate:
             (FREE, damped_alone, "factor of the gyroscopic term and damping"),
             (WHEELS, without_wheels, "wheels left out"),
             (WHEELS, wheels_turned_round, "wheels with the other sign"),
+            (WHEELS, of_tensor(1.05), "factor of the tensor in the gyroscopic term"),
+            (WHEELS, of_tensor(1.05, of_rotor=1.05), "factor of the gyroscopic term"),
             (FLUID, weighted(munk=0), "no Munk moment"),
             (FLUID, weighted(munk=-1), "Munk moment with the other sign"),
             (FLUID, weighted(gyroscopic=0), "no term y x W"),

@@ -434,6 +434,21 @@ def test_where_the_motion_passes_too_far_no_enclosure_is_asked(
     assert not asked_for
 
 
+def test_where_float64_does_not_follow_the_enclosure_is_asked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """NaN of the quick motion is neither an error nor a proof that no shift explains."""
+
+    def lost(scene: Scene, known: Any, since: Any, times: Any) -> Any:
+        return {name: np.full((len(times), *rows.shape[1:]), np.nan) for name, rows in known.items()}
+
+    monkeypatch.setattr("taylor_verify.judge.errors.shifted.quick_motion", lost)
+    shift = fluid(Fraction(1, 10))["impulse"]
+    assert shift is not None
+    assert shift.kind is Kind.CONSTANT
+    assert shift.time_shift == pytest.approx(0.1, rel=1e-14)
+
+
 def test_a_distance_is_at_most_that_of_the_exact_motion() -> None:
     """Rows that lie on the motion at times of their own have none, whatever points are taken."""
     scene, exact = asked("kirchhoff/general-body")

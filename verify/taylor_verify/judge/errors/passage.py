@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.errors.shifted import Compared, Floats, Run
+from taylor_verify.judge.errors.shifted import Compared, Floats, Run, is_finite
 
 # Points between the first and the last row, and on either side of them.
 _BETWEEN: Final = 2048
@@ -38,17 +38,19 @@ class Passage:
         times = np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
         return self.run.along(times)
 
-    def distances(self, compared: Compared) -> Floats:
-        """Return at most the distance of each row of the answer from the motion, in the unit of the error.
+    @property
+    def is_followed(self) -> bool:
+        """True if the motion is known at all of these times."""
+        return self.points is not None and is_finite(self.points)
 
-        Zero where the motion is not known.
+    def distances(self, compared: Compared) -> Floats:
+        """Return at most the distance of each row of the answer from a motion that is followed.
+
+        It is in the unit of the error.
         """
+        assert self.points is not None
         rows = compared.over_scales(self.run.answer.quantities)
-        if self.points is None:
-            return np.zeros(len(rows))
         points = compared.over_scales(self.points)
-        if not np.all(np.isfinite(points)):
-            return np.zeros(len(rows))
         # The motion between two points is no further from both than they are apart, about.
         gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
         return np.asarray(_distances(rows, points) - np.max(gaps))

@@ -122,7 +122,8 @@ def _start(compared: Compared) -> Shifted | None:
 
 def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
     """Return the best shift; where the exact motion is dear, one in float64 is asked first."""
-    if compared.run.exact.route == "taylor" and compared.largest(start) > courses.FAR:
+    is_dear = compared.run.exact.route == "taylor" and compared.largest(start) > courses.FAR
+    if is_dear and passage.is_followed:
         if _passes_too_far(compared, start, passage):
             return _without_evaluation(compared, start)
         quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)

@@ -175,6 +175,8 @@ class Run:
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
         quick = self.along(_floats(elapsed)) if self.is_quick else None
+        if quick is not None and not is_finite(quick):
+            return None
         if quick is not None:
             rows = {name: real(each, self.truth[name]) for name, each in quick.items()}
             return Motion(rows, np.array([mp.zero] * len(elapsed), dtype=object))
@@ -268,9 +270,11 @@ class Compared:
         left = []
         for first in range(0, len(elapsed), len(rows)):
             some = {name: each[first : first + len(rows)] for name, each in motion.items()}
+            if not is_finite(some):
+                left.append(inf)
+                continue
             error, size = self._relative(some, rows)
-            square = float(np.mean(np.sum(error**2, axis=1))) * size**2
-            left.append(square if np.isfinite(square) else inf)
+            left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
         return left
 
     def over_scales(self, motion: Mapping[str, Any]) -> Floats:
@@ -324,6 +328,11 @@ class Compared:
         largest = max(abs(value) for value in exact.flat)
         exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0
         return (exact * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent
+
+
+def is_finite(motion: Mapping[str, Any]) -> bool:
+    """Return True if no number is NaN, as float64 leaves it where it does not follow."""
+    return all(np.all(np.isfinite(rows.astype(float))) for rows in motion.values())
 
 
 def _floats(times: Sequence[Fraction]) -> Floats:
