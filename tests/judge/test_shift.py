@@ -440,7 +440,9 @@ def test_where_float64_does_not_follow_the_enclosure_is_asked(
     """NaN of the quick motion is neither an error nor a proof that no shift explains."""
 
     def lost(scene: Scene, known: Any, since: Any, times: Any) -> Any:
-        return {name: np.full((len(times), *rows.shape[1:]), np.nan) for name, rows in known.items()}
+        return {
+            name: np.full((len(times), *rows.shape[1:]), np.nan) for name, rows in known.items()
+        }
 
     monkeypatch.setattr("taylor_verify.judge.errors.shifted.quick_motion", lost)
     shift = fluid(Fraction(1, 10))["impulse"]

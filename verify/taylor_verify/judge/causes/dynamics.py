@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import combinations
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -279,7 +279,7 @@ class Search:
         """Yield the faults that leave little of the defects."""
         faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
         near = [*self._near(faults)]
-        every = self.evidence.defects([fault.changes for fault in near]) if near else []
+        every: Any = self.evidence.defects([fault.changes for fault in near]) if near else []
         for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
