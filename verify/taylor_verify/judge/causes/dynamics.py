@@ -38,7 +38,7 @@ from taylor_verify.judge.causes.other_bodies import (
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
-from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
+from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
 
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
@@ -138,13 +138,13 @@ def in_states(answer: Answer) -> Cause | None:
 
 
 def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
-    """Return the one number of the loads' texts with which the scene moves as the answer does.
+    """Return the one number of the loads with which the scene moves as the answer does, or their lateness.
 
     ``wrong`` are the rows that the next one does not follow from. Numbers that move a switch come first. At
     most half of the work that may be done is done for it.
     """
     moves_switch, others = list[Family](), list[Family]()
-    for family in _written(answer):
+    for family in (loads_late(answer.right, Sizes.of(answer)), *_written(answer)):
         switches = answer.right.changed(family.ahead[0]).switches
         is_same = np.array_equal(switches, answer.right.switches)
         (others if is_same else moves_switch).append(family)

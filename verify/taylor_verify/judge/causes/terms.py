@@ -111,7 +111,7 @@ def families_of_terms(right: Equations, sizes: Sizes) -> Iterator[Family]:
         title = f"factor of the {'moment' if n == 3 else 'loads'}"
         yield family(title, "load", 1.0, [1], extra=[factors(loads=np.eye(n))])
     if right.acting is not None:
-        yield family("loads late", "load", 0.1 / sizes.pace, late=[1])
+        yield loads_late(right, sizes)
     yield from _loads(right, sizes)
     yield family("damping", "damping", sizes.pace, [right.damping], damping=[1])
     yield from _drags(right, sizes)
@@ -119,6 +119,11 @@ def families_of_terms(right: Equations, sizes: Sizes) -> Iterator[Family]:
     for name, rows in _coriolis_terms(right):
         extra = [factors(products=rows)]
         yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
+
+
+def loads_late(right: Equations, sizes: Sizes) -> Family:
+    """Return the family of loads that are those of another time."""
+    return linear(right, "loads late", "load", 0.1 / sizes.pace, late=[1])
 
 
 def _wheels(right: Equations, sizes: Sizes) -> Iterator[Family]:
