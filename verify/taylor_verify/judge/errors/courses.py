@@ -102,8 +102,8 @@ def _closer(compared: Compared, fit: Shifted, step: Floats) -> Shifted | None:
 
 
 def reach(fit: Shifted) -> float:
-    """Return the largest shift of the search, in the scene's unit of time."""
-    return float(_SEARCH_STEPS * _SEARCH_STEP / fit.rate * float(fit.unit))
+    """Return the largest shift of the search, in the scene's unit of time; 0 if the motion rests."""
+    return _SEARCH_STEPS * _SEARCH_STEP / fit.rate * float(fit.unit) if fit.rate else 0.0
 
 
 def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:

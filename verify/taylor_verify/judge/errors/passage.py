@@ -24,17 +24,22 @@ _AT_ONCE: Final = 512
 
 @dataclass(frozen=True)
 class Passage:
-    """The exact motion of a run from ``window`` before its first row to as long after its last one."""
+    """The exact motion of a run from before its first row to after its last one, by at most a span."""
 
     run: Run
     window: float
+
+    @property
+    def around(self) -> float:
+        """The time before the first row, and after the last one."""
+        return min(self.window, abs(self.run.span))
 
     @cached_property
     def points(self) -> Mapping[str, Any] | None:
         """The motion at many times in order, in float64; None if it has loads."""
         elapsed = np.array(sorted(float(t) for t in self.run.elapsed))
         inner = np.linspace(elapsed[0], elapsed[-1], _BETWEEN)
-        outer = np.linspace(0.0, self.window, _BEYOND + 1)[1:]
+        outer = np.linspace(0.0, self.around, _BEYOND + 1)[1:]
         times = np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
         return self.run.along(times)
 

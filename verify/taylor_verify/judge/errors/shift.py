@@ -103,7 +103,7 @@ def time_shifts(
     """
     every = [Compared(Run(scene, exact, truth, answer, digits), errors) for errors in of]
     starts = [_start(compared) for compared in every]
-    reaches = [courses.reach(start) for start in starts if start is not None and start.rate]
+    reaches = [courses.reach(start) for start in starts if start is not None]
     passage = Passage(every[0].run, max(reaches, default=0.0)) if every else None
     return [
         None if start is None or passage is None else _shift(compared, start, passage)
@@ -124,7 +124,7 @@ def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
     """Return the best shift; where the exact motion is dear, one in float64 is asked first."""
     is_dear = compared.run.exact.route == "taylor" and compared.largest(start) > courses.FAR
     if is_dear and passage.is_followed:
-        if _passes_too_far(compared, start, passage):
+        if courses.reach(start) <= passage.around and _passes_too_far(compared, start, passage):
             return _without_evaluation(compared, start)
         quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)
         if quick.kind is Kind.NONE:
