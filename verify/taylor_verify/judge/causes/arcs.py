@@ -18,6 +18,7 @@ from taylor_verify.scenes.instants import evenly
 # Arcs for a fit, and the defects, in roundings of the file, that their median shall reach.
 _ARCS: Final = 48
 _CLEAR: Final = 300.0
+# An arc is right up to so many.
 _RIGHT: Final = 3.0
 _FEWEST: Final = 16
 # Most steps of an arc, and the accuracy that derivatives need.
@@ -196,10 +197,12 @@ class Arcs(Evidence):
     @cached_property
     def steps(self) -> int:
         """The fewest steps of an arc whose error is below a tenth of the file's rounding, or no cause."""
+        if self.steps_given:
+            return self.steps_given
         coarse = self.defects([{}], self.few_steps)[0]
         telling = _TELLING * np.sqrt(np.mean(coarse**2)) if np.all(np.isfinite(coarse)) else 0.0
         goal = np.maximum(0.1 * self.answer.rounding, max(_FINEST, telling))[:, None]
-        return self.steps_given or max(self.few_steps, self._steps(goal))
+        return max(self.few_steps, self._steps(goal))
 
     @cached_property
     def few_steps(self) -> int:

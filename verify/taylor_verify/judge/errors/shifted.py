@@ -175,9 +175,9 @@ class Run:
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
         quick = self.along(_floats(elapsed)) if self.is_quick else None
-        if quick is not None and not is_finite(quick):
-            return None
         if quick is not None:
+            if not is_finite(quick):
+                return None
             rows = {name: real(each, self.truth[name]) for name, each in quick.items()}
             return Motion(rows, np.array([mp.zero] * len(elapsed), dtype=object))
         try:
