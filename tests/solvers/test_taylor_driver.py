@@ -357,6 +357,17 @@ def test_a_question_that_is_asked_again_has_the_same_answer(scene: str, name: st
         assert_alike(first, again)
 
 
+@pytest.mark.parametrize("scene", ["euler/tennis-racket", "loads/eccentric-orbit"])
+def test_a_way_is_gone_once_where_its_steps_were_found_before(
+    scene: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second answer looks at no rate: its steps are those that the first one has found."""
+    problem = pose(load(scene), rung("f64"))
+    first = Taylor().solve(problem)
+    monkeypatch.setattr(way.Way, "_was_too_fast", None)
+    assert_alike(first, Taylor().solve(problem))
+
+
 def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
     """Coefficients are parameters: another body, start and span compile nothing."""
     scene = spinning((Fraction(1), Fraction(3, 4), Fraction(2)), Fraction(10))

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any, Final, NamedTuple, final
 
@@ -83,8 +83,7 @@ class Taylor(Solver):
             problem, tolerance, self.is_optimised
         )
         ready = perf_counter()
-        is_slow = arithmetic(problem.rung).is_software
-        outcome, rows, _, steps, inner = way.run(_foreseen(problem) if is_slow else 0.0)
+        outcome, rows, _, steps, inner = way.run(partial(_foreseen, problem))
         seconds = perf_counter() - ready
         if vectors is not None and outcome in (Outcome.FINISHED, Outcome.NON_FINITE):
             zeros, are_on_a_line = vectors.along(rows)
@@ -164,11 +163,13 @@ def pays(problem: Problem) -> bool:
 
 
 def _foreseen(problem: Problem) -> float:
-    """Return the fastest rate of the whole way, as doubles find it in a thousandth of the time.
+    """Return the fastest rate of a whole way in slow numbers; doubles find it in a thousandth of the time.
 
-    A way in slow numbers then need not be gone twice because its rate grew. The rate is infinite where
-    doubles do not reach the end.
+    Such a way then need not be gone twice because its rate grew. The rate is infinite where doubles do not
+    reach the end.
     """
+    if not arithmetic(problem.rung).is_software:
+        return 0.0
     rung = rung_named("f64")
     begin, end = rung.round(problem.begin), rung.round(problem.times[-1])
     scout = replace(

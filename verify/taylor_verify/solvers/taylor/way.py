@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, inf, isfinite
 from time import perf_counter
@@ -65,6 +65,29 @@ class Ran(NamedTuple):
     seconds: float
 
 
+class _Course(NamedTuple):
+    """How a way is gone: its instants with the samples among them, in so many calls, in steps for a rate.
+
+    Where it is watched, the rate is looked at after each call, and the fastest so far counts.
+    """
+
+    grid: np.ndarray[Any, Any]
+    samples: Places
+    calls: int
+    rate: float
+    is_watched: bool = False
+
+    @property
+    def stretches(self) -> list[np.ndarray[Any, Any]]:
+        """The instants of each call, of which the last begins the next."""
+        if self.calls == 1:
+            return [self.grid]
+        last = len(self.grid) - 1
+        pieces = min(last, self.calls)
+        ends = sorted({round(k * last / pieces) for k in range(pieces + 1)}) if pieces else []
+        return [self.grid[start : end + 1] for start, end in pairwise(ends)] or [self.grid]
+
+
 @final
 class Way:
     """A problem on its way from its start through its instants.
@@ -96,31 +119,43 @@ class Way:
         self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]) - float(problem.begin))
         self._calls = _calls(self._radians, problem.rung)
         self._grid = self._instants(self._calls)
+        self._course: _Course | None = None
 
-    def run(self, foreseen: float = 0.0) -> Ran:
+    def run(self, foreseen: Callable[[], float] = lambda: 0.0) -> Ran:
         """Go the whole way, in steps that suit its rate at the start and the one foreseen.
 
         The outcome is FINISHED only if a row is there for every sample, and finite; else the rows are no
-        answer. Steps and seconds are those of the run whose rows these are.
+        answer. Steps and seconds are those of the run whose rows these are. A further run is the same to
+        the last bit: it takes the course that the first one has found, and looks at no rates again.
         """
         if not isfinite(self._rate):
             return Ran(Outcome.NON_FINITE, self._start[None], longest=0.0, steps=0, seconds=0.0)
-        grid, samples = self._grid
-        rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
-        ran = self._went(_stretches(grid, self._calls), rate)
-        if self._was_too_fast(ran, grid, rate):
-            fastest = self._fastest(*_some(ran, grid))
-            grid, samples = self._watched
-            is_close = ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate
-            if is_close:
-                ran = self._went(_stretches(grid, self._calls), fastest)
-            if not is_close or self._was_too_fast(ran, grid, fastest):
-                ran = self._went(_stretches(grid, self._look_count), rate, is_watched=True)
+        if self._course is None:
+            self._course, ran = self._found(foreseen())
+        else:
+            ran = self._went(self._course)
         if ran.outcome is not Outcome.FINISHED:
             return ran
+        grid, samples = self._course.grid, self._course.samples
         if len(ran.rows) != len(grid):
             return ran._replace(outcome=Outcome.INTERRUPTED)
         return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
+
+    def _found(self, foreseen: float) -> tuple[_Course, Ran]:
+        """Return a course whose steps suit every rate on its way, with its run."""
+        rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
+        course = _Course(*self._grid, self._calls, rate)
+        ran = self._went(course)
+        if not self._was_too_fast(ran, course):
+            return course, ran
+        fastest, watched = self._fastest(*_some(ran, course.grid)), self._instants(self._look_count)
+        if ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate:
+            course = _Course(*watched, self._calls, fastest)
+            ran = self._went(course)
+            if not self._was_too_fast(ran, course):
+                return course, ran
+        course = _Course(*watched, self._look_count, rate, is_watched=True)
+        return course, self._went(course)
 
     @property
     def parameters(self) -> np.ndarray[Any, Any]:
@@ -139,23 +174,19 @@ class Way:
             return self._linearised.fastest(rows, times, enough)
         return self._linearised.fastest(rows)
 
-    def _went(
-        self, stretches: Sequence[np.ndarray[Any, Any]], rate: float, is_watched: bool = False
-    ) -> Ran:
-        """Go from the first instant of each stretch to its last, in steps that suit the rate.
-
-        Where it is watched, the rate is looked at after each stretch, and the fastest so far counts.
-        """
+    def _went(self, course: _Course) -> Ran:
+        """Go from the first instant of each stretch of a course to its last."""
+        rate = course.rate
         self._pars[:] = self._parameters
         self._state[:] = self._start
-        self._integrator.time = stretches[0][0]
+        self._integrator.time = course.grid[0]
         legs = list[Ran]()
-        for instants in stretches:
+        for instants in course.stretches:
             leg = self._leg(instants, rate)
             legs.append(leg)
             if leg.outcome is not Outcome.FINISHED:
                 break
-            if is_watched:
+            if course.is_watched:
                 rate = max(rate, self._fastest(leg.rows[-1:], instants[-1:]))
         return legs[0] if len(legs) == 1 else _joined(legs)
 
@@ -185,12 +216,12 @@ class Way:
         longest = step if 0 < step < _UNCUT * cap else cap
         return Ran(outcome, rows, longest, int(steps), seconds)
 
-    def _was_too_fast(self, ran: Ran, grid: np.ndarray[Any, Any], rate: float) -> bool:
+    def _was_too_fast(self, ran: Ran, course: _Course) -> bool:
         """Return True where the rate has grown, and steps were too long for it or ran out for it."""
         if not len(ran.rows):
             return False
-        (rows, times), is_whole = _some(ran, grid), ran.outcome is Outcome.FINISHED
-        allowed = _SLACK * self._longest / ran.longest if is_whole else rate
+        (rows, times), is_whole = _some(ran, course.grid), ran.outcome is Outcome.FINISHED
+        allowed = _SLACK * self._longest / ran.longest if is_whole else course.rate
         if is_whole and isinstance(self._linearised, Linearised):
             return not self._linearised.is_within(rows, allowed)
         return not self._fastest(rows, times, allowed) <= allowed
@@ -205,11 +236,6 @@ class Way:
         """The number of times that the rate is looked at where it changes much."""
         wanted = self._radians / _RADIANS_APART if self._radians <= MOST_RADIANS else _MOST_LOOKS
         return max(self._calls, min(max(_FEWEST_LOOKS, ceil(wanted)), _MOST_LOOKS))
-
-    @cached_property
-    def _watched(self) -> tuple[np.ndarray[Any, Any], Places]:
-        """The instants with those among them at which the rate is looked at."""
-        return self._instants(self._look_count)
 
     def _instants(self, pieces: int) -> tuple[np.ndarray[Any, Any], Places]:
         """Return the instants that heyoka is asked for, and where the samples are among them.
@@ -322,13 +348,3 @@ class _Advance:
         self._standing = self._standing + 1 if time == self._time else 0
         self._time = time
         return not self.stands_still
-
-
-def _stretches(grid: np.ndarray[Any, Any], pieces: int) -> list[np.ndarray[Any, Any]]:
-    """Return the instants from each end of a piece of the grid to the next."""
-    if pieces == 1:
-        return [grid]
-    last = len(grid) - 1
-    pieces = min(last, pieces)
-    ends = sorted({round(k * last / pieces) for k in range(pieces + 1)}) if pieces else []
-    return [grid[start : end + 1] for start, end in pairwise(ends)] or [grid]
