@@ -33,6 +33,7 @@ from taylor_verify.exact.invariants import Invariant
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.floor.magnitude import roundings
+from taylor_verify.judge.floor.quaternion_length import with_length, with_rounded_length
 from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.judge.velocities import velocity_forms
 from taylor_verify.records.quantities import ROTATION_MATRIX, UNIT_QUATERNION
@@ -61,11 +62,13 @@ class Floor:
     roundings of size u ``rounded[k]``, by component, in the path's units. ``single`` is this size where
     no rounding is like the one before it. ``carried`` is their accumulated effect, by quantity, without the
     factor u. ``times`` are the times of the samples. With ``velocities`` the solver rounds U and Omega.
+    ``longer`` is the orbit with the length of the quaternion, where loads depend on it.
     """
 
     unit_roundoff: float
     times: Floats
     orbit: Path
+    longer: Path
     steps_at: Floats
     rounded: Floats
     single: Floats
@@ -107,12 +110,18 @@ class Floor:
         """
         nodes = self.nodes
         ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
-        injected = np.zeros(len(nodes))
+        injected, steady = np.zeros((2, len(nodes)))
         for block, relative in self._relative(invariant, at_nodes, scale):
-            squares = self._squares(block, not invariant.is_conserved)
+            squares = self._squares(block, self._has_arcs(block, invariant))
             rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
             injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
-        drift: Floats = self.unit_roundoff * np.sqrt(np.cumsum(injected))
+            if self._has_arcs(block, invariant):
+                sums = np.cumsum(self._arcs[1][:, self.orbit.span(block)], axis=0)
+                moved = np.diff(sums[ends - 1], axis=0, prepend=0.0)
+                steady += np.linalg.norm(np.broadcast_to(relative, moved.shape) * moved, axis=1)
+        drift: Floats = self.unit_roundoff * np.hypot(
+            np.sqrt(np.cumsum(injected)), np.cumsum(steady)
+        )
         return larger_neighbour(drift, self.times[nodes], self.times)
 
     def of_values(self, invariant: Invariant, at_nodes: Motion, scale: Any) -> Floats:
@@ -197,7 +206,8 @@ class Floor:
     def _squares(self, block: str, has_arcs: bool) -> Floats:
         """Return the sums of squared roundings of a block over the steps so far, by component.
 
-        With arcs a balance adds what the rounded samples at their beginnings make.
+        ``has_arcs`` says that it is for a balance, to which the rounded samples at the beginnings of its
+        arcs add.
         """
         span = self.orbit.span(block)
         rows = self.rounded[:, span]
@@ -206,28 +216,37 @@ class Floor:
             # With damping, conserved quantities use e^{ct} times the momenta.
             rows = rows * factors.astype(float)[:, None]
         squares = self.steps_at[:, None] * rows**2
-        has_loads = self.orbit.scene.body.loads is not None
-        if has_arcs and has_loads and block in self.orbit.flow.momenta:
-            squares = squares + self._by_arcs[:, span]
+        if has_arcs:
+            squares = squares + self._arcs[0][:, span]
         return np.cumsum(squares, axis=0)
 
-    @cached_property
-    def _by_arcs(self) -> Floats:
-        """Return the squares that the rounded samples add to the momenta at the ends of their arcs.
+    def _has_arcs(self, block: str, invariant: Invariant) -> bool:
+        """Return True where a balance of written loads has arcs, and the block is a momentum."""
+        has_loads = self.orbit.scene.body.loads is not None
+        return has_loads and not invariant.is_conserved and block in self.orbit.flow.momenta
 
-        The arc of a balance begins at a sample, and written loads act along the arc as its errors say.
+    @cached_property
+    def _arcs(self) -> tuple[Floats, Floats]:
+        """What rounded samples, and a quaternion whose length wanders, do to the momenta along each arc.
+
+        The arc of a balance begins at a sample, and written loads act along it as its errors say: of the
+        first there are the squares, by time and component, at the end of each arc. The length stays as it
+        is from arc to arc, so that its effects add up, and not their squares.
         """
-        orbit, size = self.orbit, len(self.orbit.places)
-        d, samples = orbit.momentum.shape[1], set(orbit.scene.clock.elapsed)
-        among = np.ix_(orbit.places, orbit.places)
-        squares, begin, arc = np.zeros((len(orbit.elapsed), size)), 0, np.eye(size)
-        for k, step in enumerate(orbit.carried.steps, start=1):
+        orbit, longer = self.orbit, self.longer
+        d, own, size = orbit.momentum.shape[1], len(orbit.places), len(longer.places)
+        samples, among = set(orbit.scene.clock.elapsed), np.ix_(longer.places, longer.places)
+        every = with_rounded_length(self.rounded, longer)
+        wander = np.sqrt(np.cumsum(self.steps_at[:, None] * every[:, own:] ** 2, axis=0))
+        squares, lengths = np.zeros((2, len(orbit.elapsed), own))
+        begin, arc = 0, np.eye(size)
+        for k, step in enumerate(longer.carried.steps, start=1):
             arc = step[among] @ arc
             if orbit.elapsed[k] in samples:
-                moved = arc[:d] * self.single[begin]
-                squares[k, :d] = np.sum(moved**2, axis=1)
+                squares[k, :d] = np.sum((arc[:d, :own] * self.single[begin]) ** 2, axis=1)
+                lengths[k, :d] = np.abs(arc[:d, own:]) @ wander[begin]
                 begin, arc = k, np.eye(size)
-        return squares
+        return squares, lengths
 
     @cached_property
     def _path_times(self) -> Floats:
@@ -268,14 +287,17 @@ def floor(
         single = roundings(given, orbit, bits, count, velocities)
         rounded = with_repeats(single, orbit, steps_at, count, bits)
         rounded = _at_instants(rounded, orbit, steps_at)
+        longer = with_length(orbit)
+        every = with_rounded_length(rounded, longer)
         result = Floor(
             unit_roundoff=float(unit_roundoff),
             times=np.array([abs(float(t)) for t in orbit.scene.clock.elapsed]),
             orbit=orbit,
+            longer=longer,
             steps_at=steps_at,
             rounded=rounded,
             single=single,
-            carried=orbit.gathered(rounded * np.sqrt(steps_at)[:, None]),
+            carried=longer.gathered(every * np.sqrt(steps_at)[:, None]),
             velocities=velocities,
         )
         if result.worst() <= _SAME_ORBIT:
@@ -338,9 +360,10 @@ def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
     for instant in loads.instants(orbit.elapsed[-1]):
         # Two times that are one in float64 have no step between them.
         later = np.flatnonzero((times >= float(instant.time)) & (steps_at > 0))
-        place = int(later[0]) if len(later) else int(np.flatnonzero(steps_at)[-1])
+        # The derivative leads on from what was there before a value is taken at the start.
+        places = later[: 1 + (instant.time == 0)] if len(later) else np.flatnonzero(steps_at)[-1:]
         for name in instant.names:
-            counts[name][place] += 1
+            counts[name][places] += 1
     for name, count in counts.items():
         in_step = count / np.where(steps_at > 0, steps_at, 1.0)
         result[:, orbit.span(name)] *= np.sqrt(in_step)[:, None]

@@ -6,26 +6,25 @@ steps gives dM/dv for all of them.
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.row_arithmetic import quaternions
-from taylor_verify.models.functions import functions_of
+from taylor_verify.judge.floor.step_slopes import Values, gradient, values_of
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.loads.loads import QUATERNION, Loads
 from taylor_verify.scenes.loads.loads import Piece as Steps
 from taylor_verify.scenes.loads.steps import Step
+from taylor_verify.scenes.loads.vocabulary import ROTATION
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
-Values = Sequence[Floats]
 
 
 @dataclass(frozen=True)
@@ -44,13 +43,23 @@ class Piece:
     @cached_property
     def gradients(self) -> list[list[Floats]]:
         """Return dM/dv for each output M and each step v."""
-        return [_gradient(self.steps, self.values, output) for output in self.outputs]
+        return [gradient(self.steps, self.values, output) for output in self.outputs]
 
     def sizes(self) -> Floats:
         """Return the sum of |dM/dv| |v| over all steps but the numbers, which are data."""
         made = [k for k, step in enumerate(self.steps) if step.operation != "number"]
         columns = [
             sum((abs(g[k] * self.values[k]) for k in made), np.zeros(len(self.places)))
+            for g in self.gradients
+        ]
+        return np.column_stack(columns)
+
+    def by_length(self) -> Floats:
+        """Return d dM/dd by output, for a quaternion of length d: R(q) has its square, q itself d."""
+        powers = {**dict.fromkeys(QUATERNION, 1.0), **dict.fromkeys(ROTATION, 2.0)}
+        read = [(k, powers[s.name]) for k, s in enumerate(self.steps) if s.name in powers]
+        columns = [
+            sum((power * g[k] * self.values[k] for k, power in read), np.zeros(len(self.places)))
             for g in self.gradients
         ]
         return np.column_stack(columns)
@@ -105,7 +114,7 @@ class Along:
         """Yield the loads piece by piece."""
         for piece, places in self._groups:
             inputs = {name: rows[places] for name, rows in self._inputs.items()}
-            values = _values(piece.steps, inputs, len(places))
+            values = values_of(piece.steps, inputs, len(places))
             outputs = (*piece.outputs, *piece.rates, *piece.values, *piece.rotor)
             yield Piece(places, piece.steps, outputs, values)
 
@@ -182,6 +191,42 @@ class Along:
             return sum(parts, np.zeros((len(piece.places), len(piece.outputs))))
 
         return _placed(self, total)
+
+    def by_length(self) -> Floats:
+        """Return the derivative of the outputs by the length of a quaternion that makes R and q."""
+        return _placed(self, Piece.by_length)
+
+    def pushes(self, change: Floats) -> tuple[Floats, Floats]:
+        """Return the errors of the rates, and of held values, by changes of the outputs.
+
+        Columns are momentum, turn, centre and own states, in the scene's units.
+        """
+        body, d = self.path.scene.body, len(self.path.flow.components)
+        kind = kind_of(body)
+        pushed = np.array(kind.pushed(body), dtype=float)
+        loads, rates, values, _ = self.split(change)
+        push, own = np.zeros((len(change), d + 6 + self.own_count)), d + 6 + rates.shape[1]
+        push[:, :d] = loads @ pushed.T @ kind.momentum_matrix(body).astype(float).T
+        push[:, d + 6 : own] = rates
+        if self.loads.rotor:
+            # The wheels take from the momentum of the body what they gain.
+            push[:, :d] -= np.einsum("tij,tj->ti", self.wheels[:, :, : rates.shape[1]], rates)
+        taken = np.zeros_like(push)
+        taken[:, own:] = values * self.taken
+        return push, taken
+
+    @property
+    def own_count(self) -> int:
+        """The number of components of the scene's own states."""
+        return sum(rows.shape[1] for rows in self.path.carried.own.values())
+
+    @property
+    def sizes_of_state(self) -> Floats:
+        """The units of momentum, turn, centre and own states, by component."""
+        path = self.path
+        units = [float(unit) for unit in path.flow.components] + [1.0] * 3
+        own = [float(path.units[n]) for n, rows in path.carried.own.items() for _ in rows[0]]
+        return np.array([*units, *[float(path.flow.length)] * 3, *own])
 
     @property
     def body(self) -> Body:
@@ -270,90 +315,3 @@ def _placed(along: Along, of: Callable[[Piece], Floats]) -> Floats:
     for piece in along.pieces():
         rows[piece.places] = of(piece)
     return rows
-
-
-# Values and derivatives of the steps.
-
-
-def _values(steps: Sequence[Step], inputs: Mapping[str, Floats], count: int) -> list[Floats]:
-    values: list[Floats] = []
-    with np.errstate(all="ignore"):
-        for step in steps:
-            if step.operation == "input":
-                values.append(inputs[step.name])
-            elif step.operation in ("number", "pi"):
-                number = np.pi if step.number is None else float(step.number)
-                values.append(np.full(count, number))
-            else:
-                operands = [values[place] for place in step.operands]
-                values.append(_value(step, operands))
-    return values
-
-
-def _value(step: Step, operands: Sequence[Floats]) -> Floats:
-    if step.operation in _ARITHMETIC:
-        value: Floats = _ARITHMETIC[step.operation](*operands)
-        return value
-    exponent = () if step.number is None else (step.number,)
-    value = functions_of(operands[0])[step.operation](*operands, *exponent)
-    return value
-
-
-def _gradient(steps: Sequence[Step], values: Values, output: int) -> list[Floats]:
-    """Return the derivative of one step by each step."""
-    by = [np.zeros(len(values[output])) for _ in steps]
-    by[output] = np.ones(len(values[output]))
-    with np.errstate(all="ignore"):
-        for k in range(output, -1, -1):
-            step = steps[k]
-            if not step.operands or not by[k].any():
-                continue
-            operands = [values[place] for place in step.operands]
-            slopes = _SLOPES[step.operation](step, values[k], *operands)
-            for place, slope in zip(step.operands, slopes, strict=True):
-                # Where a load has no derivative, as a root at zero, no error is carried.
-                by[place] = by[place] + by[k] * np.where(np.isfinite(slope), slope, 0.0)
-    return by
-
-
-def _exponent(step: Step) -> float:
-    assert step.number is not None
-    return float(step.number)
-
-
-_ARITHMETIC: Final = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-}
-# The derivative of a function of one step, by its value and its operand.
-_DERIVATIVES: Final[Mapping[str, Callable[[Any, Any], Any]]] = {
-    "abs": lambda v, a: np.sign(a),
-    "sqrt": lambda v, a: 0.5 / v,
-    "exp": lambda v, a: v,
-    "log": lambda v, a: 1 / a,
-    "sin": lambda v, a: np.cos(a),
-    "cos": lambda v, a: -np.sin(a),
-    "tan": lambda v, a: 1 + v * v,
-    "asin": lambda v, a: 1 / np.sqrt(1 - a * a),
-    "acos": lambda v, a: -1 / np.sqrt(1 - a * a),
-    "atan": lambda v, a: 1 / (1 + a * a),
-    "sinh": lambda v, a: np.cosh(a),
-    "cosh": lambda v, a: np.sinh(a),
-    "tanh": lambda v, a: 1 - v * v,
-}
-_SLOPES: Final[Mapping[str, Callable[..., tuple[Floats, ...]]]] = {
-    "+": lambda s, v, a, b: (np.ones_like(a), np.ones_like(b)),
-    "-": lambda s, v, a, b: (np.ones_like(a), -np.ones_like(b)),
-    "*": lambda s, v, a, b: (b, a),
-    "/": lambda s, v, a, b: (1 / b, -v / b),
-    "min": lambda s, v, a, b: (1.0 * (a <= b), 1.0 * (a > b)),
-    "max": lambda s, v, a, b: (1.0 * (a >= b), 1.0 * (a < b)),
-    "atan2": lambda s, v, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
-    "norm": lambda s, v, *parts: tuple(p / v for p in parts),
-    "choose": lambda s, v, a, b, c: (0 * a, 1.0 * (a >= 0), 1.0 * (a < 0)),
-    **{name: lambda s, v, a: (0 * a,) for name in ("sign", "step", "floor")},
-    "power": lambda s, v, a: (_exponent(s) * a ** (_exponent(s) - 1),),
-    **{name: lambda s, v, a, d=d: (d(v, a),) for name, d in _DERIVATIVES.items()},
-}

@@ -49,7 +49,7 @@ class Moves:
 
     def here(self, places: Sequence[int]) -> Motion:
         """Return the motion itself at these times of the path."""
-        width = len(self._momentum) + 6 + self._own
+        width = len(self._momentum) + 6 + self._along.own_count
         return self.beside(places, np.zeros((len(places), width)))
 
     def motions(self, places: Sequence[int], roundoff: float) -> Iterator[Motion]:
@@ -98,18 +98,13 @@ class Moves:
         self, rate: Floats, turn: Floats, centre: Floats, own: Floats | None = None
     ) -> Floats:
         if own is None:
-            own = np.zeros((len(rate), self._own))
+            own = np.zeros((len(rate), self._along.own_count))
         return np.hstack([rate @ self._momentum.T, turn, centre, own])
 
     def _own_rates(self) -> Floats:
         """Return the rates of own states, those of held ones zero."""
         _, rates, values, _ = self._along.split(self._along.outputs())
         return np.hstack([rates, np.zeros_like(values)])
-
-    @property
-    def _own(self) -> int:
-        """The number of components of the scene's own states."""
-        return sum(rows.shape[1] for rows in self._path.carried.own.values())
 
     def _of_scene(self, changed: Scene) -> Floats:
         """Return the response to a change of body and start, over the change."""
@@ -124,7 +119,7 @@ class Moves:
         ends = [kind.centre(s.initial) for s in (scene, changed)]
         shift = [float(b - a) for a, b in zip(ends[0] or (), ends[1] or (), strict=True)]
         first.append(np.array(shift or [0.0] * 3))
-        first.append(np.zeros(self._own))
+        first.append(np.zeros(self._along.own_count))
         push = np.zeros((len(self._path.elapsed), sum(map(len, first))))
         if changed.body != scene.body:
             here, there = self._along.rates(), self._along.rates(changed.body)
@@ -141,36 +136,20 @@ class Moves:
                 changes[number] = changes.get(number, 0) + rows
         d = len(self._momentum)
         for change in changes.values():
-            yield self._carried(np.zeros(d + 6 + self._own), *self._of_outputs(change))
-        still = np.zeros((len(self._path.elapsed), d + 6 + self._own))
+            yield self._carried(
+                np.zeros(d + 6 + self._along.own_count), *self._along.pushes(change)
+            )
+        still = np.zeros((len(self._path.elapsed), d + 6 + self._along.own_count))
         for k, value in enumerate(self._along.own_starts):
             if value:
-                first = np.zeros(d + 6 + self._own)
+                first = np.zeros(d + 6 + self._along.own_count)
                 first[d + 6 + k] = value
                 yield self._carried(first, still)
-
-    def _of_outputs(self, change: Floats) -> tuple[Floats, Floats]:
-        """Return the errors of the rates, and of held values, by changes of what the texts give."""
-        body, along, d = self._path.scene.body, self._along, len(self._momentum)
-        pushed = np.array(kind_of(body).pushed(body), dtype=float)
-        loads, rates, values, _ = along.split(change)
-        push = np.zeros((len(change), d + 6 + self._own))
-        # The wheels take from the momentum of the body what they gain.
-        push[:, :d] = loads @ pushed.T @ self._momentum.T
-        push[:, d + 6 : d + 6 + rates.shape[1]] = rates
-        if along.loads.rotor:
-            wheels = along.wheels[:, :, : rates.shape[1]]
-            push[:, :d] -= np.einsum("tij,tj->ti", wheels, rates)
-        taken = np.zeros_like(push)
-        taken[:, d + 6 + rates.shape[1] :] = values * along.taken
-        return push, taken
 
     def _carried(self, first: Floats, push: Floats, taken: Floats | None = None) -> Floats:
         """Return what errors of the start, of the rates and of ``taken`` values become at every time."""
         path = self._path
-        units = [float(unit) for unit in path.flow.components] + [1.0] * 3
-        own = [float(path.units[n]) for n, rows in path.carried.own.items() for _ in rows[0]]
-        size = np.array([*units, *[float(path.flow.length)] * 3, *own])
+        size = self._along.sizes_of_state
         times = np.array([float(t) for t in path.elapsed])
         counted, error = push / size, first / size
         values = np.zeros_like(push) if taken is None else taken / size
