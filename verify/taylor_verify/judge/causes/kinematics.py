@@ -63,12 +63,16 @@ Maps = Callable[[Arcs], Floats]
 def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | None:
     """Return the proven cause of a wrong attitude by equations that are right for the moving part.
 
-    A ``method`` of the moving part, with its number of steps, is taken for that part.
+    A ``method`` of the moving part, with its number of steps, is taken for that part. An attitude that
+    follows from the file's own omega is not wrong by itself.
     """
     answer = answer.with_start(right.mass)
+    maps = maps_of_attitude(right, row_to_row(answer))
+    if method is None and _proven(answer, maps, [0], "") is not None:
+        return None
     rows = np.array(evenly(answer.count - 1, _ARCS))
     turns = _Turns(answer, Arcs(answer, rows, rows + 1), right)
-    in_pieces = None if method else _in_pieces(answer, right)
+    in_pieces = None if method else _in_pieces(answer, right, maps)
     if in_pieces is not None or turns.floor * _CLEAR > 1:
         return in_pieces
     search = Search(answer, turns, turns.motion, ["attitude"])
@@ -242,11 +246,11 @@ def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) ->
 # Attitudes that are set anew, or at rest for a part of the run.
 
 
-def _in_pieces(answer: Answer, right: Equations) -> Cause | None:
+def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     """Return the cause of attitudes that are right from row to row but at few of them, given the motion."""
     q, n, arcs = answer.file.q, answer.n, row_to_row(answer)
     assert q is not None
-    maps, ends = maps_of_attitude(right, arcs), arcs.ends(right, arcs.steps)
+    ends = arcs.ends(right, arcs.steps)
     turned = np.einsum("aij,aj->ai", maps, q[:-1])
     wrong = angles(q[1:], turned / np.linalg.norm(turned, axis=1, keepdims=True))
     # What turns more than the file's own omega lets it is no jump of the attitude alone.
