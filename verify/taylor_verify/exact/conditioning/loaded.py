@@ -145,11 +145,16 @@ class _Run(Enclosing):
         return Steps(steps, products(steps), *frame.path(states), frame.own, frame.own_units)
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        """The row for the place of each time; the course meets all times, whichever are asked for."""
-        self.visited.clear()
+        """The row for the place of each time; the course meets all times, whichever are asked for.
+
+        What a whole course has visited stays where only some rows are asked for again, with more digits.
+        """
+        visited = list[tuple[_Point, Floats]]()
         for place, row in enumerate(self._course(bits, most_bits)):
             assert row.since is not None
-            self.visited.append((self._point(row, self.elapsed[place]), _floats(row.since)))
+            visited.append((self._point(row, self.elapsed[place]), _floats(row.since)))
+            if len(visited) == len(self.elapsed):
+                self.visited[:] = visited
             if place in times:
                 yield place, row
             if not any(times.values()):

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -160,6 +160,11 @@ class Evidence:
     def size(self) -> float:
         return float(np.linalg.norm(self.of_right))
 
+    @property
+    def blur(self) -> float:
+        """What the evidence itself is wrong by, as a part of the defects."""
+        return 0.0
+
     @cached_property
     def floor(self) -> float:
         """The rounding of the file as a part of the defects."""
@@ -205,6 +210,12 @@ class Arcs(Evidence):
         return max(self.few_steps, self._steps(goal))
 
     @cached_property
+    def blur(self) -> float:
+        """What twice the steps change, as a part of the defects: of arcs with a kink it may be much."""
+        finer = self.defects([{}], 2 * self.steps)[0]
+        return float(np.linalg.norm(finer - self.of_right)) / self.size if self.size > 0 else 0.0
+
+    @cached_property
     def few_steps(self) -> int:
         """The steps of an arc for derivatives."""
         return self.steps_given or self._steps(np.full((self.answer.n, 1), _COARSE))
@@ -231,15 +242,26 @@ class Arcs(Evidence):
     def along(self, changes: Changes) -> float:
         """Return the cosine between the defects and what a changed text makes of the arcs, about.
 
-        That is the load at both ends times the span, for short arcs. Else, and for other changes, it is 1.
+        That is the load at both ends times the span, for short arcs without a switch inside. For other
+        changes, and where only other arcs show the text, it is 1.
         """
-        if "acting" not in changes or self._are_long or len(self.answer.right.switches):
+        smooth = self._smooth
+        if "acting" not in changes or self._are_long or not smooth.any():
             return 1.0
         self.answer.budget.spend(_NEW_TEXTS)
-        push = self._push(self.answer.right.changed(changes)) - self._push_of_right
-        defects = self.of_right[: self.answer.n, : len(self.first)]
+        push = (self._push(self.answer.right.changed(changes)) - self._push_of_right)[:, smooth]
+        if not push.any() and not smooth.all():
+            return 1.0
+        defects = self.of_right[: self.answer.n, : len(self.first)][:, smooth]
         size = float(np.linalg.norm(push) * np.linalg.norm(defects))
         return float(np.sum(push * defects)) / size if size > 0 else 0.0
+
+    @cached_property
+    def _smooth(self) -> Any:
+        """True for each arc without a switch inside, (arcs,)."""
+        low, high = (of(self.since, self.since + self.spans) for of in (np.minimum, np.maximum))
+        switches = self.answer.right.switches[:, None]
+        return np.all((switches <= low) | (switches >= high), axis=0)
 
     @cached_property
     def _are_long(self) -> bool:

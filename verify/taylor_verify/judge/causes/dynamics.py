@@ -249,8 +249,11 @@ class Search:
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
-        """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator."""
-        return candidate.defects < max(3 * self.floor + NOTHING, _FAIR)
+        """Return True if a candidate leaves the rounding of the file, or the steps of a fair simulator.
+
+        Nor is it seen to leave less than the arcs are wrong by.
+        """
+        return candidate.defects < max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
 
     # Evidence.
 
@@ -341,7 +344,7 @@ class Search:
             # A step may lead to a number that no scene has.
             with suppress(ValueError):
                 fit = gauss_newton(self.evidence, family)
-                if family.kind == "clock" and isinstance(self.evidence, Arcs) and 0 not in counts:
+                if family.kind == "clock" and isinstance(self.evidence, Arcs) and not counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
                     candidate = self._fitted(family, fit.size, fit.numbers)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -26,7 +26,7 @@ _GAIN: Final = 0.95
 # One number is fitted in a few rounds, each far better than the last.
 _GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
-# Defects above this are measured with the steps of derivatives.
+# Defects above this are measured with the few steps that derivatives take.
 _COARSE: Final = 1e-3
 # Factors of a clock that is not nearly right.
 _CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
@@ -169,28 +169,31 @@ class Fitted:
 
 def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
     """Return the best numbers of a family; of infinite size where they cannot be computed."""
-    numbers = family.right if begin is None else begin
-    first = size = np.inf
+    numbers, steps = family.right if begin is None else begin, evidence.few_steps
+    (defects,) = evidence.defects([family.changes(numbers)], steps)
+    first = size = float(np.linalg.norm(defects))
     for count in range(_ROUNDS):
-        is_rough = size > _COARSE * np.sqrt(evidence.of_right.size)
-        steps = evidence.few_steps if is_rough else evidence.steps
-        sets = [family.changes(numbers), *family.around(numbers)]
-        defects, *around = evidence.defects(sets, steps)
-        size = float(np.linalg.norm(defects))
-        first = first if count else size
-        slopes = family.slopes(np.array(around))
+        slopes = family.slopes(evidence.defects(family.around(numbers), evidence.few_steps))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
-        trials = _trial_steps(slopes, defects.ravel(), family.scale)
-        sizes = _sizes(evidence.defects([family.changes(numbers + step) for step in trials], steps))
-        best = int(np.argmin(sizes))
-        if not sizes[best] < size:
+        before = size
+        for trials in _trial_steps(slopes, defects.ravel(), family.scale):
+            tried = evidence.defects([family.changes(numbers + step) for step in trials], steps)
+            sizes = _sizes(tried)
+            best = int(np.argmin(sizes))
+            if sizes[best] < size:
+                numbers, defects, size = numbers + trials[best], tried[best], float(sizes[best])
+                break
+        else:
             break
-        numbers, before, size = numbers + trials[best], size, float(sizes[best])
         is_hopeless = count == 2 and size > _HOPELESS * first
         is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
         if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
+        if steps != evidence.steps and size <= _COARSE * np.sqrt(evidence.of_right.size):
+            steps = evidence.steps
+            (defects,) = evidence.defects([family.changes(numbers)], steps)
+            size = float(np.linalg.norm(defects))
     if steps != evidence.steps:
         size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
     return Fitted(numbers, size)
@@ -216,15 +219,18 @@ def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:
     return fit if fit.size < best.size else best
 
 
-def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> list[Floats]:
+def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> Iterator[list[Floats]]:
+    """Yield steps that are tried together: of one number the full step, and then a shorter one."""
     U, singular, V = np.linalg.svd(slopes * scale, full_matrices=False)
     along = U.T @ -defects
-    steps = []
-    for cut, length in _TRIALS if len(scale) > 1 else (_TRIALS[0], _TRIALS[3]):
-        is_seen = singular > cut * singular[0]
-        step = V[is_seen].T @ (along[is_seen] / singular[is_seen])
-        steps.append(scale * step * length / max(1.0, float(np.max(np.abs(step))) / _LONGEST))
-    return steps
+    for some in (_TRIALS,) if len(scale) > 1 else (_TRIALS[:1], _TRIALS[3:4]):
+        steps = []
+        for cut, length in some:
+            is_seen = singular > cut * singular[0]
+            step = V[is_seen].T @ (along[is_seen] / singular[is_seen])
+            far = max(1.0, float(np.max(np.abs(step))) / _LONGEST)
+            steps.append(scale * step * length / far)
+        yield steps
 
 
 def _sizes(defects: Floats) -> Floats:

@@ -179,10 +179,14 @@ class Choice:
                     return short
         return candidate
 
-    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool]:
-        """Return how far a candidate is from the text of the scene: one without a number is nearer."""
+    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool]:
+        """Return how far a candidate is from the text of the scene: one without a number is nearer.
+
+        A clock, which no equation has, is the farthest.
+        """
         has_number = " = " in self._described(candidate)[0]
-        return candidate.count, candidate.kind != WRITTEN, has_number
+        is_written, is_clock = candidate.kind == WRITTEN, candidate.kind == "clock"
+        return candidate.count, not is_written, has_number, is_clock
 
     def _described(self, candidate: Candidate) -> tuple[str, Changes]:
         """Return a candidate in words, with its changes; a body has the factor that changes the least."""

@@ -186,9 +186,13 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities, and of those with their sizes alone."""
     names = moving_names(loads)
     texts = [entry for _, entries in loads.vectors for entry in entries if isinstance(entry, str)]
+    of_loads = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]]]]()
     for words, word in (("terms with velocities (drag)", ""), ("quadratic drag", "abs(")):
-        drag = partial(_drag_of, names, word)
-        if sum(bool(drag(text)) for text in texts) > 1:
+        drag: Callable[[str], set[int]] = partial(_drag_of, names, word)
+        # Where all of the drag is quadratic, the second of the two words says it.
+        of_loads[tuple(frozenset(drag(text)) for text in texts)] = words, drag
+    for parts, (words, drag) in of_loads.items():
+        if sum(map(bool, parts)) > 1:
             yield Number(f"factor of all {words}", 1.0, partial(_put_drag, loads, drag))
 
 
