@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from fractions import Fraction
 from functools import lru_cache
 from math import inf, nextafter
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,13 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import Step, needed
+from taylor_verify.scenes.loads.vocabulary import QUATERNION, ROTATION
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, Any]
+
+_VELOCITIES: Final = ("u1", "u2", "u3", "w1", "w2", "w3")
+_FRAME: Final = frozenset((*ROTATION, *QUATERNION))
 
 
 class Acting:
@@ -37,6 +41,7 @@ class Acting:
         self._scene, self.written, self._start = scene, loads, scene.clock.start
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
+        self._switches = [_not_before(switch) for switch in loads.switches]
         self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
 
     def of(self, loads: Loads) -> Acting:
@@ -77,8 +82,16 @@ class Acting:
         if state.ndim == 1 and elapsed.ndim == 0:
             return self._at(which, float(elapsed), state, held)
         elapsed = np.broadcast_to(elapsed, state.shape[:-1])
-        switches = [_not_before(switch) for switch in self.written.switches]
-        pieces = np.searchsorted(switches, elapsed, side="right")
+        if not elapsed.size:
+            return np.empty((*elapsed.shape, 0))
+        pieces = np.searchsorted(self._switches, elapsed, side="right")
+        if pieces.min() == pieces.max():
+            flat = state.reshape(elapsed.size, state.shape[-1])
+            if held is not None:
+                every = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
+                held = every.reshape(elapsed.size, held.shape[-1])
+            part = self._at(which, elapsed.ravel(), flat, held)
+            return part.reshape(*elapsed.shape, part.shape[-1])
         values: Floats | None = None
         for piece in np.unique(pieces):
             rows = pieces == piece
@@ -89,7 +102,8 @@ class Acting:
             if values is None:
                 values = np.empty((*elapsed.shape, part.shape[-1]))
             values[rows] = part
-        return np.empty((*elapsed.shape, 0)) if values is None else values
+        assert values is not None
+        return values
 
     def _at(self, which: str, elapsed: Any, state: Floats, held: Floats | None) -> Floats:
         is_one = state.ndim == 1
@@ -97,7 +111,7 @@ class Acting:
         first = elapsed if is_one else elapsed[0]
         piece = self.written.piece(exact_value(first))
         code = self._code(which, piece, is_one)
-        inputs = self._inputs(elapsed, columns) | self._held(held, is_one)
+        inputs = self._inputs(elapsed, columns, code.names) | self._held(held, is_one)
         if missing := code.names - inputs.keys():
             raise ValueError(f"expected the held values {', '.join(sorted(missing))}, got none")
         with np.errstate(all="ignore") if code.chooses else nullcontext():
@@ -121,7 +135,10 @@ class Acting:
         columns = held.tolist() if is_one else list(held.T)
         return dict(zip(self.written.held_values, columns, strict=True))
 
-    def _inputs(self, elapsed: Any, columns: Sequence[Any]) -> dict[str, Any]:
+    def _inputs(
+        self, elapsed: Any, columns: Sequence[Any], names: frozenset[str]
+    ) -> dict[str, Any]:
+        """Return what texts may read, as far as some of the ``names`` need it."""
         n, own = 3 if self._is_euler else 6, len(self.written.continuous)
         needed = n + 4 * self.written.reads_attitude + 3 * self.written.reads_centre + own
         if len(columns) < needed:
@@ -133,10 +150,11 @@ class Acting:
         if self._is_euler:
             inputs |= labelled("w", moving)
         else:
-            velocity = [sum(a * z for a, z in zip(r, moving, strict=True)) for r in self._matrix]
             inputs |= labelled("x", moving[:3]) | labelled("y", moving[3:])
-            inputs |= labelled("u", velocity[:3]) | labelled("w", velocity[3:])
-        if q:
+            velocity = self._matrix @ np.array(moving)
+            rows = velocity.tolist() if velocity.ndim == 1 else velocity
+            inputs |= dict(zip(_VELOCITIES, rows, strict=True))
+        if q and not names.isdisjoint(_FRAME):
             size = sum(e * e for e in q)
             R = rotation(q)
             inputs |= {f"q{i}": e / size**0.5 for i, e in enumerate(q)}

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil
 from typing import Any, Final
 
 import numpy as np
@@ -42,19 +43,25 @@ _STATES: Final = 2400
 def moved(
     answer: Answer, equations: Equations, begin: Floats, since: Floats, spans: Floats, steps: int
 ) -> Floats:
-    """Return the states after the spans, each arc in pieces between the switches of the loads."""
+    """Return the states after the spans, each arc in pieces between the switches of the loads.
+
+    The longest arc has so many steps; the pieces of others have as few as are no longer.
+    """
     sets = max(len(begin), equations.sets)
     begin = np.broadcast_to(begin, (sets, *begin.shape[1:]))
     if answer.stepping is not None:
         return answer.stepping(equations, begin, since, spans)
     switches = equations.switches
     parts = _parted(since, spans, switches) if len(switches) else [(since, spans)]
+    longest = float(np.max(np.abs(spans), initial=0.0))
     for at, span in parts:
         some = np.flatnonzero(span)
+        part = float(np.max(np.abs(span), initial=0.0))
+        count = max(1, ceil(steps * part / longest * (1 - _INSIDE))) if longest else steps
         if len(some) == len(span) or equations.has_loads_of_arcs:
-            begin = _in_blocks(answer, equations, begin, at, span, steps)
+            begin = _in_blocks(answer, equations, begin, at, span, count)
         elif len(some):
-            ends = _in_blocks(answer, equations, begin[:, :, some], at[some], span[some], steps)
+            ends = _in_blocks(answer, equations, begin[:, :, some], at[some], span[some], count)
             begin = begin.copy()
             begin[:, :, some] = ends
     return begin
@@ -97,12 +104,13 @@ def _within(equations: Equations, since: Floats, spans: Floats) -> Rates:
     return lambda time, z: equations.rates(np.clip(time, low, high), z)
 
 
-def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
+def enough_steps(ends: Callable[[int], Floats], goal: Floats, is_patient: bool = True) -> int:
     """Return the fewest steps of an arc whose ends are right to the goal, but at most 32.
 
-    A few arcs with a kink of a load, as in abs(u)*u, take no more steps than the others.
+    A few arcs with a kink of a load, as in abs(u)*u, take no more steps than the others. Unless it
+    ``is_patient``, neither do many: where two doublings gain little, a third one gains no more.
     """
-    steps, before, last = 1, ends(1), np.inf
+    steps, before, last, slow = 1, ends(1), np.inf, 0
     while steps < _STEPS:
         after = ends(2 * steps)
         apart = np.max(np.abs(after - before) / goal, axis=0)
@@ -111,7 +119,8 @@ def enough_steps(ends: Callable[[int], Floats], goal: Floats) -> int:
         if largest < 1:
             return steps
         steps, before = 2 * steps, after
-        has_kinks = np.median(apart) < 1 and largest > last / _SMOOTH
+        slow = slow + 1 if largest > last / _SMOOTH else 0
+        has_kinks = slow > 0 and (np.median(apart) < 1 or (slow > 1 and not is_patient))
         if largest < _ORDER or has_kinks:
             return steps
         last = largest
@@ -223,7 +232,9 @@ class Arcs(Evidence):
     def _steps(self, goal: Floats) -> int:
         n, right = self.answer.n, self.answer.right
         return enough_steps(
-            lambda steps: self.ends(right, steps)[0, :n] / self.answer.sizes[:, None], goal
+            lambda steps: self.ends(right, steps)[0, :n] / self.answer.sizes[:, None],
+            goal,
+            is_patient=False,
         )
 
     def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:

@@ -30,8 +30,8 @@ _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
 _AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
 AXES: Final = _AXES | _AXES_OF_NUMBERS
 # The work of texts, once, for each of their steps, and for each state.
-_TEXTS: Final = 80.0
-_STEP: Final = 3.0
+_TEXTS: Final = 55.0
+_STEP: Final = 2.5
 _TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 

@@ -141,14 +141,14 @@ def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
     """Return the one number of the loads with which the scene moves as the answer does, or their lateness.
 
     ``wrong`` are the rows that the next one does not follow from. Numbers that move a switch come first. At
-    most half of the work that may be done is done for it.
+    most three quarters of the work that may be done are done for it.
     """
     moves_switch, others = list[Family](), list[Family]()
     for family in (loads_late(answer.right, Sizes.of(answer)), *_written(answer)):
         switches = answer.right.changed(family.ahead[0]).switches
         is_same = np.array_equal(switches, answer.right.switches)
         (others if is_same else moves_switch).append(family)
-    with suppress(Spent), answer.budget.at_most(answer.budget.left / 2):
+    with suppress(Spent), answer.budget.at_most(0.75 * answer.budget.left):
         search = _search_by(answer, _arcs_over(answer, wrong))
         cause = search.cause([*search.fitted(moves_switch)]) if moves_switch else None
         return cause or search.cause([*search.fitted(others)])
@@ -211,16 +211,17 @@ class Search:
         """Return the cause by faults, methods and families, or two families, or a fault beside steps."""
         if not self.is_clear:
             return None
-        candidates = [*faults]
         is_stepped = self.answer.stepping is not None
-        if not is_stepped and not any(map(self._is_exact, candidates)):
-            stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
-            candidates += replays(self.answer, stride)
-        linear: list[_Linear] = []
+        candidates, linear, has_methods = [*faults], list[_Linear](), is_stepped
         for group in self._groups(families, candidates):
             of_group = self._linear(group)
             linear += of_group
             candidates += self._families(of_group, candidates)
+            # Methods cost as much as many families of one number, which may be exact.
+            if not has_methods and not any(map(self._is_exact, candidates)):
+                stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
+                candidates += replays(self.answer, stride)
+            has_methods = True
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped:
             return cause
@@ -337,7 +338,8 @@ class Search:
         limit = _ALIKE if counts else _LINEAR
         for each in linear:
             family = each.family
-            if each.left > limit and family.kind != "clock":
+            # A clock may be so wrong that it is no linear fit.
+            if each.left > limit and (counts or family.kind != "clock"):
                 continue
             if family.count > 1 and counts and family.count > max(1, min(counts)):
                 continue

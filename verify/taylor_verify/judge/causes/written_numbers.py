@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -36,6 +37,8 @@ _ANGLES: Final = (pi / 180, 180 / pi)
 _EXCHANGED: Final = "degrees and radians exchanged"
 _DIGITS: Final = 15
 _MOST: Final = 60
+# Times the time of a switch: a time that no run reaches.
+_NEVER: Final = 1e6
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,9 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+        if (missed := _missed(loads, number)) is not None:
+            time = right.start + float(missed[0])
+            yield Fault(f"switch at t = {time:.6g} missed", KIND, {"acting": acting.of(missed[1])})
     for name, other in changed_texts(loads):
         if next(other.faults(), None) is None:
             yield Fault(name, KIND, {"acting": acting.of(other)})
@@ -83,6 +89,18 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
             tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
             yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
+
+
+def _missed(loads: Loads, number: Number) -> tuple[Fraction, Loads] | None:
+    """Return the switch whose time a number is, and the loads without it: it comes after all runs."""
+    if not loads.switches:
+        return None
+    with suppress(ValueError):
+        other = number.put(_NEVER * number.value)
+        gone = set(loads.switches).difference(other.switches)
+        if len(gone) == 1 and len(other.switches) == len(loads.switches):
+            return gone.pop(), other
+    return None
 
 
 def _is_free(number: Number) -> bool:

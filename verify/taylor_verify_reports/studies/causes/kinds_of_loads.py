@@ -102,7 +102,7 @@ def _one_drag_less(v: Any, s: Any, size: float) -> Any:
 _V: Final = ("vehicle",)
 _S: Final = ("sampled",)
 _DRAG: Final = ("terms with velocities", "all quadratic drag")
-_THRUST: Final = ("in force 1", "terms of force without", "from t =", "right up to")
+_THRUST: Final = ("in force 1", "terms of force without", "from t =", "right up to", "switch at")
 _PULSES: Final = ("loads late",)
 OF_LOADS: Final = (
     Kind(
