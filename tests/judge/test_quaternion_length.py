@@ -59,9 +59,9 @@ def test_a_longer_quaternion_moves_the_motion_as_the_path_says(
     whole = products(path.carried.steps)[-1][:-1, -1] * sizes
     with mp.workdps(20):
         moved = (end(scene, 1 + LONGER) - end(scene, 1.0)) / LONGER
-    found = np.concatenate([whole[:d], whole[d + 3 : d + 6][: len(moved) - d]])
+    derived = np.concatenate([whole[:d], whole[d + 3 : d + 6][: len(moved) - d]])
     for part in (slice(0, d), slice(d, None)):
-        error = np.linalg.norm(found[part] - moved[part])
+        error = np.linalg.norm(derived[part] - moved[part])
         assert error <= NEAR * np.linalg.norm(moved[part])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from taylor_verify_reports.studies.causes.measured_causes import (
     Named,
     measured,
     page,
+    said_of,
     table,
 )
 from taylor_verify_reports.studies.finished_parts import Parts
@@ -55,6 +57,29 @@ def test_a_finished_answer_is_not_made_again(
     monkeypatch.setattr(measure, "run_all", lambda work, waiting, **_: asked.extend(waiting))
     assert measured(1, 2, Parts(tmp_path), [kind]) == [first]
     assert asked == [(1, kind.name, 1)]
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "words"),
+    [("jump", 5, "exact motion between jumps"), ("asleep", 4, "at rest from t = 5.727 on")],
+)
+def test_an_attitude_that_follows_from_its_own_omega_has_no_cause(
+    kind: str, number: int, words: str
+) -> None:
+    """Roundings of the arcs beside a fault of omega are no attitude that is set anew."""
+    (sentence,) = json.loads(said_of((1, kind, number)))["sentences"]
+    assert words in sentence
+
+
+def test_a_missed_switch_is_named_with_its_time() -> None:
+    """A thrust that does not end is a switch that was missed, and no other number."""
+    (sentence,) = json.loads(said_of((1, "switch missed", 1)))["sentences"]
+    assert sentence.startswith("switch at t = 1.072 missed; leaves")
+
+
+def test_silence_is_right_where_no_fault_has_a_name() -> None:
+    """Of a law that no family has, nothing is the right word."""
+    assert json.loads(said_of((1, "growing load", 0)))["outcome"] == "right"
 
 
 # What the contract of likely causes names, and given files, each with its kind.

@@ -171,7 +171,7 @@ class Evidence:
 
     @property
     def blur(self) -> float:
-        """What the evidence itself is wrong by, as a part of the defects."""
+        """The error of the evidence itself, as a part of the defects."""
         return 0.0
 
     @cached_property
@@ -220,7 +220,7 @@ class Arcs(Evidence):
 
     @cached_property
     def blur(self) -> float:
-        """What twice the steps change, as a part of the defects: of arcs with a kink it may be much."""
+        """The change by twice the steps, as a part of the defects: of arcs with a kink it may be large."""
         finer = self.defects([{}], 2 * self.steps)[0]
         return float(np.linalg.norm(finer - self.of_right)) / self.size if self.size > 0 else 0.0
 

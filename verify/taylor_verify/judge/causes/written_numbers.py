@@ -97,9 +97,9 @@ def _missed(loads: Loads, number: Number) -> tuple[Fraction, Loads] | None:
         return None
     with suppress(ValueError):
         other = number.put(_NEVER * number.value)
-        gone = set(loads.switches).difference(other.switches)
-        if len(gone) == 1 and len(other.switches) == len(loads.switches):
-            return gone.pop(), other
+        missed = set(loads.switches).difference(other.switches)
+        if len(missed) == 1 and len(other.switches) == len(loads.switches):
+            return missed.pop(), other
     return None
 
 

@@ -227,7 +227,7 @@ class Floor:
 
     @cached_property
     def _arcs(self) -> tuple[Floats, Floats]:
-        """What rounded samples, and a quaternion whose length wanders, do to the momenta along each arc.
+        """The effects of rounded samples, and of a wandering length of q, on the momenta along each arc.
 
         The arc of a balance begins at a sample, and written loads act along it as its errors say: of the
         first there are the squares, by time and component, at the end of each arc. The length stays as it

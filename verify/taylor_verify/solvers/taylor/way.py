@@ -66,7 +66,7 @@ class Ran(NamedTuple):
 
 
 class _Course(NamedTuple):
-    """How a way is gone: its instants with the samples among them, in so many calls, in steps for a rate.
+    """A plan of a way: its instants with the samples among them, in so many calls, in steps for a rate.
 
     Where it is watched, the rate is looked at after each call, and the fastest so far counts.
     """
@@ -131,7 +131,7 @@ class Way:
         if not isfinite(self._rate):
             return Ran(Outcome.NON_FINITE, self._start[None], longest=0.0, steps=0, seconds=0.0)
         if self._course is None:
-            self._course, ran = self._found(foreseen())
+            self._course, ran = self._suited(foreseen())
         else:
             ran = self._went(self._course)
         if ran.outcome is not Outcome.FINISHED:
@@ -141,7 +141,7 @@ class Way:
             return ran._replace(outcome=Outcome.INTERRUPTED)
         return ran if len(grid) == len(self._times) else ran._replace(rows=ran.rows[samples])
 
-    def _found(self, foreseen: float) -> tuple[_Course, Ran]:
+    def _suited(self, foreseen: float) -> tuple[_Course, Ran]:
         """Return a course whose steps suit every rate on its way, with its run."""
         rate = max(self._rate, foreseen if isfinite(foreseen) else 0.0)
         course = _Course(*self._grid, self._calls, rate)

@@ -135,9 +135,12 @@ def _failure(scene: Scene, quantity: str) -> Verdict:
 
 
 def _outcome(kind: Kind, sentences: tuple[str, ...]) -> str:
-    """Return how an answer was named; each sentence must have one of the right words."""
+    """Return how an answer was named; each sentence must have one of the right words.
+
+    Of a kind without words, as a law that no family has, silence is right.
+    """
     if not sentences:
-        return "silent"
+        return "silent" if kind.words else "right"
     titles = [sentence.partition("; leaves")[0] for sentence in sentences]
     if all(sentence.startswith("truncation of order") for sentence in titles):
         return "right"

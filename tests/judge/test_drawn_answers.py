@@ -1,0 +1,50 @@
+"""Right answers to drawn loads pass: the driver's own, in doubles, at many times."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+
+import pytest
+from builders.drawn_loads import drawn
+
+from taylor_verify.records.status import Status
+from taylor_verify.run import run
+from taylor_verify.scenes.motion import Clock
+from taylor_verify.scenes.scene import Scene
+
+ROWS = 32
+# Times the span of a drawn scene.
+LONGER = 4
+
+
+def scene_of(seed: int) -> Scene:
+    """A scene under drawn loads, every third one with states of its own, with so many rows."""
+    scene = drawn(Random(seed), with_states=seed % 3 == 2).scene
+    start, end = scene.clock.start, scene.clock.instants[-1]
+    rows = [start + LONGER * (end - start) * Fraction(k, ROWS) for k in range(ROWS + 1)]
+    return replace(scene, clock=Clock(start, tuple(rows)))
+
+
+def failed(seed: int) -> list[str]:
+    """The quantities that fail; a load that the driver cannot have is refused, and not judged."""
+    judged = run(scene_of(seed), "taylor", "f64")
+    return [v.quantity for v in judged.verdicts if v.verdict is Status.FAIL]
+
+
+def test_a_value_that_is_held_from_the_start_is_rounded_once() -> None:
+    """The value taken at the start is wrong by a rounding until the next one is taken."""
+    assert failed(2) == []
+
+
+def test_an_answer_is_judged_whose_first_row_takes_more_digits() -> None:
+    """Where the start alone is computed again, the derivative of the whole motion stays."""
+    assert failed(134) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(40))
+def test_no_right_answer_to_drawn_loads_fails(seed: int) -> None:
+    """Roundings of all functions, of the frame's length and of held values are within the floor."""
+    assert failed(seed) == []
