@@ -109,7 +109,10 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
         _CONTRADICTED * answer.worst["attitude"]
     )
     if is_slight:
-        cause, causes, moving = None, [], []
+        of_attitude = _with_attitude(answer, None, [])
+        # The steps of a method explain the little that the attitude does not.
+        steps = [each for each in causes if each.method is not None] if of_attitude else []
+        return [*steps, *of_attitude]
     if cause is None and moving:
         return causes
     return _with_attitude(answer, cause, causes)

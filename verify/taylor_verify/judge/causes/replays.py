@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -101,15 +101,16 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield the methods whose steps lead from row to row."""
     rows = np.array(evenly(answer.count - stride, _ARCS))
     arcs = Arcs(answer, rows, rows + stride)
-    if arcs.floor * _CLEAR > 1:
+    replayed = _Replays(arcs, stride, [{}])
+    if replayed.floor * _CLEAR > 1:
         return
     known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
     if answer.right.acting is not None:
         known = {**known, "loads": HELD}
-    for steps in _each_best(_Replays(arcs, stride, [{}]).steps(known, _ALONE)):
-        if steps.left < max(_LEAVES, _CLEAR * arcs.floor):
+    for steps in _each_best(replayed.steps(known, _ALONE)):
+        if steps.left < max(_LEAVES, _CLEAR * replayed.floor):
             h = steps.step(answer)
             yield Candidate(
                 name=_name(steps, answer.n, h),
@@ -157,12 +158,25 @@ def _each_best(steps: Iterator[Steps]) -> list[Steps]:
 
 @dataclass(frozen=True)
 class _Replays:
-    """Arcs of an answer beside ``sets`` of changes, of which the first has none, or one of the bases."""
+    """Arcs of an answer beside ``sets`` of changes, of which the first has none, or one of the bases.
+
+    No method of v leads the attitude on, which is not compared.
+    """
 
     arcs: Arcs
     stride: int
     sets: Sequence[Changes]
     bases: Sequence[Floats] = ()
+
+    @cached_property
+    def size(self) -> float:
+        return float(np.linalg.norm(self._compared(self.arcs.of_right[None])))
+
+    @cached_property
+    def floor(self) -> float:
+        """The rounding of the file as a part of the defects of v."""
+        noise = float(np.linalg.norm(self.arcs.answer.rounding)) * len(self.arcs.first) ** 0.5
+        return noise / self.size if self.size > 0 else np.inf
 
     def steps(self, methods: Mapping[str, Method], near: float) -> Iterator[Steps]:
         """Yield each method with numbers of steps, if its error is near to the defects."""
@@ -202,8 +216,8 @@ class _Replays:
             if not 0 < size < np.inf:
                 continue
             part = float(beyond @ defects) / size
-            left = float(np.linalg.norm(across(basis, defects) - part * beyond)) / self.arcs.size
-            if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.arcs.size:
+            left = float(np.linalg.norm(across(basis, defects) - part * beyond)) / self.size
+            if part > 0 and left < near and part * size**0.5 > _SLIGHT * self.size:
                 parts.append((left, part))
         some = [round(steps / self.stride * p ** (-1 / method.order)) for _, p in sorted(parts)]
         return some[:_FITS]
@@ -214,7 +228,7 @@ class _Replays:
 
     def _lefts(self, place: int, rest: Floats) -> list[float]:
         rests = [across(basis, rest) for basis in self._beside(place)]
-        return [float(np.linalg.norm(each)) / self.arcs.size for each in rests]
+        return [float(np.linalg.norm(each)) / self.size for each in rests]
 
     def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
         """Return what so many steps of an arc leave, (sets, entries)."""
