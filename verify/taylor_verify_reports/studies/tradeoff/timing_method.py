@@ -11,7 +11,8 @@ from taylor_verify_reports.studies.tradeoff.trades import NUMBERS, TIMINGS, Trad
 _WHAT_IS_TIMED: Final = (
     (
         "taylor",
-        "heyoka's steps, compiled, and the driver in Python, with its search for the longest step where none is known",
+        "heyoka's steps, compiled, and the driver in Python, with its search for the longest step "
+        "where none is known",
         "compiling, rounding the scene to the rung, making exact numbers of the answer",
     ),
     (
