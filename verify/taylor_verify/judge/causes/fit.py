@@ -173,6 +173,10 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
     (defects,) = evidence.defects([family.changes(numbers)], steps)
     first = size = float(np.linalg.norm(defects))
     for count in range(_ROUNDS):
+        if steps != evidence.steps and size <= _COARSE * np.sqrt(evidence.of_right.size):
+            steps = evidence.steps
+            (defects,) = evidence.defects([family.changes(numbers)], steps)
+            size = float(np.linalg.norm(defects))
         slopes = family.slopes(evidence.defects(family.around(numbers), evidence.few_steps))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
@@ -190,10 +194,6 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
         is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
         if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
-        if steps != evidence.steps and size <= _COARSE * np.sqrt(evidence.of_right.size):
-            steps = evidence.steps
-            (defects,) = evidence.defects([family.changes(numbers)], steps)
-            size = float(np.linalg.norm(defects))
     if steps != evidence.steps:
         size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
     return Fitted(numbers, size)
