@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
@@ -34,7 +34,8 @@ FIT_ROWS: Final = 160
 _POLISHED: Final = 4
 _ROUNDS: Final = 5
 _SETTLED: Final = 1e-11
-_SHIFT: Final = 1e-5
+# Changes for a derivative; a motion that magnifies them too far to be reached gets the smaller one.
+_SHIFTS: Final = (1e-5, 1e-8)
 _PROVEN: Final = 6
 # So few numbers are printed with as few digits as explain as much.
 FEW: Final = 3
@@ -133,18 +134,11 @@ class Choice:
                 raise ValueError(numbers)
             return np.asarray((few.file.v - motion.v) / few.sizes).ravel()
 
-        last = np.inf
-        with suppress(ValueError):
-            for _ in range(_ROUNDS):
-                base = rest(numbers)
-                largest = float(np.max(np.abs(base)))
-                if largest > 0.5 * last or largest < _SETTLED:
-                    break
-                ahead = [rest(numbers + step) for step in _SHIFT * np.diag(family.scale)]
-                slopes = (np.array(ahead) - base).T / _SHIFT
-                step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
-                last, numbers = largest, numbers - family.scale * step
-            return self._left(candidate.of(numbers))
+        for shift in _SHIFTS:
+            with suppress(ValueError):
+                return self._left(
+                    candidate.of(_settled_numbers(rest, numbers, family.scale, shift))
+                )
         return None
 
     def _cause(self, proven: list[_Proven]) -> Cause | None:
@@ -198,6 +192,23 @@ class Choice:
         family, numbers = candidate.family, candidate.numbers
         words = "" if family is None or numbers is None else structure(family, numbers)
         return ": ".join(filter(None, (words, candidate.text))), changes
+
+
+def _settled_numbers(
+    rest: Callable[[Floats], Floats], numbers: Floats, scale: Floats, shift: float
+) -> Floats:
+    """Return numbers that leave less, by Newton's method. Raises ValueError where no motion is reached."""
+    last = np.inf
+    for _ in range(_ROUNDS):
+        base = rest(numbers)
+        largest = float(np.max(np.abs(base)))
+        if largest > 0.5 * last or largest < _SETTLED:
+            break
+        ahead = [rest(numbers + step) for step in shift * np.diag(scale)]
+        slopes = (np.array(ahead) - base).T / shift
+        step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
+        last, numbers = largest, numbers - scale * step
+    return numbers
 
 
 def _simplest(candidate: Candidate) -> tuple[int, float]:
