@@ -39,7 +39,7 @@ def test_a_value_that_is_held_from_the_start_is_rounded_once() -> None:
 
 
 def test_an_answer_is_judged_whose_first_row_takes_more_digits() -> None:
-    """Where the start alone is computed again, the derivative of the whole motion stays."""
+    """The derivative of the whole motion stays where the start alone is computed again."""
     assert failed(134) == []
 
 

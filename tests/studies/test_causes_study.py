@@ -78,7 +78,7 @@ def test_a_missed_switch_is_named_with_its_time() -> None:
 
 
 def test_silence_is_right_where_no_fault_has_a_name() -> None:
-    """Of a law that no family has, nothing is the right word."""
+    """Silence is the right word for a law that no family has."""
     assert json.loads(said_of((1, "growing load", 0)))["outcome"] == "right"
 
 

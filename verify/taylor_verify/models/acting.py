@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import inf, nextafter
 from typing import Any, Final, NamedTuple
 
@@ -41,7 +41,6 @@ class Acting:
         self._scene, self.written, self._start = scene, loads, scene.clock.start
         self._is_euler = scene.model == "euler"
         self._matrix = np.array(scene.body.energy_matrix, dtype=float)
-        self._switches = [_not_before(switch) for switch in loads.switches]
         self._codes: dict[tuple[str, Fraction | None, bool], _Code] = {}
 
     def of(self, loads: Loads) -> Acting:
@@ -74,6 +73,10 @@ class Acting:
         after[list(instant.places)] = values[list(instant.places)]
         return after
 
+    @cached_property
+    def _switches(self) -> list[float]:
+        return [_not_before(switch) for switch in self.written.switches]
+
     def _values(self, which: str, t: Any, state: Any, held: Any) -> Floats:
         """Return the values of the steps that a field of a piece lists."""
         state = np.asarray(state, dtype=float)
@@ -84,21 +87,17 @@ class Acting:
         elapsed = np.broadcast_to(elapsed, state.shape[:-1])
         if not elapsed.size:
             return np.empty((*elapsed.shape, 0))
+        if held is not None:
+            held = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
         pieces = np.searchsorted(self._switches, elapsed, side="right")
         if pieces.min() == pieces.max():
-            flat = state.reshape(elapsed.size, state.shape[-1])
-            if held is not None:
-                every = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
-                held = every.reshape(elapsed.size, held.shape[-1])
-            part = self._at(which, elapsed.ravel(), flat, held)
+            flat = None if held is None else held.reshape(elapsed.size, held.shape[-1])
+            part = self._at(which, elapsed.ravel(), state.reshape(elapsed.size, -1), flat)
             return part.reshape(*elapsed.shape, part.shape[-1])
         values: Floats | None = None
         for piece in np.unique(pieces):
             rows = pieces == piece
-            of_rows = None if held is None else np.broadcast_to(held, (*rows.shape, held.shape[-1]))
-            part = self._at(
-                which, elapsed[rows], state[rows], None if of_rows is None else of_rows[rows]
-            )
+            part = self._at(which, elapsed[rows], state[rows], None if held is None else held[rows])
             if values is None:
                 values = np.empty((*elapsed.shape, part.shape[-1]))
             values[rows] = part

@@ -68,7 +68,7 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     """
     answer = answer.with_start(right.mass)
     maps = maps_of_attitude(right, row_to_row(answer))
-    if method is None and _proven(answer, maps, [0], "") is not None:
+    if method is None and _left(answer, maps, [0]) is not None:
         return None
     rows = np.array(evenly(answer.count - 1, _ARCS))
     turns = _Turns(answer, Arcs(answer, rows, rows + 1), right)
@@ -294,7 +294,16 @@ def _stands_still(answer: Answer, maps: Floats, bad: Places) -> Cause | None:
 
 
 def _proven(answer: Answer, maps: Floats, begins: list[int], words: str) -> Cause | None:
-    """Return the cause if each piece follows from its own first row, the first one from the start."""
+    """Return the cause if each piece follows from its own first row."""
+    left = _left(answer, maps, begins)
+    return None if left is None else Cause(words, "attitude in pieces", {"attitude": left})
+
+
+def _left(answer: Answer, maps: Floats, begins: list[int]) -> float | None:
+    """Return what is left where each piece follows from its own first row, the first one from the start.
+
+    It is None where that is too much for a proof.
+    """
     q, start = answer.file.q, answer.start.q
     assert q is not None
     assert start is not None
@@ -303,6 +312,4 @@ def _proven(answer: Answer, maps: Floats, begins: list[int], words: str) -> Caus
         for begin, end in zip(begins, [*begins[1:], answer.count], strict=True)
     ]
     left = answer.leaves(Motion(answer.truth.v, np.concatenate(pieces))).get("attitude", np.inf)
-    if left > may_leave(answer, ["attitude"]):
-        return None
-    return Cause(words, "attitude in pieces", {"attitude": left})
+    return None if left > may_leave(answer, ["attitude"]) else left

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import log2
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from mpmath import mp
@@ -52,6 +52,17 @@ _MOST_NODES = 41
 _SAME_ORBIT = 1e-3
 # A length is written in full if six digits show that it is not 1.
 _SHOWN = 1e-4
+
+
+class _Arcs(NamedTuple):
+    """The effects on the momenta at the end of each arc, by time and component.
+
+    They are ``squares`` of rounded samples. A length of q that wanders stays as it is from arc to arc, so
+    that its effects add up, and not their squares: ``lengths``.
+    """
+
+    squares: Floats
+    lengths: Floats
 
 
 @dataclass(frozen=True)
@@ -112,11 +123,12 @@ class Floor:
         ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
         injected, steady = np.zeros((2, len(nodes)))
         for block, relative in self._relative(invariant, at_nodes, scale):
-            squares = self._squares(block, self._has_arcs(block, invariant))
+            has_arcs = self._has_arcs(block, invariant)
+            squares = self._squares(block, has_arcs)
             rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
             injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
-            if self._has_arcs(block, invariant):
-                sums = np.cumsum(self._arcs[1][:, self.orbit.span(block)], axis=0)
+            if has_arcs:
+                sums = np.cumsum(self._arcs.lengths[:, self.orbit.span(block)], axis=0)
                 moved = np.diff(sums[ends - 1], axis=0, prepend=0.0)
                 steady += np.linalg.norm(np.broadcast_to(relative, moved.shape) * moved, axis=1)
         drift: Floats = self.unit_roundoff * np.hypot(
@@ -217,7 +229,7 @@ class Floor:
             rows = rows * factors.astype(float)[:, None]
         squares = self.steps_at[:, None] * rows**2
         if has_arcs:
-            squares = squares + self._arcs[0][:, span]
+            squares = squares + self._arcs.squares[:, span]
         return np.cumsum(squares, axis=0)
 
     def _has_arcs(self, block: str, invariant: Invariant) -> bool:
@@ -226,13 +238,8 @@ class Floor:
         return has_loads and not invariant.is_conserved and block in self.orbit.flow.momenta
 
     @cached_property
-    def _arcs(self) -> tuple[Floats, Floats]:
-        """The effects of rounded samples, and of a wandering length of q, on the momenta along each arc.
-
-        The arc of a balance begins at a sample, and written loads act along it as its errors say: of the
-        first there are the squares, by time and component, at the end of each arc. The length stays as it
-        is from arc to arc, so that its effects add up, and not their squares.
-        """
+    def _arcs(self) -> _Arcs:
+        """The arcs of a balance: each begins at a sample, and written loads act along it by its errors."""
         orbit, longer = self.orbit, self.longer
         d, own, size = orbit.momentum.shape[1], len(orbit.places), len(longer.places)
         samples, among = set(orbit.scene.clock.elapsed), np.ix_(longer.places, longer.places)
@@ -246,7 +253,7 @@ class Floor:
                 squares[k, :d] = np.sum((arc[:d, :own] * self.single[begin]) ** 2, axis=1)
                 lengths[k, :d] = np.abs(arc[:d, own:]) @ wander[begin]
                 begin, arc = k, np.eye(size)
-        return squares, lengths
+        return _Arcs(squares, lengths)
 
     @cached_property
     def _path_times(self) -> Floats:
