@@ -81,7 +81,7 @@ class Along:
 
     path: Path
 
-    @property
+    @cached_property
     def loads(self) -> Loads:
         scene = self.path.scene
         return scene.body.loads or Loads(scene.model, ())

@@ -12,6 +12,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -64,7 +65,7 @@ class Moves:
         times = np.array(
             [float(t) for t in self._path.scene.clock.start + np.array(self._path.elapsed)]
         )
-        rates = self._errors(*self._along.rates(), self._own_rates()) * times[:, None]
+        rates = self._errors(*self._rates, self._own_rates()) * times[:, None]
         return self.beside(places, roundoff * rates[places])
 
     def beside(self, places: Sequence[int], errors: Floats) -> Motion:
@@ -91,6 +92,10 @@ class Moves:
             first = last
         zeros = np.array([mp.zero] * len(places), dtype=object)
         return Motion(quantities, zeros, peaks=peaks)
+
+    @cached_property
+    def _rates(self) -> tuple[Floats, Floats, Floats]:
+        return self._along.rates()
 
     # The response to one number.
 
@@ -122,8 +127,8 @@ class Moves:
         first.append(np.zeros(self._along.own_count))
         push = np.zeros((len(self._path.elapsed), sum(map(len, first))))
         if changed.body != scene.body:
-            here, there = self._along.rates(), self._along.rates(changed.body)
-            push = self._errors(*(b - a for a, b in zip(here, there, strict=True)))
+            pairs = zip(self._rates, self._along.rates(changed.body), strict=True)
+            push = self._errors(*(there - here for here, there in pairs))
         return self._carried(np.concatenate(first), push) / float(_CHANGE)
 
     def _of_numbers(self) -> Iterator[Floats]:

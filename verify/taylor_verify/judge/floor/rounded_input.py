@@ -27,6 +27,7 @@ from taylor_verify.exact.conditioning.loaded import frame, is_of_run
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
+from taylor_verify.exact.row_arithmetic import norms as row_norms
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import norms, state_errors
@@ -38,10 +39,11 @@ from taylor_verify.judge.floor.attainable import (
     orbit_of_run,
 )
 from taylor_verify.judge.floor.moves import Moves
-from taylor_verify.judge.velocities import has_velocities, velocity
+from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.quantities import GROUPS, VELOCITIES
+from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Clock, Motion
+from taylor_verify.scenes.mpfr import in_mpfr, precision
 from taylor_verify.scenes.named_numbers import Part, Shape, Value
 from taylor_verify.scenes.scene import Scene
 
@@ -79,8 +81,8 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     scene = replace(given, clock=Clock(given.clock.start, instants))
     digits, numbers = truth_digits(rung.bits, _MORE_DIGITS), len(_numbers(scene))
     with mp.workprec(working_bits(rung.bits)):
-        here = _motion(scene, digits)
-        moved = [_squares(scene, here, _motion(s, digits)) for s in _moved(scene, rung)]
+        gates = _Gates(scene, _motion(scene, digits))
+        moved = [gates.squares(_motion(s, digits)) for s in _moved(scene, rung)]
         # Single changes are summed, random draws are averaged.
         draws = 1 if numbers <= _MOST_DRAWS else len(moved)
         names = moved[0] if moved else ()
@@ -92,7 +94,7 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
         if not all(rung.holds(t) for t in instants):
             later = tuple(t * (1 + rung.unit_roundoff) for t in instants)
             late = replace(scene, clock=Clock(scene.clock.start, later))
-            for name, squares in _squares(scene, here, _motion(late, digits)).items():
+            for name, squares in gates.squares(_motion(late, digits)).items():
                 total[name] = total.get(name, 0.0) + squares
             words += ", and every time"
     return InputRounding(words, _at_samples(total, nodes, len(given.clock.instants)))
@@ -109,13 +111,13 @@ def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
     changes = [partial(_with_one, given, place) for place in _numbers(given)]
     with mp.workprec(working_bits(rung.bits)):
         moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
-        here = moves.here(rows)
-        draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
+        gates = _Gates(scene, moves.here(rows))
+        draws = [gates.squares(motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
         parts = "body and start" if given.body.loads is None else "body, loads and start"
         words = f"each of the {moves.count} numbers of {parts} that are not zero"
         if not all(rung.holds(t) for t in instants):
-            for name, squares in _squares(scene, here, moves.late(rows, roundoff)).items():
+            for name, squares in gates.squares(moves.late(rows, roundoff)).items():
                 total[name] = total[name] + squares
             words += ", and every time"
     return InputRounding(words, _at_samples(total, nodes, len(given.clock.instants)))
@@ -135,20 +137,45 @@ def _with_one(scene: Scene, place: Place, change: Fraction) -> Scene:
     return _with_factors(scene, {place: 1 + change})
 
 
-def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
-    """Return the squared change of every gate's quantity by one move, in the units of the gates."""
-    changes = {e.quantity: e.values for e in state_errors(scene, here, there)}
-    both = here, there
-    here, there = (without_damping(scene, motion, scene.clock.elapsed) for motion in (here, there))
-    for invariant in invariants(scene):
-        change = invariant.value(there) - invariant.value(here)
-        sizes = norms(change) if change.ndim > 1 else abs(change)
-        changes[invariant.name] = sizes / invariant.scale(here)
-    if has_velocities(scene.body):
-        for group in VELOCITIES:
-            before, after = (velocity(group, scene.body, m.quantities) for m in both)
-            changes[GROUPS[group].quantity] = norms(after - before) / (max(norms(before)) or 1)
-    return {name: values.astype(float) ** 2 for name, values in changes.items()}
+class _Gates:
+    """The quantities that gates compare, beside the exact motion ``here`` of a scene.
+
+    To be used at the ambient precision at which it was made.
+    """
+
+    def __init__(self, scene: Scene, here: Motion) -> None:
+        self._scene, self._here, self._invariants = scene, here, invariants(scene)
+        self._conserved = self._conserved_along(here)
+        self._velocities = self._velocities_along(here)
+
+    def squares(self, there: Motion) -> dict[str, Floats]:
+        """Return the squared change of every quantity by one move, in the units of the gates."""
+        states = state_errors(self._scene, self._here, there)
+        changes = {each.quantity: each.values for each in states}
+        with precision():
+            for name, (values, _) in self._conserved_along(there).items():
+                before, scale = self._conserved[name]
+                change = values - before
+                changes[name] = (row_norms(change) if change.ndim > 1 else abs(change)) / scale
+        for name, after in self._velocities_along(there).items():
+            before = self._velocities[name]
+            changes[name] = norms(after - before) / (max(norms(before)) or 1)
+        return {name: values.astype(float) ** 2 for name, values in changes.items()}
+
+    def _conserved_along(self, motion: Motion) -> dict[str, tuple[Any, Any]]:
+        """The values and the scale of each conserved quantity, in the numbers of MPFR."""
+        with precision():
+            elapsed = self._scene.clock.elapsed
+            undamped = without_damping(self._scene, in_mpfr(motion), elapsed)
+            return {
+                each.name: (each.value(undamped), each.scale(undamped)) for each in self._invariants
+            }
+
+    def _velocities_along(self, motion: Motion) -> dict[str, Any]:
+        if not has_velocities(self._scene.body):
+            return {}
+        rows = velocities(self._scene.body, motion.quantities)
+        return {GROUPS[group].quantity: values for group, values in rows.items()}
 
 
 def _motion(scene: Scene, digits: int) -> Motion:
