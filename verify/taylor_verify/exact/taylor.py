@@ -13,9 +13,8 @@ from functools import cached_property
 from math import ceil, log2
 from typing import Any, Final, final
 
-from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure.course import Course
-from taylor_verify.exact.enclosure.loaded import posed
+from taylor_verify.exact.enclosure.loaded import LoadedBody, body_of
 from taylor_verify.exact.enclosure.stopping import MOST_STEPS, Unreached
 from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.enclosure.walk import Row
@@ -37,19 +36,23 @@ class Enclosing(Proving):
     scene: Scene
 
     @cached_property
-    def _system(self) -> System:
-        return posed(self.scene)
+    def _body(self) -> LoadedBody:
+        return body_of(self.scene)
 
-    def _system_until(self, time: Fraction) -> System:
-        """The system as far as an elapsed time; stairs of floor are listed so far."""
+    @cached_property
+    def _system(self) -> System:
+        return self._body.system()
+
+    def _body_until(self, time: Fraction) -> LoadedBody:
+        """The body as far as an elapsed time; stairs of floor are listed so far."""
         loads = self.scene.body.loads
         if loads is None or (further := loads.reaching(time)) is loads:
-            return self._system
+            return self._body
         try:
             _ = further.switches
         except ValueError as fault:
             raise Unreached(str(fault), time) from None
-        return posed(replace(self.scene, body=self.scene.body.with_loads(further)))
+        return body_of(replace(self.scene, body=self.scene.body.with_loads(further)))
 
     def _rounding_bits(self, elapsed: Sequence[Fraction]) -> int:
         """The bits that are rounded away in the steps from instant to instant, beyond those of others."""
@@ -96,7 +99,7 @@ class TaylorSolution(Enclosing):
     most_steps: int = MOST_STEPS
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        system = self._system_until(max(times.values(), key=abs))
+        system = self._body_until(max(times.values(), key=abs)).system()
         course = Course.of(system, system.start_balls(), bits, most_bits)
         course = replace(course, most_steps=self.most_steps, begin=self.scene.clock.start)
         yield from rows_of(course, times)
@@ -144,24 +147,13 @@ class _Arcs(Enclosing):
     own: tuple[Mapping[str, Vector], ...]
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
-        system = self._system
+        begins = self.begins or [Fraction(0)] * len(self.starts)
+        body = self._body_until(max((begins[k] + span for k, span in times.items()), key=abs))
         for number, span in times.items():
-            start, begin = self.starts[number], self.begins[number] if self.begins else Fraction(0)
-            if system.size > len(start.moving):
-                # The frame counts from the start of its own arc.
-                system = posed(self._arc_scene(number, begin + span))
-                state = system.start_balls(begin)
-            else:
-                state = balls(kind_of(self.scene.body).state(start))
+            own = self.own[number] if self.own else {}
+            # The frame counts from the start of its own arc.
+            system = body.starting(self.starts[number], own).system()
+            state = system.start_balls(begins[number])
             course = Course.of(system, state, bits, most_bits)
-            arc = replace(course, origin=begin, has_values=True)
+            arc = replace(course, origin=begins[number], has_values=True)
             yield number, next(arc.rows([span]))[1] if span else arc.first_row()
-
-    def _arc_scene(self, number: int, end: Fraction) -> Scene:
-        """The scene with the start of an arc, and stairs of floor as far as its end."""
-        scene = replace(self.scene, initial=self.starts[number])
-        if scene.body.loads is None:
-            return scene
-        loads = scene.body.loads.reaching(end)
-        loads = loads.starting(self.own[number]) if self.own else loads
-        return replace(scene, body=scene.body.with_loads(loads))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from fractions import Fraction
+from functools import cached_property
 
 from taylor_verify.exact.enclosure.lowering import Lowering
 from taylor_verify.exact.enclosure.tape import Graph, Sum, total
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.scenes.loads.vocabulary import QUATERNION, ROTATION
 from taylor_verify.scenes.scene import Scene
 
 
@@ -29,10 +31,10 @@ class Frame:
     ) -> None:
         self._graph, self._scene = graph, scene
         self._spin, self._velocity, self._turn, self._centre = spin, velocity, turn, centre
-        self.rotation = self._of_turn() if turn else []
         self._current = scene.body.loads.current if scene.body.loads is not None else ZERO_VECTOR
 
-    def _of_turn(self) -> list[list[Sum]]:
+    @cached_property
+    def rotation(self) -> list[list[Sum]]:
         """R = R_0 R(e)."""
         graph, e = self._graph, self._turn
         pairs = {(i, j): graph.product(e[i], e[j]) for i in range(4) for j in range(i, 4)}
@@ -66,11 +68,12 @@ class Frame:
             for i in range(3)
         ]
 
-    def inputs(self) -> dict[str, Sum]:
-        inputs: dict[str, Sum] = {}
-        if self._turn:
-            inputs |= {f"r{i + 1}{j + 1}": self.rotation[i][j] for i in range(3) for j in range(3)}
-            inputs |= {f"q{i}": self._quaternion(i) for i in range(4)}
+    def inputs(self, read: Container[str]) -> dict[str, Sum]:
+        """The inputs of loads that read the frame: the nodes of no others are made."""
+        inputs = {
+            name: self.rotation[k // 3][k % 3] for k, name in enumerate(ROTATION) if name in read
+        }
+        inputs |= {name: self._quaternion(i) for i, name in enumerate(QUATERNION) if name in read}
         return inputs | named("c", self._centre)
 
     def _quaternion(self, i: int) -> Sum:

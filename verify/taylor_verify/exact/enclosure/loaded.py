@@ -10,7 +10,8 @@ omega = K (H - h): so no derivative of h is needed, which may have kinks.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -30,22 +31,36 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Instant
 from taylor_verify.scenes.loads.steps import needed, text_of
+from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
 
 
 def posed(scene: Scene) -> System:
     """The equations of a scene's body, and where its motion begins."""
-    return LoadedBody(scene, scene.body.loads or Loads(scene.model, ())).system()
+    return body_of(scene).system()
+
+
+def body_of(scene: Scene) -> LoadedBody:
+    """The body of a scene with its loads, if it has any."""
+    return LoadedBody(scene, scene.body.loads or Loads(scene.model, ()))
 
 
 class LoadedBody:
     """The tapes of one scene, each made when a motion comes to its piece of time.
 
-    ``orders`` are those of the rates of change that functions of the motion are wanted with.
+    ``orders`` are those of the rates of change that functions of the motion are wanted with. ``own`` are
+    the states of the scene's own at the start, by their names.
     """
 
-    def __init__(self, scene: Scene, loads: Loads, orders: int = 0) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        loads: Loads,
+        orders: int = 0,
+        own: Mapping[str, Vector] | None = None,
+    ) -> None:
         self._scene, self._loads, self._orders = scene, loads, orders
+        self._own = {s.name: s.start for s in loads.states} if own is None else own
         self._kind = kind_of(scene.body)
         self._layout = Layout(
             size=len(self._kind.state(scene.initial)),
@@ -57,7 +72,15 @@ class LoadedBody:
         # Steps take long to hash, as tapes are looked up by them.
         self._tapes_from: dict[Fraction | None, PieceTapes] = {}
 
+    def starting(self, initial: State, own: Mapping[str, Vector]) -> LoadedBody:
+        """The same body from another start; R_0 stands in the tapes where something reads the attitude."""
+        other = LoadedBody(replace(self._scene, initial=initial), self._loads, self._orders, own)
+        if not (self._loads.reads_attitude or self._layout.travels):
+            other._tapes, other._tapes_from = self._tapes, self._tapes_from
+        return other
+
     def system(self) -> System:
+        """The equations, and where the motion begins."""
         loads = self._loads
         return System(
             pieces=self.piece,
@@ -84,7 +107,7 @@ class LoadedBody:
         if layout.travels:
             start += self._kind.centre(initial) or ()
         for state in layout.states:
-            start += state.start or (Fraction(0),) * len(state.components)
+            start += self._own.get(state.name) or (Fraction(0),) * len(state.components)
         return start
 
     def _begin(self, time: Fraction) -> list[arb]:

@@ -36,7 +36,8 @@ class PieceTapes:
         self._spin, self._velocity = self._velocities()
         turn, centre = layout.turn(states), layout.centre(states)
         self._frame = Frame(self._graph, scene, self._spin, self._velocity, turn, centre)
-        self._inputs |= {**named("w", self._spin), **self._frame.inputs()}
+        read = {step.name for step in piece.steps if step.operation == "input"}
+        self._inputs |= {**named("w", self._spin), **self._frame.inputs(read)}
         if self._velocity:
             self._inputs |= named("u", self._velocity)
             self._inputs |= named("x", self._z[:3]) | named("y", self._z[3:])
