@@ -5,7 +5,7 @@ It shares nothing with the equations that a solver is given.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -24,7 +24,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
 from taylor_verify.numbers.tensors import Vector
-from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+from taylor_verify.scenes.mpfr import precision, real, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
@@ -180,11 +180,6 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
             turns = moved_R @ R.transpose(0, 2, 1)
             change["attitude"] = to_mpf((turns[:, k, j] - turns[:, j, k]) / 2)
     return {name: change[name] / step for name in before}
-
-
-def real(matrix: Iterable[Iterable[Any]]) -> Array:
-    """The matrix as mpf, rounded at the ambient precision."""
-    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
 
 
 def _balls(matrix: Array) -> arb_mat:
