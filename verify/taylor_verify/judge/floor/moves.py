@@ -10,7 +10,7 @@ where g_p is p dF/dp. Exact motions beside this one would each cost as much as t
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any, Final
 
@@ -29,19 +29,21 @@ from taylor_verify.scenes.scene import Scene
 Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # So small a change of a number shows the derivative to six digits.
-_CHANGE: Final = Fraction(1, 2**20)
+CHANGE: Final = Fraction(1, 2**20)
 _DRAWS: Final = 8
 
 
 class Moves:
-    """The motions beside an orbit, each of a number that is changed, at some of its times."""
+    """The motions beside an orbit, each of a number that is changed, at some of its times.
 
-    def __init__(self, path: Path, changed: Sequence[Callable[[Fraction], Scene]]) -> None:
+    Each of the scenes ``changed`` has a number of body or start that is larger by the part CHANGE of it.
+    """
+
+    def __init__(self, path: Path, changed: Iterable[Scene]) -> None:
         self._path, self._along = path, Along(path)
         kind = kind_of(path.scene.body)
         self._momentum = kind.momentum_matrix(path.scene.body).astype(float)
-        responses = [self._of_scene(change(_CHANGE)) for change in changed]
-        self._responses = [*responses, *self._of_numbers()]
+        self._responses = [*map(self._of_scene, changed), *self._of_numbers()]
 
     @property
     def count(self) -> int:
@@ -121,7 +123,7 @@ class Moves:
                 along.rates() for along in (self._along, Along(self._path, changed.body))
             )
             push = self._errors(*(b - a for a, b in zip(here, there, strict=True)))
-        return self._carried(first, push) / float(_CHANGE)
+        return self._carried(first, push) / float(CHANGE)
 
     def _of_numbers(self) -> Iterator[Floats]:
         """Yield the response to each number of the texts, and of the starts of own states."""

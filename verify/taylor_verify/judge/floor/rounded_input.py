@@ -16,7 +16,6 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -37,7 +36,7 @@ from taylor_verify.judge.floor.attainable import (
     orbit_of,
     orbit_of_run,
 )
-from taylor_verify.judge.floor.moves import Moves
+from taylor_verify.judge.floor.moves import CHANGE, Moves
 from taylor_verify.judge.velocities import has_velocities, velocity
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
@@ -106,9 +105,9 @@ def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
     rows = [places[given.clock.elapsed[k]] for k in nodes]
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
-    changes = [partial(_with_one, given, place) for place in _numbers(given)]
+    changed = [_with_factors(given, {place: 1 + CHANGE}) for place in _numbers(given)]
     with mp.workprec(working_bits(rung.bits)):
-        moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
+        moves, roundoff = Moves(path, changed), float(rung.unit_roundoff)
         here = moves.here(rows)
         draws = [_squares(scene, here, motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
@@ -129,10 +128,6 @@ def _at_samples(
     return {
         name: larger_neighbour(np.sqrt(values), places, samples) for name, values in squares.items()
     }
-
-
-def _with_one(scene: Scene, place: Place, change: Fraction) -> Scene:
-    return _with_factors(scene, {place: 1 + change})
 
 
 def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
