@@ -173,6 +173,7 @@ class Drifts:
         """
         scene, end, last = self._arc_scene, self._end, [len(elapsed) - 1]
         begins = (end.time, *elapsed[:-1])
+        spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
         with precision():
             earlier, beside = (
                 joined(before, rows).at(range(len(elapsed)))
@@ -180,7 +181,7 @@ class Drifts:
             )
             arc_ends = neighbours(
                 scene,
-                [*begins, *elapsed],
+                spans,
                 (earlier, truth),
                 beside,
                 self._digits,
@@ -188,7 +189,6 @@ class Drifts:
             )
         if arc_ends is None:
             states = _states(scene, own)
-            spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
             starts = [end.state, *states[:-1]]
             arc_ends = in_mpfr(arcs(scene, starts, spans, self._digits, begins))
         (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
