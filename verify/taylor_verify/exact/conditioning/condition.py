@@ -31,7 +31,6 @@ from taylor_verify.exact.conditioning.momentum import momentum
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.quadratic_forms import Floats
-from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import float_text, floor_log2
@@ -328,10 +327,7 @@ def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
 
 def _is_short(scene: Scene, flow: Flow) -> bool:
     """Return True if steps of float64 along the orbit cost less than four or seven orbits beside it."""
-    kind = kind_of(scene.body)
-    z = kind.momentum(scene.body, kind.state(scene.initial))
-    counted = np.array(
-        [float(value / unit) for value, unit in zip(z, flow.components, strict=True)]
-    )
+    pairs = zip(momentum(scene).value, flow.components, strict=True)
+    counted = np.array([float(value / unit) for value, unit in pairs])
     rate = float(flow.rate(counted)) / float(flow.time)
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)
