@@ -170,16 +170,14 @@ def _columns(scene: Scene, groups: Iterable[str]) -> str:
 
 def _untracked(scene: Scene) -> set[str]:
     """Return the quantities that the scene could track but does not track."""
-    return {*TRACKED[scene.model], *_own_states(scene)} - {each.name for each in scene.tracked}
-
-
-def _own_states(scene: Scene) -> Iterator[str]:
-    return (state.name for state in scene.own_states)
+    own = (state.name for state in scene.own_states)
+    return {*TRACKED[scene.model], *own} - {each.name for each in scene.tracked}
 
 
 def _known(scene: Scene) -> list[str]:
     """Return the groups that a file for this model may have; for a solid in a fluid also its velocities."""
-    quantities = {MAIN[scene.model], *TRACKED[scene.model], *_own_states(scene)}
+    own = (state.name for state in scene.own_states)
+    quantities = {MAIN[scene.model], *TRACKED[scene.model], *own}
     velocities = VELOCITIES if scene.model == "kirchhoff" else ()
     every = scene.known_groups
     return [n for n, group in every.items() if group.quantity in quantities or n in velocities]
