@@ -190,13 +190,10 @@ class _Gates:
         """
         excess = self.measured.excess
         if excess is not None and np.isfinite(excess).all():
-            gate = Gate(self.run, *self.floor.lengths(excess, self._has_matrices))
+            has_matrices = "quaternion" not in self.run.trajectory.quantities
+            gate = Gate(self.run, *self.floor.lengths(excess, has_matrices))
             if gate.finding.status is Status.FAIL:
                 yield gate
-
-    @property
-    def _has_matrices(self) -> bool:
-        return "quaternion" not in self.run.trajectory.quantities
 
     def velocities(self) -> Iterator[Gate]:
         for one in self.measured.velocities:
