@@ -17,7 +17,6 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
-from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
 from taylor_verify.exact.quadratic_forms import Floats
@@ -98,7 +97,7 @@ def led(scene: Scene) -> Floats | None:
     every = Clock(scene.clock.start, tuple(sorted({*TIMES, *ENDS})))
     assert not scene.clock.start
     exact = Linearised(replace(scene, clock=every), 20)
-    return exact.derivatives(Flow.of(scene), TIMES, ENDS)
+    return exact.derivatives(TIMES, ENDS)
 
 
 def distance(one: Motion, other: Motion) -> mpf:

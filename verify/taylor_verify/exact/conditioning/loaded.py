@@ -59,12 +59,12 @@ def truth(scene: Scene, digits: int) -> Solution:
     return Linearised(scene, digits)
 
 
-def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
+def enclosed(scene: Scene, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
     """Return the derivative of the motion between these times, the first of which is the start.
 
     Raises Unsettled where the motion is not reached.
     """
-    return _run(scene, tuple(elapsed), digits).steps(flow)
+    return _run(scene, tuple(elapsed), digits).steps()
 
 
 @final
@@ -85,11 +85,9 @@ class Linearised(Solution):
         motion = _run(self.scene, self._times, self.digits).whole
         return motion.at([self._places[time] for time in elapsed])
 
-    def derivatives(
-        self, flow: Flow, begins: Sequence[Fraction], ends: Sequence[Fraction]
-    ) -> Floats:
+    def derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats:
         """Return the derivative of the motion over arcs between samples, or from the start."""
-        steps = enclosed(self.scene, flow, self._times, self.digits).steps
+        steps = enclosed(self.scene, self._times, self.digits).steps
         places = ((self._places[a], self._places[b]) for a, b in zip(begins, ends, strict=True))
         return np.array([products(steps[a:b])[-1] for a, b in places])
 
@@ -132,11 +130,11 @@ class _Run(Enclosing):
         """The motion at all times."""
         return self.motion(self.elapsed, self.digits)
 
-    def steps(self, flow: Flow) -> Steps:
-        """The derivative between the times, in the units of a flow."""
+    def steps(self) -> Steps:
+        """The derivative between the times, in the units of the scene's flow."""
         _ = self.whole
         states = np.array([point.state for point, _ in self.visited])
-        frame = _Frame(self.scene, flow, self._system.own, states)
+        frame = _Frame(self.scene, self._system.own, states)
         matrices = [
             frame.counted(begin, end, derivative)
             for (begin, _), (end, derivative) in pairwise(self.visited)
@@ -197,10 +195,10 @@ def _floats(derivative: arb_mat) -> Floats:
 
 
 class _Frame:
-    """The states of the enclosure as momenta, turns, centres and own states, in the units of a flow."""
+    """The states of the enclosure as momenta, turns, centres and own states, in the units of the flow."""
 
-    def __init__(self, scene: Scene, flow: Flow, own: Mapping[str, range], states: Floats) -> None:
-        body, kind = scene.body, kind_of(scene.body)
+    def __init__(self, scene: Scene, own: Mapping[str, range], states: Floats) -> None:
+        body, kind, flow = scene.body, kind_of(scene.body), Flow.of(scene)
         moved = frame(scene)
         self._turns, self._travels = bool(moved), "centre" in moved
         self._units = np.array([float(unit) for unit in flow.components])

@@ -8,7 +8,8 @@ from fractions import Fraction
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
-from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.numbers.tensors import Vector
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.scene import Scene
 
 
@@ -36,15 +37,16 @@ def momentum(scene: Scene) -> Momentum:
     """Return the initial momentum of a scene."""
     kind, body = kind_of(scene.body), scene.body
     value = kind.momentum(body, kind.state(scene.initial))
-    return Momentum(scene, value, _block_units(value, kind.momentum_energy(body)))
+    return Momentum(scene, value, block_units(body, value))
 
 
-def _block_units(z: Vector, energy: Matrix) -> Vector:
-    """Powers of two near the size of the block of each component of a momentum.
+def block_units(body: Body, z: Vector) -> Vector:
+    """Return powers of two near the size of the block of each component of a momentum.
 
     A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
     at rest.
     """
+    energy = kind_of(body).momentum_energy(body)
     twice_energy = tensors.dot(z, tensors.apply(energy, z))
     units: Vector = ()
     for first in range(0, len(z), 3):

@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
@@ -198,9 +197,7 @@ class Drifts:
     def _derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats | None:
         """Return the derivatives of the motion over arcs under written loads; None where none are known."""
         exact = truth(self._scene, self._digits)
-        if not isinstance(exact, Linearised):
-            return None
-        return exact.derivatives(Flow.of(self._scene), begins, ends)
+        return exact.derivatives(begins, ends) if isinstance(exact, Linearised) else None
 
 
 # The arcs.
