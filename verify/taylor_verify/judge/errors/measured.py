@@ -29,12 +29,12 @@ from taylor_verify.judge.errors.state import (
     Errors,
     Floats,
     States,
+    VelocityErrors,
     in_doubles,
     joined,
     norms,
     state_distances,
 )
-from taylor_verify.judge.errors.velocity import VelocityErrors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import VELOCITIES, state_groups
