@@ -70,8 +70,6 @@ def integrated(
 
 def _refined(elapsed: Sequence[Fraction], parts: int) -> list[Fraction]:
     """Return these times, and others that divide each span between them into so many equal parts."""
-    if parts == 1:
-        return list(elapsed)
     points = [elapsed[0]]
     for begin, end in pairwise(elapsed):
         points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
