@@ -209,9 +209,8 @@ class _Gates:
         motion = exact.motion(given.clock.elapsed, digits)
         roundoff = float(self.run.problem.rung.unit_roundoff)
         answer = self.run.trajectory.quantities
-        for law in Laws(given, motion, orbit, answer, bits, roundoff):
-            terms = Reason(floor=RoundoffFloor(Carried.LAW))
-            yield Gate(self.run, law.errors, law.attainable, terms)
+        for errors, attainable in Laws(given, motion, orbit, answer, bits, roundoff):
+            yield Gate(self.run, errors, attainable, Reason(floor=RoundoffFloor(Carried.LAW)))
 
     def _terms(self, errors: Errors, attainable: Floats, carried: Carried) -> Reason:
         terms = self.floor.terms(attainable, errors, carried)
