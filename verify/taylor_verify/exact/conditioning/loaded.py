@@ -106,14 +106,10 @@ def _run(scene: Scene, elapsed: tuple[Fraction, ...], digits: int) -> _Run:
 
 
 class _Point(NamedTuple):
-    """The state at one time, and the derivative of the wheels' momentum by own states, as float64.
-
-    Where it ``has_wheels`` the enclosure follows H = I omega + h, though omega stands in the state.
-    """
+    """The state at one time, and the derivative of the wheels' momentum by own states, as float64."""
 
     state: Floats
     wheels: Floats
-    has_wheels: bool
 
 
 @final
@@ -172,11 +168,11 @@ class _Run(Enclosing):
         d, own = len(self.scene.initial.moving), [*chain(*self._system.own.values())]
         image = self._system.pieces(time, self.elapsed[-1] >= 0).image
         if image is None:
-            return _Point(state, np.zeros((d, len(own))), has_wheels=False)
+            return _Point(state, np.zeros((d, len(own))))
         # omega = K (H - h), and the wheels h do not depend on H.
         slopes = _floats(Image(image, Box.about(row.state), time).outputs().slopes)
         momentum = kind_of(self.scene.body).momentum_matrix(self.scene.body).astype(float)
-        return _Point(state, -momentum @ slopes[:d, own], has_wheels=True)
+        return _Point(state, -momentum @ slopes[:d, own])
 
 
 def _widened(start: Sequence[arb], bits: int) -> list[arb]:
@@ -211,7 +207,10 @@ class _Frame:
         self._own_counts = np.diag(np.array(counts))
         self.size = d + 6 + len(self._own)
         self._momentum = kind.momentum_matrix(body).astype(float)
-        self._state = kind.state_matrix(body).astype(float)
+        self._into_state, self._from_state = kind.state_matrix(body).astype(float), self._momentum
+        if body.loads is not None and body.loads.rotor:
+            # The enclosure follows H = I omega + h, though omega stands in the state.
+            self._into_state = self._from_state = np.eye(d)
         self._start = np.array(rotation_matrix(scene.initial.attitude), dtype=float)
 
     def counted(self, begin: _Point, end: _Point, derivative: Floats) -> Floats:
@@ -225,7 +224,7 @@ class _Frame:
         """Return the matrix from errors of momentum, turn, centre and own states to those of the state."""
         state, d = point.state, self._d
         columns = np.zeros((len(state), self.size))
-        columns[:d, :d] = (np.eye(d) if point.has_wheels else self._state) * self._units
+        columns[:d, :d] = self._into_state * self._units
         columns[:d, d + 6 :] = point.wheels @ self._own_counts
         columns[self._own, d + 6 :] = self._own_counts
         if self._turns:
@@ -238,7 +237,7 @@ class _Frame:
         """Return the matrix from changes of the state to the errors that a path has."""
         state, d = point.state, self._d
         rows = np.zeros((self.size, len(state)))
-        rows[:d, :d] = np.eye(d) if point.has_wheels else self._momentum
+        rows[:d, :d] = self._from_state
         rows[:d, self._own] -= point.wheels
         rows[:d] /= self._units[:, None]
         rows[d + 6 :, self._own] = np.linalg.inv(self._own_counts)
