@@ -27,7 +27,7 @@ import numpy as np
 from taylor_verify.exact.conditioning.by_differences import settled
 from taylor_verify.exact.conditioning.linearised import Flow, Steps
 from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, is_of_run
-from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.momentum import momentum, moved
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.quadratic_forms import Floats
@@ -294,9 +294,8 @@ def differs_dearly(scene: Scene) -> bool:
 
     One integration along it costs less. A start beside it may leave the closed form: Weber's loses FG = 0.
     """
-    start = momentum(scene)
-    beside = (start.moved(j, unit) for j, unit in enumerate(start.units))
-    return any(solution(start_scene).route == "taylor" for start_scene in (scene, *beside))
+    beside = (moved(scene, j, Fraction(1)) for j in range(len(scene.initial.moving)))
+    return any(solution(start).route == "taylor" for start in (scene, *beside))
 
 
 def sharp(scene: Scene, points: Sequence[Fraction], least: int = 0) -> Path:
@@ -332,7 +331,7 @@ def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
 def _is_short(scene: Scene) -> bool:
     """Return True if steps of float64 along the orbit cost less than four or seven orbits beside it."""
     flow = Flow.of(scene)
-    pairs = zip(momentum(scene).value, flow.components, strict=True)
+    pairs = zip(momentum(scene.body, scene.initial), flow.components, strict=True)
     counted = np.array([float(value / unit) for value, unit in pairs])
     rate = float(flow.rate(counted)) / float(flow.time)
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)

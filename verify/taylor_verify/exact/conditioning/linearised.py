@@ -124,8 +124,7 @@ class Flow:
 
 @lru_cache(maxsize=16)
 def _flow(body: Body, initial: State) -> Flow:
-    kind = kind_of(body)
-    units = block_units(body, kind.momentum(body, kind.state(initial)))
+    kind, units = kind_of(body), block_units(body, initial)
     equations = kind.momentum_equations(body)
     unit = exact(units)
     scaled = in_units(equations.hessian, 1 / unit, unit, unit)
