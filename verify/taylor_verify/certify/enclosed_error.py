@@ -20,6 +20,7 @@ from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.event_times import parts_of, system
 from taylor_verify.numbers.irrational import rational
+from taylor_verify.numbers.rotation import conjugate, product
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
 from taylor_verify.scenes.scene import Scene
@@ -192,14 +193,7 @@ def _turned(
 
     The turn between both frames is 2 atan of their quotient.
     """
-    a, b, c, d = truth
-    w, x, y, z = answer
-    scalar = a * w + b * x + c * y + d * z
-    vector = [
-        a * x - b * w - c * z + d * y,
-        a * y + b * z - c * w - d * x,
-        a * z - b * y + c * x - d * w,
-    ]
+    scalar, *vector = product(conjugate(truth), answer)
     length = sum((_size(p) for p in answer), arb(0))
     missed = (sum(beside, arb(0)) * length).abs_upper()
     entries = scalar.coeffs() or [arb(0)]
