@@ -192,14 +192,8 @@ def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
 
 def _least(bits: int) -> float:
     """Return the least normal number of the format with this many bits; 0 for MPFR's numbers."""
-    return next(
-        (
-            2.0 ** max(number_format.emin, -1074)
-            for number_format in FORMATS.values()
-            if number_format.bits == bits
-        ),
-        0.0,
-    )
+    exponents = {each.bits: each.emin for each in FORMATS.values()}
+    return 2.0 ** max(exponents[bits], -1074) if bits in exponents else 0.0
 
 
 def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:
