@@ -176,12 +176,11 @@ def test_variational_equations_agree_with_differences(start: Scene) -> None:
     To four digits: that is what the variational equations are integrated to.
     """
     instants = times(0, "0.5", "1.25", 3, 10)
-    flow = Flow.of(start)
-    steps = integrated(start, flow, instants)
+    steps = integrated(start, instants)
     assert steps is not None
-    by_steps = Path(start, flow, instants, steps)
-    differences = derivatives(start, instants, 12, 36).steps(flow)[0]
-    by_differences = Path(start, flow, instants, differences)
+    by_steps = Path(start, instants, steps)
+    differences = derivatives(start, instants, 12, 36).steps(by_steps.flow)[0]
+    by_differences = Path(start, instants, differences)
     assert np.allclose(steps.steps, differences.steps, rtol=1e-4, atol=1e-4)
     for out in (*by_steps.blocks, *(["omega"] if start.model == "euler" else [])):
         for into in by_steps.blocks:
@@ -193,13 +192,13 @@ def test_errors_that_shrink_again_are_as_small_by_steps_as_by_differences() -> N
     """Errors grow by 3e8 in a fall, and shrink to a thousandth of that; rough steps would hide it."""
     start = load("extremes/kirchhoff-unstable-spin-1e-8")
     by_steps = path(start)
-    points, flow = by_steps.elapsed, by_steps.flow
-    by_differences = sharp(start, flow, points, least=50)
-    rough = integrated(start, flow, points, more_digits=9, is_rough=True)
+    points = by_steps.elapsed
+    by_differences = sharp(start, points, least=50)
+    rough = integrated(start, points, more_digits=9, is_rough=True)
     assert (by_steps.exponent, by_differences.exponent) == (0, 50)
     assert rough is not None
     unit = np.ones((len(points), 3 * len(by_steps.blocks)))
-    by_rough_steps = Path(start, flow, points, rough).gathered(unit)
+    by_rough_steps = Path(start, points, rough).gathered(unit)
     for name, expected in by_differences.gathered(unit).items():
         assert np.allclose(by_steps.gathered(unit)[name], expected, rtol=1e-2), name
         assert by_rough_steps[name][-1] > 10 * expected[-1], name
@@ -210,9 +209,9 @@ def test_steps_that_cannot_hold_what_shrinks_are_told_apart() -> None:
     """Errors grow by 2e20 and shrink by more than float64 has digits: differences take over there."""
     start = load("extremes/euler-unstable-axis-1e-20")
     condition = path(start)
-    steps = integrated(start, condition.flow, condition.elapsed, more_digits=21)
+    steps = integrated(start, condition.elapsed, more_digits=21)
     assert steps is not None
-    followed = Path(start, condition.flow, condition.elapsed, steps)
+    followed = Path(start, condition.elapsed, steps)
     assert not followed.is_resolved
     assert condition.exponent > 60
     assert np.allclose(followed.growth[:60], condition.growth[:60], rtol=1e-6)
@@ -231,7 +230,7 @@ def test_the_first_differences_tell_how_small_the_next_must_be() -> None:
     """Errors grow by 1e41 in proportion to time; the differences chosen give what those of 10^-250 give."""
     start = load("extremes/kirchhoff-linear-1e20")
     condition = path(start)
-    smallest_differences = sharp(start, condition.flow, condition.elapsed, least=250)
+    smallest_differences = sharp(start, condition.elapsed, least=250)
     assert 82 < condition.exponent < smallest_differences.exponent == 250
     for name in ("linear_impulse", "angular_impulse"):
         for into in ("linear_impulse", "angular_impulse"):
@@ -246,7 +245,7 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     turned = product(product(turn, diagonal(vector(1, 2, 3))), transpose(turn))
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
-    assert integrated(saddle, Flow.of(saddle), times(0, 400)) is None
+    assert integrated(saddle, times(0, 400)) is None
 
 
 @pytest.mark.parametrize("heavier", [Fraction(2) ** 20, Fraction(2) ** -20])

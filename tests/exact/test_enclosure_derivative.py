@@ -15,6 +15,7 @@ from flint import arb, arb_mat, ctx
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.by_differences import derivatives
 from taylor_verify.exact.conditioning.condition import transition
+from taylor_verify.exact.conditioning.momentum import block_units
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.exact.enclosure.loaded import posed
@@ -106,7 +107,7 @@ def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> 
     differences = derivatives(scene, times, 30, 110)
     for by_steps, sharp in zip(enclosed(scene, times), differences.momentum, strict=True):
         with ctx.workprec(BITS):
-            counted = in_units(differences.units, by_steps)
+            counted = in_units(block_units(scene.body, scene.initial), by_steps)
             size = max(abs(exact_value(entry)) for entry in sharp.flat)
             slack = ball(size * OF_DIFFERENCES).upper()
             for i, row in enumerate(sharp):

@@ -17,7 +17,6 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning import neighbours as module
 from taylor_verify.exact.conditioning.extrapolation import extrapolated
-from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised
 from taylor_verify.exact.conditioning.neighbours import _Arcs, neighbours
 from taylor_verify.exact.quadratic_forms import Floats
@@ -30,6 +29,7 @@ from taylor_verify.scenes.scene import Scene
 
 TIMES = (Fraction(0), Fraction(1, 3), Fraction(3, 2))
 ENDS = (Fraction(2, 5), Fraction(1), Fraction(13, 4))
+SPANS = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
 LOADED = replace(
     kirchhoff(["-u1/4", "c2/9", "-r33/3"], ["-w1/5", "x1*r21", "sin(t)/4"], "4"),
     clock=Clock(Fraction(0), (Fraction(0), Fraction(1), Fraction(13, 4))),
@@ -83,9 +83,7 @@ def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     here = arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES)
     with precision():
         derivatives = led(scene)
-        motion = neighbours(
-            scene, [*TIMES, *ENDS], exact, in_mpfr(here), digits, derivatives=derivatives
-        )
+        motion = neighbours(scene, SPANS, exact, in_mpfr(here), digits, derivatives=derivatives)
     if motion is None:
         return None
     return Motion({name: to_mpf(rows) for name, rows in motion.quantities.items()}, motion.radius)
@@ -99,7 +97,7 @@ def led(scene: Scene) -> Floats | None:
     every = Clock(scene.clock.start, tuple(sorted({*TIMES, *ENDS})))
     assert not scene.clock.start
     exact = Linearised(replace(scene, clock=every), 20)
-    return exact.derivatives(Flow.of(scene), TIMES, ENDS)
+    return exact.derivatives(TIMES, ENDS)
 
 
 def distance(one: Motion, other: Motion) -> mpf:
@@ -118,10 +116,9 @@ def test_they_are_the_enclosed_arcs(name: str, size: str, digits: int) -> None:
     with mp.workdps(DIGITS + 20):
         scene = load(name)
         states = beside(scene, Fraction(size))
-        spans = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
         motion = asked(scene, states, digits)
         assert motion is not None
-        arrived = arcs(scene, states, spans, digits + 10, TIMES)
+        arrived = arcs(scene, states, SPANS, digits + 10, TIMES)
         assert distance(motion, arrived) <= mpf(10) ** -(digits + 3)
 
 
@@ -133,8 +130,7 @@ def test_under_written_loads_a_derivative_leads_there(size: str, is_close: bool)
         motion = asked(LOADED, states, 15)
         assert (motion is not None) is is_close
         if motion is not None:
-            spans = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
-            arrived = arcs(LOADED, states, spans, 30, TIMES)
+            arrived = arcs(LOADED, states, SPANS, 30, TIMES)
             assert 0 < distance(motion, arrived) <= mpf(10) ** -18
 
 
@@ -160,8 +156,8 @@ def test_no_answer_after_too_many_steps() -> None:
         scene = load("euler/constant-moment")
         exact = in_mpfr(solution(scene).motion(TIMES, DIGITS))
         with precision():
-            far = [10**4 * time for time in ENDS]
-            assert neighbours(scene, [*TIMES, *far], (exact, exact), exact, 16) is None
+            far = [10**4 * span for span in SPANS]
+            assert neighbours(scene, far, (exact, exact), exact, 16) is None
 
 
 def test_a_wrong_end_of_the_exact_motion_is_noticed() -> None:
@@ -172,7 +168,7 @@ def test_a_wrong_end_of_the_exact_motion_is_noticed() -> None:
         exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, TIMES)]
         here = in_mpfr(arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES))
         with precision():
-            assert neighbours(scene, [*TIMES, *ENDS], (exact[0], exact[1]), here, 16) is None
+            assert neighbours(scene, SPANS, (exact[0], exact[1]), here, 16) is None
 
 
 def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,9 +184,7 @@ def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_error_of_one_block_is_held_to_that_block() -> None:
     """An error that a large impulse does not notice is too large for a small one beside it."""
     blocks = np.array([[1e-9] * 3 + [1.0] * 3])
-    counted: Any = SimpleNamespace(
-        momentum=lambda _: blocks, counted=lambda z: z, _has_turn=False, _has_centre=False
-    )
+    counted: Any = SimpleNamespace(counted=lambda _: blocks, _has_turn=False, _has_centre=False)
     exact = Motion({}, np.zeros(1))
     for first, is_negligible in ((True, False), (False, True)):
         errors = np.array([[1e-12] * 3 + [0.0] * 3 if first else [0.0] * 3 + [1e-12] * 3])

@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
+from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Settled, Unsettled
-from taylor_verify.judge.errors.drifts import drifts
+from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.state import Arc, Errors, in_doubles, state_errors
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.gates import judge
@@ -186,7 +187,9 @@ def test_balance_of_the_exact_motion_under_load_is_zero() -> None:
     with mp.workdps(40):
         truth = exact.motion(scene.clock.elapsed, 40)
         start = exact.motion([Fraction(0)], 40)
-        for _, errors in drifts(scene, start, truth, truth, truth.quantities, 35):
+        drifts = Drifts(scene, start, 35, invariants(scene))
+        drifts.add(scene.clock.elapsed, truth, truth, truth.quantities)
+        for _, errors in drifts.errors():
             # Three terms of 35 digits each.
             assert all(error <= mpf("1e-33") for error in errors.values)
 
@@ -201,7 +204,9 @@ def test_an_answer_that_runs_away_does_not_hide_its_own_drift() -> None:
         factors = [mp.sqrt(mpf("1.01")), *[mpf(1)] * (len(truth.radius) - 2), mpf(10) ** 28]
         rows = truth["omega"] * np.array(factors, dtype=object)[:, None]
         answer = Motion({"omega": rows}, truth.radius)
-        for _, errors in drifts(scene, start, truth, answer, answer.quantities, 30):
+        drifts = Drifts(scene, start, 30, invariants(scene))
+        drifts.add(scene.clock.elapsed, truth, answer, answer.quantities)
+        for _, errors in drifts.errors():
             assert float(errors.values[0]) == pytest.approx(0.01, rel=1e-9)
             assert float(errors.values[-1]) == pytest.approx(1e56, rel=1e-9)
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
+from itertools import groupby
 from math import asin, atan, hypot, inf, pi, sqrt
-from typing import Final
+from typing import Any, Final
 
 from flint import ctx
 
@@ -20,7 +22,7 @@ from taylor_verify.certify.enclosed_error import (
     errors_of,
     measured_of,
 )
-from taylor_verify.certify.interpolant_faults import Nodes, findings, nodes_of
+from taylor_verify.certify.interpolant_faults import Node, findings, nodes_of
 from taylor_verify.certify.largest import Largest, largest
 from taylor_verify.certify.pieces import Pieces
 from taylor_verify.exact.enclosure.operations import Domain
@@ -28,7 +30,6 @@ from taylor_verify.exact.enclosure.stopping import Coarse
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.records.certificate import Gap, GapKind
 from taylor_verify.records.faults import refusal
-from taylor_verify.records.quantities import Measure
 from taylor_verify.scenes.scene import Scene
 
 _FIRST_BITS: Final = 100
@@ -61,31 +62,31 @@ def certificate_of(scene: Scene, pieces: Pieces, tolerance: float | None) -> Cer
         errors, worst, nodes = _settled(scene, pieces, measured, until)
     except (Unsettled, Domain) as doubt:
         return replace(nothing, because=f"undecided: {doubt} @ {scene.name}")
-    gaps += list(_jumps(measured, nodes, errors))
+    gaps += list(_jumps(errors, nodes))
     bound = {name: each.bound for name, each in worst.items()}
     return Certificate(
         scene.name,
         bound,
         {name: each.at for name, each in worst.items()},
         {name: each.reached for name, each in worst.items()},
-        {m.quantity.name: _rounding(pieces, m, errors) for m in measured},
+        _most(errors, partial(_rounding, pieces)),
         tuple(gaps),
-        findings(measured, nodes, bound, {m.quantity.name: _scales(m, errors) for m in measured}),
+        findings(errors, nodes, bound),
         tolerance,
     )
 
 
 def _settled(
     scene: Scene, pieces: Pieces, measured: Sequence[Measured], until: Fraction
-) -> tuple[Mapping[tuple[str, int], Errors], Mapping[str, Largest], Nodes]:
+) -> tuple[list[Errors], Mapping[str, Largest], list[list[Node]]]:
     """Return errors and their largest values, at a precision at which the truth is narrow enough."""
     bits, stuck, earlier = _FIRST_BITS, False, inf
     while True:
         try:
             with ctx.workprec(bits):
                 errors = errors_of(scene, pieces, measured, until, bits)
-                worst = {m.quantity.name: _largest(m, errors) for m in measured}
-                nodes = nodes_of(pieces, measured, errors)
+                worst = _most(errors, _largest)
+                nodes = [list(nodes_of(pieces, each)) for each in errors]
         except Coarse as reason:
             if bits > _MOST_BITS or (stuck and reason.stuck is not None):
                 raise Unsettled(reason.because or "the motion is lost before its end") from None
@@ -106,51 +107,41 @@ def _reached(scene: Scene, pieces: Pieces, last: Fraction) -> Fraction:
     return min(last, each[-1].end) if last > begin else max(last, each[0].begin)
 
 
-def _largest(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> Largest:
-    """The largest error of a quantity, in its measure."""
-    every = []
-    for k, (group, scale) in enumerate(zip(of.groups, _scales(of, errors), strict=True)):
-        bound, reached, at = largest(errors[of.quantity.name, k].intervals)
-        every.append(Largest(_measure(group, bound / scale), _measure(group, reached / scale), at))
-    return max(every)
+def _most(errors: Sequence[Errors], of: Callable[[Errors], Any]) -> dict[str, Any]:
+    """Return the largest value ``of`` the groups of each quantity, by its name."""
+    by_quantity = groupby(errors, lambda each: each.quantity.name)
+    return {name: max(map(of, groups)) for name, groups in by_quantity}
 
 
-def _measure(group: Sequence[str], error: float) -> float:
-    """Turn an error into the angle that it is, for an attitude."""
-    if tuple(group) == QUATERNION:
+def _largest(errors: Errors) -> Largest:
+    """The largest error of a group of columns, in the measure of its quantity."""
+    bound, reached, at = largest(errors.intervals)
+    return Largest(_measure(errors, bound), _measure(errors, reached), at)
+
+
+def _measure(errors: Errors, size: float) -> float:
+    """Divide an error by its scale, or turn it into the angle that it is, for an attitude."""
+    columns, error = tuple(errors.columns), size / errors.scale
+    if columns == QUATERNION:
         return 2 * atan(error)
-    if tuple(group) == ROTATION:
+    if columns == ROTATION:
         return 2 * asin(min(1.0, error / _ROOT_OF_EIGHT)) if error < _ROOT_OF_EIGHT else pi
     return error
 
 
-def _scales(of: Measured, errors: Mapping[tuple[str, int], Errors]) -> list[float]:
-    """The size of each group by which its errors are counted; 1 where nothing moves."""
-    entries = [errors[of.quantity.name, k] for k, _ in enumerate(of.groups)]
-    match of.quantity.measure:
-        case Measure.VECTORS:
-            return [entry.largest or 1.0 for entry in entries]
-        case Measure.PATH:
-            return [entry.way or 1.0 for entry in entries]
-    return [1.0] * len(entries)
-
-
-def _rounding(pieces: Pieces, of: Measured, errors: Mapping[tuple[str, int], Errors]) -> float:
+def _rounding(pieces: Pieces, errors: Errors) -> float:
     """A bound of what Horner's rule in float64 adds to a value, its argument rounded once."""
     worst = 0.0
-    for group, scale in zip(of.groups, _scales(of, errors), strict=True):
-        for piece in pieces.each:
-            columns = [enumerate(piece.sizes[column]) for column in group]
-            lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
-            worst = max(worst, hypot(*lost) * 2.0**-53 / scale)
+    for piece in pieces.each:
+        columns = [enumerate(piece.sizes[column]) for column in errors.columns]
+        lost = [sum((3 * k + 2) * size for k, size in column) for column in columns]
+        worst = max(worst, hypot(*lost) * 2.0**-53 / errors.scale)
     return worst
 
 
-def _jumps(
-    measured: Sequence[Measured], nodes: Nodes, errors: Mapping[tuple[str, int], Errors]
-) -> Iterator[Gap]:
-    for m in measured:
-        for k, scale in enumerate(_scales(m, errors)):
-            for node in nodes[m.quantity.name, k]:
-                if node.jump > node.rounding:
-                    yield Gap(GapKind.JUMP, m.quantity.name, node.time, size=node.jump / scale)
+def _jumps(errors: Sequence[Errors], nodes: Sequence[Sequence[Node]]) -> Iterator[Gap]:
+    for each, its_nodes in zip(errors, nodes, strict=True):
+        for node in its_nodes:
+            if node.jump > node.rounding:
+                size = node.jump / each.scale
+                yield Gap(GapKind.JUMP, each.quantity.name, node.time, size=size)

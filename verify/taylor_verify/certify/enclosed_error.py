@@ -6,11 +6,11 @@ it is off by: the truth's own error, and the rounding of the coefficients to flo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from flint import arb, arb_poly
@@ -20,6 +20,7 @@ from taylor_verify.exact.as_written import as_written
 from taylor_verify.exact.enclosure.along import Part
 from taylor_verify.exact.event_times import parts_of, system
 from taylor_verify.numbers.irrational import rational
+from taylor_verify.numbers.rotation import conjugate, product
 from taylor_verify.records.quantities import COLUMNS, Measure, Quantity
 from taylor_verify.scenes.reading.event import loads_of
 from taylor_verify.scenes.scene import Scene
@@ -38,28 +39,23 @@ _SHARES: Final = tuple(arb(k) / 8 for k in range(9))
 _FINER: Final = (Fraction(0), *(Fraction((15 / 16) ** k) for k in range(214, -1, -1)))
 
 
-@dataclass(frozen=True)
-class Measured:
-    """A quantity, with the groups of columns in which an answer has it; each has a scale of its own."""
+class Measured(NamedTuple):
+    """A group of columns of a quantity, which has a scale of its own."""
 
     quantity: Quantity
-    groups: Sequence[Sequence[str]]
-
-    @property
-    def columns(self) -> list[str]:
-        return [column for group in self.groups for column in group]
+    columns: Sequence[str]
 
 
 def measured_of(scene: Scene, columns: Sequence[str]) -> tuple[list[Measured], list[Quantity]]:
-    """Return the quantities that a scene tracks and the columns have, and those that they lack."""
+    """Return what a scene tracks and the columns have, quantity by quantity, and what they lack."""
     known = {name: group.columns for name, group in scene.known_groups.items()}
-    measured, missing = [], []
+    measured, missing = list[Measured](), []
     for quantity in scene.tracked:
         groups = [known[name] for name in quantity.groups]
         if quantity.measure is Measure.ANGLE and not set(QUATERNION) <= set(columns):
             groups = [ROTATION]
         if all(column in columns for group in groups for column in group):
-            measured.append(Measured(quantity, groups))
+            measured += [Measured(quantity, group) for group in groups]
         else:
             missing.append(quantity)
     return measured, missing
@@ -80,16 +76,24 @@ class Interval:
 class Errors:
     """The intervals of one group of columns, and how large the truth is: at most, and along its way."""
 
+    quantity: Quantity
+    columns: Sequence[str]
     intervals: list[Interval] = field(default_factory=list)
     largest: float = 0.0
     way: float = 0.0
     last: list[arb] | None = None
 
+    @property
+    def scale(self) -> float:
+        """The size by which errors are counted; 1 where nothing moves."""
+        sizes = {Measure.VECTORS: self.largest, Measure.PATH: self.way}
+        return sizes.get(self.quantity.measure) or 1.0
+
 
 def errors_of(
     scene: Scene, pieces: Pieces, measured: Sequence[Measured], until: Fraction, bits: int
-) -> Mapping[tuple[str, int], Errors]:
-    """Return the errors of each group of each quantity between the start of a scene and a time.
+) -> list[Errors]:
+    """Return the errors of each group of columns between the start of a scene and a time.
 
     At the ambient precision. Raises Coarse, Unreached and Domain.
     """
@@ -97,9 +101,9 @@ def errors_of(
     loads = replace(loads_of(scene), functions=tuple(columns))
     begin = scene.clock.start
     motion = system(as_written(scene), loads, until - begin, orders=0)
-    errors = {(m.quantity.name, k): Errors() for m in measured for k, _ in enumerate(m.groups)}
+    errors = [Errors(*each) for each in measured]
     for part in parts_of(motion, until - begin, begin, bits):
-        _Part(part, begin, columns).add(pieces, measured, errors)
+        _Part(part, begin, columns).add(pieces, errors)
     return errors
 
 
@@ -111,33 +115,23 @@ class _Part:
         self._functions = dict(zip(columns, part.functions, strict=True))
         self._polynomials = {c: arb_poly(list(f.polynomial)) for c, f in self._functions.items()}
 
-    def add(
-        self,
-        pieces: Pieces,
-        measured: Sequence[Measured],
-        errors: Mapping[tuple[str, int], Errors],
-    ) -> None:
-        groups = [
-            (each, group, errors[each.quantity.name, k])
-            for each in measured
-            for k, group in enumerate(each.groups)
-        ]
-        for _, group, entry in groups:
-            self._measure(group, entry, _SHARES[:1])
+    def add(self, pieces: Pieces, errors: Sequence[Errors]) -> None:
+        for each in errors:
+            self._measure(each, _SHARES[:1])
         low, high = sorted((self._begin, self._begin + self._length))
         for piece in pieces.between(low, high):
             a, b = max(low, piece.begin), min(high, piece.end)
-            for each, group, entry in groups:
-                for c, d, size in self._sized(each, group, entry, a, b):
-                    entry.intervals.append(self._interval(piece, group, c, d, size))
+            for each in errors:
+                for c, d, size in self._sized(each, a, b):
+                    each.intervals.append(self._interval(piece, each.columns, c, d, size))
         # What comes later in this part is no size so far of its intervals.
-        for _, group, entry in groups:
-            self._measure(group, entry, _SHARES[1:])
+        for each in errors:
+            self._measure(each, _SHARES[1:])
 
-    def _measure(self, group: Sequence[str], errors: Errors, shares: Sequence[arb]) -> None:
+    def _measure(self, errors: Errors, shares: Sequence[arb]) -> None:
         """Bound how large the truth is, from below, by its values at a few times."""
         for share in shares:
-            values = [self._functions[column].over(share) for column in group]
+            values = [self._functions[column].over(share) for column in errors.columns]
             errors.largest = max(errors.largest, _length_from_below(values))
             if errors.last is not None:
                 errors.way += _length_from_below(
@@ -146,23 +140,24 @@ class _Part:
             errors.last = values
 
     def _sized(
-        self, of: Measured, group: Sequence[str], so_far: Errors, a: Fraction, b: Fraction
+        self, so_far: Errors, a: Fraction, b: Fraction
     ) -> Iterator[tuple[Fraction, Fraction, float]]:
         """Yield the parts of an interval, each with the size by which its errors count.
 
         That of an own state is its largest so far, at the beginning of the part. One that begins at zero
         has none there: a millionth of the step counts by the size at its end.
         """
-        counts = of.quantity.measure is Measure.SO_FAR
+        counts = so_far.quantity.measure is Measure.SO_FAR
         if not counts or so_far.largest:
             yield a, b, so_far.largest if counts else 1.0
             return
         size = 0.0
         for begin, end in pairwise(_FINER):
             at = begin or end
-            values = [self._functions[c].over(arb(at.numerator) / at.denominator) for c in group]
+            share = arb(at.numerator) / at.denominator
+            values = [self._functions[column].over(share) for column in so_far.columns]
             size = max(size, _length_from_below(values))
-            ends = sorted(self._begin + self._length * share for share in (begin, end))
+            ends = sorted(self._begin + self._length * part for part in (begin, end))
             low, high = max(a, ends[0]), min(b, ends[1])
             if low < high:
                 yield low, high, size or 1.0
@@ -198,14 +193,7 @@ def _turned(
 
     The turn between both frames is 2 atan of their quotient.
     """
-    a, b, c, d = truth
-    w, x, y, z = answer
-    scalar = a * w + b * x + c * y + d * z
-    vector = [
-        a * x - b * w - c * z + d * y,
-        a * y + b * z - c * w - d * x,
-        a * z - b * y + c * x - d * w,
-    ]
+    scalar, *vector = product(conjugate(truth), answer)
     length = sum((_size(p) for p in answer), arb(0))
     missed = (sum(beside, arb(0)) * length).abs_upper()
     entries = scalar.coeffs() or [arb(0)]

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.certify.enclosed_error import QUATERNION, Errors, Interval, Measured
+from taylor_verify.certify.enclosed_error import QUATERNION, Errors, Interval
 from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.records.certificate import Fault, InterpolantFinding
 
@@ -44,23 +44,9 @@ class Node(NamedTuple):
     slope: Floats
 
 
-Nodes = Mapping[tuple[str, int], Sequence[Node]]
-
-
-def nodes_of(
-    pieces: Pieces,
-    measured: Sequence[Measured],
-    errors: Mapping[tuple[str, int], Errors],
-) -> Nodes:
-    """Return the nodes of each group of each quantity, where pieces meet inside the span."""
-    return {
-        (m.quantity.name, k): list(_nodes(pieces, group, errors[m.quantity.name, k]))
-        for m in measured
-        for k, group in enumerate(m.groups)
-    }
-
-
-def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Node]:
+def nodes_of(pieces: Pieces, errors: Errors) -> Iterator[Node]:
+    """Yield the nodes of a group of columns, where pieces meet inside the span."""
+    group = tuple(errors.columns)
     starts, ends = _Ends(errors.intervals, -1), _Ends(errors.intervals, 1)
     for before, after in pairwise(pieces.each):
         time = float(after.begin)
@@ -73,7 +59,7 @@ def _nodes(pieces: Pieces, group: Sequence[str], errors: Errors) -> Iterator[Nod
         error, derived = _ends(right, -1)
         yield Node(
             time, jump, _ROUNDINGS * size, error, _ends(left, 1)[0],
-            slope - derived if tuple(group) != QUATERNION else slope * np.nan, slope,
+            slope - derived if group != QUATERNION else slope * np.nan, slope,
         )  # fmt: skip
 
 
@@ -103,20 +89,15 @@ def _ends(interval: Interval, v: int) -> tuple[Floats, Floats]:
 
 
 def findings(
-    measured: Sequence[Measured],
-    nodes: Nodes,
-    bound: Mapping[str, float],
-    scales: Mapping[str, Sequence[float]],
+    errors: Sequence[Errors], nodes: Sequence[Sequence[Node]], bound: Mapping[str, float]
 ) -> tuple[InterpolantFinding, ...]:
     """Return the faults that the errors at the nodes show."""
     faults: dict[tuple[str, Fault], InterpolantFinding] = {}
-    for m in measured:
-        name = m.quantity.name
-        for k, scale in enumerate(scales[name]):
-            each = nodes[name, k]
-            if len(each) >= _FEW and (fault := _fault(each, bound[name], scale)):
-                size = _at_nodes(each) / scale
-                faults.setdefault((name, fault), InterpolantFinding(name, fault, size, bound[name]))
+    for of, each in zip(errors, nodes, strict=True):
+        name = of.quantity.name
+        if len(each) >= _FEW and (fault := _fault(each, bound[name], of.scale)):
+            size = _at_nodes(each) / of.scale
+            faults.setdefault((name, fault), InterpolantFinding(name, fault, size, bound[name]))
     return tuple(faults.values())
 
 

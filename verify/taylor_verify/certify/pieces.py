@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from flint import fmpq, fmpq_poly
 
-from taylor_verify.numbers.irrational import fraction, rational
+from taylor_verify.numbers.irrational import rational
 from taylor_verify.records.faults import Faults, Refused, refusal
 
 MOST_DEGREE: Final = 60
@@ -26,9 +26,6 @@ class Piece:
     begin: Fraction
     end: Fraction
     polynomials: Mapping[str, fmpq_poly]
-
-    def value(self, column: str, time: Fraction) -> Fraction:
-        return fraction(self.polynomials[column](rational(time - self.begin)))
 
     def last(self, column: str) -> fmpq:
         """The value of a column at the end of the piece."""

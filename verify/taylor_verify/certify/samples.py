@@ -48,10 +48,13 @@ def of_samples(file: TrajectoryFile, scene: Scene, interpolation: str | None) ->
     if len(times) < 2:
         raise refusal("two rows at least", len(times), file.name)
     if interpolation == "cubic":
-        return of_scipy(_cubic(times, rows), names)
+        from scipy.interpolate import CubicSpline
+
+        spline = CubicSpline([float(t) for t in times], np.array(rows, dtype=float))
+        return of_scipy(spline, names)
     if interpolation == "linear":
         lines = (
-            [_line(*pair, b - a) for pair in zip(p, q, strict=True)]
+            [polynomial([v, w - v], b - a) for v, w in zip(p, q, strict=True)]
             for (a, p), (b, q) in pairwise(zip(times, rows, strict=True))
         )
         return named(names, times, lines)
@@ -76,21 +79,10 @@ def _with_steady_signs(
     return steady
 
 
-def _line(p: Fraction, q: Fraction, h: Fraction) -> fmpq_poly:
-    return polynomial([p, q - p], h)
-
-
 def _hermite(p: Fraction, q: Fraction, f: Fraction, g: Fraction, h: Fraction) -> fmpq_poly:
     """The cubic with the values p, q and the slopes f, g at its ends."""
     rise = q - p
     return polynomial([p, h * f, 3 * rise - h * (2 * f + g), h * (f + g) - 2 * rise], h)
-
-
-def _cubic(times: Sequence[Fraction], rows: Sequence[Sequence[Fraction]]) -> Any:
-    """SciPy's cubic spline without knots at the second row and the last but one."""
-    from scipy.interpolate import CubicSpline
-
-    return CubicSpline([float(t) for t in times], np.array(rows, dtype=float))
 
 
 def of_callable(answer: Callable[..., Any], scene: Scene, degree: Any, nodes: Any) -> Pieces:

@@ -8,12 +8,13 @@ from fractions import Fraction
 
 from flint import arb, ctx
 
-from taylor_verify.exact.balls import balls
+from taylor_verify.exact.balls import balls, midpoint
 from taylor_verify.exact.enclosure.box import Box
 from taylor_verify.exact.enclosure.image import Image
 from taylor_verify.exact.event_times import system
 from taylor_verify.numbers.irrational import ball
-from taylor_verify.numbers.rotation import product
+from taylor_verify.numbers.precision import exact_value
+from taylor_verify.numbers.rotation import conjugate, product, scalar_product
 from taylor_verify.records.faults import refusal
 from taylor_verify.records.quantities import COLUMNS, MOMENTA
 from taylor_verify.scenes.loads.states import Held
@@ -49,7 +50,7 @@ def slopes_of(
             functions = rates.pieces(time, time >= 0).functions
             assert functions is not None
             values = Image(functions, Box.about(turned), time).outputs().values
-            slopes.append([_fraction(value) for value in values[len(names) :]])
+            slopes.append([exact_value(midpoint(value)) for value in values[len(names) :]])
     return slopes
 
 
@@ -71,12 +72,7 @@ def _since_start(scene: Scene, point: list[arb]) -> list[arb]:
     body = len(scene.initial.moving)
     if len(point) < body + 4:
         return point
-    a, b, c, d = balls(scene.initial.attitude)
-    length = (a * a + b * b + c * c + d * d).sqrt()
-    turn = product([a, -b, -c, -d], point[body : body + 4])
+    start = balls(scene.initial.attitude)
+    length = scalar_product(start, start).sqrt()
+    turn = product(conjugate(start), point[body : body + 4])
     return [*point[:body], *(entry / length for entry in turn), *point[body + 4 :]]
-
-
-def _fraction(value: arb) -> Fraction:
-    mantissa, exponent = value.mid().man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -129,7 +129,7 @@ def judge_events(
 def _windows(true: Events) -> dict[mpf, mpf]:
     """Return the distance by event within which a time answers it."""
     every = sorted(event.t for event in (*true.times, *true.undecided))
-    gaps = [b - a for a, b in pairwise(every)] or [_mpf(abs(true.until) or Fraction(1))]
+    gaps = [b - a for a, b in pairwise(every)] or [mp.convert(abs(true.until) or Fraction(1))]
     return {t: min(gaps[max(0, k - 1) : k + 1]) / _NEAR for k, t in enumerate(every)}
 
 
@@ -141,11 +141,7 @@ def _answered(event: EventTime, time: Fraction) -> Answered:
 
 def _distance(time: Fraction, event: EventTime) -> mpf:
     with mp.workdps(2 * _DIGITS):
-        return abs(_mpf(time) - event.t)
-
-
-def _mpf(value: Fraction) -> mpf:
-    return mpf(value.numerator) / value.denominator
+        return abs(mp.convert(time) - event.t)
 
 
 def given_times(answer: Any) -> list[Any]:

@@ -190,13 +190,10 @@ class _Gates:
         """
         excess = self.measured.excess
         if excess is not None and np.isfinite(excess).all():
-            gate = Gate(self.run, *self.floor.lengths(excess, self._has_matrices))
+            has_matrices = "quaternion" not in self.run.trajectory.quantities
+            gate = Gate(self.run, *self.floor.lengths(excess, has_matrices))
             if gate.finding.status is Status.FAIL:
                 yield gate
-
-    @property
-    def _has_matrices(self) -> bool:
-        return "quaternion" not in self.run.trajectory.quantities
 
     def velocities(self) -> Iterator[Gate]:
         for one in self.measured.velocities:
@@ -212,9 +209,8 @@ class _Gates:
         motion = exact.motion(given.clock.elapsed, digits)
         roundoff = float(self.run.problem.rung.unit_roundoff)
         answer = self.run.trajectory.quantities
-        for law in Laws(given, motion, orbit, answer, bits, roundoff):
-            terms = Reason(floor=RoundoffFloor(Carried.LAW))
-            yield Gate(self.run, law.errors, law.attainable, terms)
+        for errors, attainable in Laws(given, motion, orbit, answer, bits, roundoff):
+            yield Gate(self.run, errors, attainable, Reason(floor=RoundoffFloor(Carried.LAW)))
 
     def _terms(self, errors: Errors, attainable: Floats, carried: Carried) -> Reason:
         terms = self.floor.terms(attainable, errors, carried)

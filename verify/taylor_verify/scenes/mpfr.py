@@ -43,9 +43,10 @@ def in_mpfr(motion: Motion) -> Motion:
     return Motion(quantities, motion.radius, motion.radii)
 
 
-def real(values: Any, like: Array) -> Array:
-    """Round rationals to numbers of the library that the array `like` is made of."""
-    return _each(gmpy2.mpfr if _is_mpfr(like) else mp.convert, np.array(values, dtype=object))
+def real(values: Any, like: Array | None = None) -> Array:
+    """Round rationals to numbers of the library that the array `like` is made of; mpmath's without one."""
+    is_mpfr = like is not None and _is_mpfr(like)
+    return _each(gmpy2.mpfr if is_mpfr else mp.convert, np.array(values, dtype=object))
 
 
 def alike(values: Array, like: Array) -> Array:

@@ -14,7 +14,7 @@ from taylor_verify.exact.conditioning.loaded import truth
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
-from taylor_verify.judge.errors.drifts import drifts
+from taylor_verify.judge.errors.drifts import Drifts
 from taylor_verify.judge.errors.state import largest, state_errors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS, truth_digits, working_bits
 from taylor_verify.models.problem import Problem
@@ -76,18 +76,10 @@ class Truth:
             bounds = {errors.quantity: errors.values + errors.truth_radius for errors in states}
             most = {name: float(largest(values)) for name, values in bounds.items()}
             final = {name: float(values[-1]) for name, values in bounds.items()}
-            conserved = drifts(
-                given,
-                start=self._start,
-                truth=self._motion,
-                answer=answer,
-                own=trajectory.quantities,
-                digits=self._digits,
-                of=[each for each in invariants(given) if each.is_conserved],
-            )
-            sizes = [
-                (float(largest(errors.values)), invariant.name) for invariant, errors in conserved
-            ]
+            conserved = [each for each in invariants(given) if each.is_conserved]
+            drifts = Drifts(given, self._start, self._digits, conserved)
+            drifts.add(given.clock.elapsed, self._motion, answer, trajectory.quantities)
+            sizes = [(float(largest(e.values)), invariant.name) for invariant, e in drifts.errors()]
         # NaN counts as larger than any number.
         drift, drifting = max(sizes, key=lambda size: (isnan(size[0]), size[0]), default=(None, ""))
         return Accuracy(most, final, drift, drifting)

@@ -5,7 +5,7 @@ It shares nothing with the equations that a solver is given.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Final
@@ -16,15 +16,14 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.linearised import Flow, Steps
-from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.momentum import block_units, moved
 from taylor_verify.exact.damping import decayed
 from taylor_verify.exact.quadratic_forms import Floats
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.row_arithmetic import cross_matrices
 from taylor_verify.exact.solution import Quantities, Unsettled
-from taylor_verify.numbers.tensors import Vector
-from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+from taylor_verify.scenes.mpfr import precision, real, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
@@ -69,13 +68,12 @@ class Derivatives:
     ``momentum`` (n, d, d), d = 3 or 6, ``others`` (n, 3, d) by name (attitude, centre as tracked), the
     momenta themselves in ``state`` (n, d) and the ``centre`` (n, 3), empty where untracked. The flow turns
     a volume of 1 into ``volumes`` (n,), of which damping alone makes less or more. Momenta are
-    measured in ``units``, one power of two near the size of each component's block, in ``momentum`` and
-    ``state``; everything else is in the scene's units. The centre counts from its place at the start.
+    measured in a power of two near the size of each component's block, in ``momentum`` and ``state``;
+    everything else is in the scene's units. The centre counts from its place at the start.
     """
 
     exponent: int
     digits: int
-    units: Vector
     momentum: Array
     others: Mapping[str, Array]
     state: Array
@@ -139,16 +137,15 @@ def derivatives(
     scene: Scene, elapsed: Sequence[Fraction], exponent: int, digits: int
 ) -> Derivatives:
     """Return one-sided differences at ``digits`` digits, each momentum changed by 10^-exponent units."""
-    start, kind = momentum(scene), kind_of(scene.body)
-    step = Fraction(1, 10**exponent)
+    kind, step = kind_of(scene.body), Fraction(1, 10**exponent)
     expansion = Fraction(np.trace(kind.momentum_equations(scene.body).linear))
     with mp.workdps(digits):
         unmoved = solution(scene).evaluate(elapsed, digits)
         columns = []
-        for j, unit in enumerate(start.units):
-            moved = solution(start.moved(j, step * unit)).evaluate(elapsed, digits)
-            columns.append(difference(unmoved, moved, mp.convert(step)))
-        units = real((start.units,))
+        units = real((block_units(scene.body, scene.initial),))
+        for j in range(units.size):
+            beside = solution(moved(scene, j, step)).evaluate(elapsed, digits)
+            columns.append(difference(unmoved, beside, mp.convert(step)))
         changes = [kind.momentum_rows(scene.body, column) for column in columns]
         centre = kind.centre(scene.initial)
         path = np.empty((0, 3), dtype=object)
@@ -157,7 +154,6 @@ def derivatives(
         return Derivatives(
             exponent=exponent,
             digits=digits,
-            units=start.units,
             momentum=np.stack(changes, axis=2) / units.T,
             others={
                 name: np.stack([column[name] for column in columns], axis=2)
@@ -180,11 +176,6 @@ def difference(before: Quantities, after: Quantities, step: Any) -> dict[str, Ar
             turns = moved_R @ R.transpose(0, 2, 1)
             change["attitude"] = to_mpf((turns[:, k, j] - turns[:, j, k]) / 2)
     return {name: change[name] / step for name in before}
-
-
-def real(matrix: Iterable[Iterable[Any]]) -> Array:
-    """The matrix as mpf, rounded at the ambient precision."""
-    return np.array([[mp.convert(entry) for entry in row] for row in matrix], dtype=object)
 
 
 def _balls(matrix: Array) -> arb_mat:

@@ -27,11 +27,10 @@ import numpy as np
 from taylor_verify.exact.conditioning.by_differences import settled
 from taylor_verify.exact.conditioning.linearised import Flow, Steps
 from taylor_verify.exact.conditioning.loaded import DIGITS, enclosed, frame, is_of_run
-from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.momentum import momentum, moved
 from taylor_verify.exact.conditioning.path_times import few, many, times_of_run
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.quadratic_forms import Floats
-from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.precision import float_text, floor_log2
@@ -70,10 +69,18 @@ class Path:
     """
 
     scene: Scene
-    flow: Flow
     elapsed: Sequence[Fraction]
     carried: Steps
     exponent: int = 0
+
+    @cached_property
+    def flow(self) -> Flow:
+        return Flow.of(self.scene)
+
+    @cached_property
+    def durations(self) -> Floats:
+        """How far each time is from the start."""
+        return np.array([abs(float(t)) for t in self.elapsed])
 
     @cached_property
     def blocks(self) -> tuple[str, ...]:
@@ -164,8 +171,7 @@ class Path:
     @property
     def is_regular(self) -> bool:
         """True if errors grow no faster than in proportion to time."""
-        times = np.array([abs(float(t)) for t in self.elapsed])
-        return bool((self.growth <= REGULAR * (1 + self.rate * times)).all())
+        return bool((self.growth <= REGULAR * (1 + self.rate * self.durations)).all())
 
     @cached_property
     def _spans(self) -> dict[str, slice]:
@@ -224,15 +230,14 @@ def transition(scene: Scene, elapsed: Sequence[Fraction]) -> Path:
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
     _refuse_far_decay(scene, elapsed)
-    flow = Flow.of(scene)
     if scene.body.loads is not None:
-        return Path(scene, flow, elapsed, enclosed(scene, flow, elapsed))
+        return Path(scene, elapsed, enclosed(scene, elapsed))
     if differs_dearly(scene):
-        steps = integrated(scene, flow, elapsed)
+        steps = integrated(scene, elapsed)
         if steps is not None:
-            return Path(scene, flow, elapsed, steps)
+            return Path(scene, elapsed, steps)
     differences = settled(scene, elapsed)
-    return Path(scene, flow, elapsed, differences.steps(flow)[0], differences.exponent)
+    return Path(scene, elapsed, differences.steps(Flow.of(scene))[0], differences.exponent)
 
 
 def path(scene: Scene, digits: int = DIGITS) -> Path:
@@ -242,11 +247,11 @@ def path(scene: Scene, digits: int = DIGITS) -> Path:
 
     Raises Unsettled where the derivatives of the motion cannot be had.
     """
-    elapsed, flow = scene.clock.elapsed, Flow.of(scene)
+    elapsed = scene.clock.elapsed
     _refuse_far_decay(scene, elapsed)
     if is_of_run(scene):
         return path_of_run(scene, digits)
-    coarse = _along(scene, flow, few(elapsed))
+    coarse = _along(scene, few(elapsed))
     if coarse.is_regular:
         return coarse
     rate, growth = coarse.rate, coarse.growth.max()
@@ -254,12 +259,15 @@ def path(scene: Scene, digits: int = DIGITS) -> Path:
     is_dear = differs_dearly(scene)
     if growth < inf and (is_dear or rate * abs(elapsed[-1]) <= _MOST_RADIANS):
         # The growth may magnify the last digit of the truth, so the truth gets as many more digits.
-        steps = integrated(scene, flow, points, ceil(log10(growth)))
+        steps = integrated(scene, points, ceil(log10(growth)))
         if steps is not None:
-            followed = Path(scene, flow, points, steps)
+            followed = Path(scene, points, steps)
             if is_dear or followed.is_resolved:
                 return followed
-    return sharp(scene, flow, points, _sharp_exponent(growth) or coarse.exponent)
+    if growth == inf:
+        return sharp(scene, points, coarse.exponent)
+    # Differences that give such growth to six digits.
+    return sharp(scene, points, min(ceil(3 * log10(growth)) + 6, _LARGEST_EXPONENT))
 
 
 def path_of_run(scene: Scene, digits: int = DIGITS) -> Path:
@@ -267,13 +275,8 @@ def path_of_run(scene: Scene, digits: int = DIGITS) -> Path:
 
     Raises Unsettled where the motion is not reached.
     """
-    flow, times = Flow.of(scene), times_of_run(scene)
-    return Path(scene, flow, times, enclosed(scene, flow, times, digits))
-
-
-def _sharp_exponent(growth: float) -> int:
-    """Return the exponent of differences that give such growth to six digits; 0 for an infinite growth."""
-    return min(ceil(3 * log10(growth)) + 6, _LARGEST_EXPONENT) if growth < inf else 0
+    times = times_of_run(scene)
+    return Path(scene, times, enclosed(scene, times, digits))
 
 
 def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
@@ -291,25 +294,24 @@ def differs_dearly(scene: Scene) -> bool:
 
     One integration along it costs less. A start beside it may leave the closed form: Weber's loses FG = 0.
     """
-    start = momentum(scene)
-    beside = (start.moved(j, unit) for j, unit in enumerate(start.units))
-    return any(solution(start_scene).route == "taylor" for start_scene in (scene, *beside))
+    beside = (moved(scene, j, Fraction(1)) for j in range(len(scene.initial.moving)))
+    return any(solution(start).route == "taylor" for start in (scene, *beside))
 
 
-def sharp(scene: Scene, flow: Flow, points: Sequence[Fraction], least: int = 0) -> Path:
+def sharp(scene: Scene, points: Sequence[Fraction], least: int = 0) -> Path:
     """A path from differences so small that products of F with its inverses have their leading digits.
 
     A step of 10^-e leaves an error of 10^-e |F|^2 in F, and that is multiplied by F^-1. The first step
     tells both sizes. If no exponent is enough, the result has noise, which makes it larger and not smaller.
     """
     differences = settled(scene, points, least)
-    steps, shrinkage = differences.steps(flow)
-    path = Path(scene, flow, points, steps, differences.exponent)
+    steps, shrinkage = differences.steps(Flow.of(scene))
+    path = Path(scene, points, steps, differences.exponent)
     # In decades, because squares and powers may be beyond float64.
     lost = 2 * _decades(path.growth.max()) + _decades(shrinkage)
     enough = min(lost - _decades(_SHARP), _LARGEST_EXPONENT)
     is_enough = not enough > differences.exponent
-    return path if is_enough else sharp(scene, flow, points, ceil(enough))
+    return path if is_enough else sharp(scene, points, ceil(enough))
 
 
 def _decades(size: float) -> float:
@@ -317,21 +319,19 @@ def _decades(size: float) -> float:
     return log10(size) if 0 < size < inf else -inf if size == 0 else float(size)
 
 
-def _along(scene: Scene, flow: Flow, points: Sequence[Fraction]) -> Path:
+def _along(scene: Scene, points: Sequence[Fraction]) -> Path:
     """Return the orbit at a few points."""
-    if _is_short(scene, flow) or differs_dearly(scene):
-        steps = integrated(scene, flow, points, is_rough=True)
+    if _is_short(scene) or differs_dearly(scene):
+        steps = integrated(scene, points, is_rough=True)
         if steps is not None:
-            return Path(scene, flow, points, steps)
-    return sharp(scene, flow, points)
+            return Path(scene, points, steps)
+    return sharp(scene, points)
 
 
-def _is_short(scene: Scene, flow: Flow) -> bool:
+def _is_short(scene: Scene) -> bool:
     """Return True if steps of float64 along the orbit cost less than four or seven orbits beside it."""
-    kind = kind_of(scene.body)
-    z = kind.momentum(scene.body, kind.state(scene.initial))
-    counted = np.array(
-        [float(value / unit) for value, unit in zip(z, flow.components, strict=True)]
-    )
+    flow = Flow.of(scene)
+    pairs = zip(momentum(scene.body, scene.initial), flow.components, strict=True)
+    counted = np.array([float(value / unit) for value, unit in pairs])
     rate = float(flow.rate(counted)) / float(flow.time)
     return bool(rate * abs(float(scene.clock.elapsed[-1])) <= _FEW_RADIANS)

@@ -14,16 +14,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.momentum import momentum
+from taylor_verify.exact.conditioning.momentum import block_units
 from taylor_verify.exact.quadratic_forms import Floats, Scaled, exact, in_units
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
 
 
@@ -69,25 +72,10 @@ class Flow:
     time: Fraction
     length: Fraction
 
-    @classmethod
-    def of(cls, scene: Scene) -> Flow:
+    @staticmethod
+    def of(scene: Scene) -> Flow:
         """Return the equations of a scene's body, in units of its start."""
-        kind, units = kind_of(scene.body), momentum(scene).units
-        equations = kind.momentum_equations(scene.body)
-        unit = exact(units)
-        scaled = in_units(equations.hessian, 1 / unit, unit, unit)
-        linear = in_units(equations.linear, 1 / unit, unit)
-        every = (*scaled.flat, *linear.flat, *(equations.constant / unit))
-        rates = [abs(rate) for rate in every if rate]
-        time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
-        fastest = max((abs(s) for s in (equations.velocity * unit).flat), default=Fraction(0))
-        length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
-        return cls(
-            momenta=dict(zip(kind.momenta, units[::3], strict=True)),
-            equations=equations.scaled(units, time, length),
-            time=time,
-            length=length,
-        )
+        return _flow(scene.body, scene.initial)
 
     @property
     def units(self) -> dict[str, Fraction]:
@@ -132,6 +120,26 @@ class Flow:
         own = np.maximum(fifth, spin)
         rate: Floats = np.maximum(own, (_norm(jacobian) * own**4) ** 0.2)
         return rate
+
+
+@lru_cache(maxsize=16)
+def _flow(body: Body, initial: State) -> Flow:
+    kind, units = kind_of(body), block_units(body, initial)
+    equations = kind.momentum_equations(body)
+    unit = exact(units)
+    scaled = in_units(equations.hessian, 1 / unit, unit, unit)
+    linear = in_units(equations.linear, 1 / unit, unit)
+    every = (*scaled.flat, *linear.flat, *(equations.constant / unit))
+    rates = [abs(rate) for rate in every if rate]
+    time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
+    fastest = max((abs(s) for s in (equations.velocity * unit).flat), default=Fraction(0))
+    length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)
+    return Flow(
+        momenta=dict(zip(kind.momenta, units[::3], strict=True)),
+        equations=equations.scaled(units, time, length),
+        time=time,
+        length=length,
+    )
 
 
 def applied(matrices: Floats, vectors: Floats) -> Floats:

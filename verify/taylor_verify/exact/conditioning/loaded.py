@@ -59,12 +59,12 @@ def truth(scene: Scene, digits: int) -> Solution:
     return Linearised(scene, digits)
 
 
-def enclosed(scene: Scene, flow: Flow, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
+def enclosed(scene: Scene, elapsed: Sequence[Fraction], digits: int = DIGITS) -> Steps:
     """Return the derivative of the motion between these times, the first of which is the start.
 
     Raises Unsettled where the motion is not reached.
     """
-    return _run(scene, tuple(elapsed), digits).steps(flow)
+    return _run(scene, tuple(elapsed), digits).steps()
 
 
 @final
@@ -85,11 +85,9 @@ class Linearised(Solution):
         motion = _run(self.scene, self._times, self.digits).whole
         return motion.at([self._places[time] for time in elapsed])
 
-    def derivatives(
-        self, flow: Flow, begins: Sequence[Fraction], ends: Sequence[Fraction]
-    ) -> Floats:
+    def derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats:
         """Return the derivative of the motion over arcs between samples, or from the start."""
-        steps = enclosed(self.scene, flow, self._times, self.digits).steps
+        steps = enclosed(self.scene, self._times, self.digits).steps
         places = ((self._places[a], self._places[b]) for a, b in zip(begins, ends, strict=True))
         return np.array([products(steps[a:b])[-1] for a, b in places])
 
@@ -108,14 +106,10 @@ def _run(scene: Scene, elapsed: tuple[Fraction, ...], digits: int) -> _Run:
 
 
 class _Point(NamedTuple):
-    """The state at one time, and the derivative of the wheels' momentum by own states, as float64.
-
-    Where it ``has_wheels`` the enclosure follows H = I omega + h, though omega stands in the state.
-    """
+    """The state at one time, and the derivative of the wheels' momentum by own states, as float64."""
 
     state: Floats
     wheels: Floats
-    has_wheels: bool
 
 
 @final
@@ -132,11 +126,11 @@ class _Run(Enclosing):
         """The motion at all times."""
         return self.motion(self.elapsed, self.digits)
 
-    def steps(self, flow: Flow) -> Steps:
-        """The derivative between the times, in the units of a flow."""
+    def steps(self) -> Steps:
+        """The derivative between the times, in the units of the scene's flow."""
         _ = self.whole
         states = np.array([point.state for point, _ in self.visited])
-        frame = _Frame(self.scene, flow, self._system.own, states)
+        frame = _Frame(self.scene, self._system.own, states)
         matrices = [
             frame.counted(begin, end, derivative)
             for (begin, _), (end, derivative) in pairwise(self.visited)
@@ -174,11 +168,11 @@ class _Run(Enclosing):
         d, own = len(self.scene.initial.moving), [*chain(*self._system.own.values())]
         image = self._system.pieces(time, self.elapsed[-1] >= 0).image
         if image is None:
-            return _Point(state, np.zeros((d, len(own))), has_wheels=False)
+            return _Point(state, np.zeros((d, len(own))))
         # omega = K (H - h), and the wheels h do not depend on H.
         slopes = _floats(Image(image, Box.about(row.state), time).outputs().slopes)
         momentum = kind_of(self.scene.body).momentum_matrix(self.scene.body).astype(float)
-        return _Point(state, -momentum @ slopes[:d, own], has_wheels=True)
+        return _Point(state, -momentum @ slopes[:d, own])
 
 
 def _widened(start: Sequence[arb], bits: int) -> list[arb]:
@@ -197,10 +191,10 @@ def _floats(derivative: arb_mat) -> Floats:
 
 
 class _Frame:
-    """The states of the enclosure as momenta, turns, centres and own states, in the units of a flow."""
+    """The states of the enclosure as momenta, turns, centres and own states, in the units of the flow."""
 
-    def __init__(self, scene: Scene, flow: Flow, own: Mapping[str, range], states: Floats) -> None:
-        body, kind = scene.body, kind_of(scene.body)
+    def __init__(self, scene: Scene, own: Mapping[str, range], states: Floats) -> None:
+        body, kind, flow = scene.body, kind_of(scene.body), Flow.of(scene)
         moved = frame(scene)
         self._turns, self._travels = bool(moved), "centre" in moved
         self._units = np.array([float(unit) for unit in flow.components])
@@ -213,7 +207,10 @@ class _Frame:
         self._own_counts = np.diag(np.array(counts))
         self.size = d + 6 + len(self._own)
         self._momentum = kind.momentum_matrix(body).astype(float)
-        self._state = kind.state_matrix(body).astype(float)
+        self._into_state, self._from_state = kind.state_matrix(body).astype(float), self._momentum
+        if body.loads is not None and body.loads.rotor:
+            # The enclosure follows H = I omega + h, though omega stands in the state.
+            self._into_state = self._from_state = np.eye(d)
         self._start = np.array(rotation_matrix(scene.initial.attitude), dtype=float)
 
     def counted(self, begin: _Point, end: _Point, derivative: Floats) -> Floats:
@@ -227,7 +224,7 @@ class _Frame:
         """Return the matrix from errors of momentum, turn, centre and own states to those of the state."""
         state, d = point.state, self._d
         columns = np.zeros((len(state), self.size))
-        columns[:d, :d] = (np.eye(d) if point.has_wheels else self._state) * self._units
+        columns[:d, :d] = self._into_state * self._units
         columns[:d, d + 6 :] = point.wheels @ self._own_counts
         columns[self._own, d + 6 :] = self._own_counts
         if self._turns:
@@ -240,7 +237,7 @@ class _Frame:
         """Return the matrix from changes of the state to the errors that a path has."""
         state, d = point.state, self._d
         rows = np.zeros((self.size, len(state)))
-        rows[:d, :d] = np.eye(d) if point.has_wheels else self._momentum
+        rows[:d, :d] = self._from_state
         rows[:d, self._own] -= point.wheels
         rows[:d] /= self._units[:, None]
         rows[d + 6 :, self._own] = np.linalg.inv(self._own_counts)

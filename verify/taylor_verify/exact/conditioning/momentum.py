@@ -2,49 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
-from taylor_verify.numbers.tensors import Matrix, Vector
+from taylor_verify.numbers.tensors import Vector
+from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
 
 
-@dataclass(frozen=True)
-class Momentum:
-    """The initial momentum in body axes: H, or the impulses x and y as one vector of six.
+def momentum(body: Body, initial: State) -> Vector:
+    """Return the initial momentum in body axes: H, or the impulses x and y as one vector of six."""
+    kind = kind_of(body)
+    return kind.momentum(body, kind.state(initial))
 
-    ``units`` are powers of two near the size of each component, so that what is moved by parts of them
-    stays a short rational.
+
+def moved(scene: Scene, j: int, share: Fraction) -> Scene:
+    """Return the scene with component j of the momentum greater by this share of its unit, exactly.
+
+    Units are powers of two near the size of each component, so that it stays a short rational.
     """
-
-    scene: Scene
-    value: Vector
-    units: Vector
-
-    def moved(self, j: int, amount: Fraction) -> Scene:
-        """The scene with component j greater by this amount, exactly."""
-        kind, body, initial = kind_of(self.scene.body), self.scene.body, self.scene.initial
-        greater = tuple(entry + amount * (i == j) for i, entry in enumerate(self.value))
-        state = kind.of_momentum(body, greater)
-        return replace(self.scene, initial=kind.with_state(initial, state))
+    kind, body, initial = kind_of(scene.body), scene.body, scene.initial
+    amount = share * block_units(body, initial)[j]
+    greater = tuple(entry + amount * (i == j) for i, entry in enumerate(momentum(body, initial)))
+    state = kind.of_momentum(body, greater)
+    return replace(scene, initial=kind.with_state(initial, state))
 
 
-def momentum(scene: Scene) -> Momentum:
-    """Return the initial momentum of a scene."""
-    kind, body = kind_of(scene.body), scene.body
-    value = kind.momentum(body, kind.state(scene.initial))
-    return Momentum(scene, value, _block_units(value, kind.momentum_energy(body)))
-
-
-def _block_units(z: Vector, energy: Matrix) -> Vector:
-    """Powers of two near the size of the block of each component of a momentum.
+def block_units(body: Body, initial: State) -> Vector:
+    """Return powers of two near the size of the block of each component of a momentum.
 
     A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
     at rest.
     """
+    z, energy = momentum(body, initial), kind_of(body).momentum_energy(body)
     twice_energy = tensors.dot(z, tensors.apply(energy, z))
     units: Vector = ()
     for first in range(0, len(z), 3):

@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
 from math import ceil
 from typing import Any, Final
 
@@ -52,49 +52,30 @@ _LARGEST: Final = 1e100
 
 def neighbours(
     scene: Scene,
-    elapsed: Sequence[Fraction],
+    spans: Sequence[Fraction],
     exact: tuple[Motion, Motion],
     beside: Motion,
     digits: int,
     derivatives: Floats | None = None,
 ) -> Motion | None:
-    """Return the ends of arcs that start from the states ``beside`` an exact motion.
+    """Return the ends of arcs of these ``spans`` that start from the states ``beside`` an exact motion.
 
     ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
-    the k-th beginning. ``elapsed`` are the times of the beginnings and, behind them, of the ends. Motions
-    are in MPFR's numbers, at the ambient precision. None if the estimated error is not far below
-    ``digits`` digits of the motion. Under written loads, which are not known here, the ``derivatives`` of
-    the motion over the arcs lead the differences on.
+    the k-th beginning. Motions are in MPFR's numbers, at the ambient precision. None if the estimated
+    error is not far below ``digits`` digits of the motion. Under written loads, which are not known here,
+    the ``derivatives`` of the motion over the arcs lead the differences on.
     """
-    count = len(elapsed) // 2
     arcs = _Arcs(scene, Flow.of(scene), kind_of(scene.body))
     begin, end = exact
     start, size = arcs.difference(begin, beside)
-    spans = np.array(
-        [float((b - a) / arcs.flow.time) for a, b in zip(elapsed, elapsed[count:], strict=False)]
-    )
     if derivatives is not None:
         ends, errors = arcs.led(exact, start, float(size), derivatives)
-        is_close = arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS)
-        return arcs.moved(end, ends, size) if is_close else None
-    z, arrival = (arcs.counted(arcs.momentum(motion)) for motion in exact)
-    with np.errstate(all="ignore"):  # what is not finite is not negligible
-        reached, errors = arcs.followed(z, start, float(size), spans)
-        # No rate of an error is more than about 2 in these units, for a z of 1.
-        missed = 4 * (1 + np.abs(spans)) * np.linalg.norm(reached.z - arrival, axis=1)
-        largest = np.max(np.abs(np.hstack([start, reached.difference])), axis=1)
-        errors = errors + (largest * (_NOISE + missed))[:, None]
-    if not arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS):
-        return None
-    return arcs.moved(end, reached.difference, size)
-
-
-@dataclass(frozen=True)
-class _Reached:
-    """The ends of arcs in float64: z, and the difference (e, v, g) in one array."""
-
-    z: Floats
-    difference: Floats
+    else:
+        with np.errstate(all="ignore"):  # what is not finite is not negligible
+            times = np.array([float(span / arcs.flow.time) for span in spans])
+            ends, errors = arcs.followed(exact, start, float(size), times)
+    is_close = arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS)
+    return arcs.moved(end, ends, size) if is_close else None
 
 
 @dataclass(frozen=True)
@@ -107,7 +88,7 @@ class _Arcs:
 
     @property
     def _has_turn(self) -> bool:
-        return "attitude" in self.scene.track or "centre" in self.scene.track
+        return "attitude" in self.scene.track
 
     @property
     def _has_centre(self) -> bool:
@@ -117,18 +98,20 @@ class _Arcs:
         """Return the momentum of every row, in the scene's units."""
         return self.kind.momentum_rows(self.scene.body, motion)
 
-    def counted(self, momentum: Array) -> Floats:
-        """Return momenta in the units of the flow."""
-        units = np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
-        counts: Floats = (momentum / units).astype(float)
+    @cached_property
+    def _units(self) -> Array:
+        return np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
+
+    def counted(self, motion: Motion) -> Floats:
+        """Return the momentum of every row in the units of the flow."""
+        counts: Floats = (self.momentum(motion) / self._units).astype(float)
         return counts
 
     # From exact motions to differences, and back.
 
     def difference(self, exact: Motion, beside: Motion) -> tuple[Floats, Any]:
         """Return (e, v, g) and their size s, a power of two."""
-        units = np.array([gmpy2.mpfr(unit) for unit in self.flow.components], dtype=object)
-        parts = [(self.momentum(beside) - self.momentum(exact)) / units]
+        parts = [(self.momentum(beside) - self.momentum(exact)) / self._units]
         if self._has_turn:
             back = np.swapaxes(exact["attitude"], 1, 2)
             parts.append(_half_turns(back @ beside["attitude"]))
@@ -145,7 +128,7 @@ class _Arcs:
         d = len(self.flow.components)
         exactly = np.array([gmpy2.mpfr(v) for v in difference.flat], dtype=object)
         whole = exactly.reshape(difference.shape) * size
-        e = whole[:, :d] * np.array([gmpy2.mpfr(u) for u in self.flow.components], dtype=object)
+        e = whole[:, :d] * self._units
         quantities = dict(exact.quantities)
         if self.kind.moving == ("omega",):
             K = self.kind.momentum_equations(self.scene.body).spin
@@ -153,21 +136,20 @@ class _Arcs:
         else:
             for k, name in enumerate(self.kind.moving):
                 quantities[name] = quantities[name] + e[:, 3 * k : 3 * k + 3]
-        R = exact.quantities.get("attitude")
-        if self._has_turn and R is not None:
-            v = whole[:, d : d + 3]
+        if self._has_turn:
+            R, v = exact["attitude"], whole[:, d : d + 3]
             cosine = np.array([gmpy2.sqrt(1 - sum(v_i * v_i for v_i in row)) for row in v])
             crossed = cross_matrices(v)
             turn = cosine[:, None, None] * crossed + crossed @ crossed
             quantities["attitude"] = R + 2 * (R @ turn)
-        if self._has_centre and R is not None:
+        if self._has_centre:
             shift = turned(R, whole[:, d + 3 :]) * gmpy2.mpfr(self.flow.length)
             quantities["centre"] = quantities["centre"] + shift
         return Motion(quantities, exact.radius)
 
     def is_negligible(self, errors: Floats, size: Any, exact: Motion, digits: int) -> bool:
         """Return True if all errors are below so many digits of the largest |H|, |x|, |y|, 1 and |c|."""
-        z = self.counted(self.momentum(exact))
+        z = self.counted(exact)
         sizes = [np.max(np.abs(z[:, k : k + 3])) for k in range(0, z.shape[1], 3)]
         if self._has_turn:
             sizes.append(1.0)
@@ -216,20 +198,25 @@ class _Arcs:
         return np.hstack(parts)[:, :width]
 
     def followed(
-        self, z: Floats, start: Floats, size: float, spans: Floats
-    ) -> tuple[_Reached, Floats]:
-        """Return the ends of all arcs and the estimated errors of the differences; NaN if too long."""
+        self, exact: tuple[Motion, Motion], start: Floats, size: float, spans: Floats
+    ) -> tuple[Floats, Floats]:
+        """Return the differences at the ends of the arcs, and estimated errors; NaN for too long arcs."""
+        z, arrival = map(self.counted, exact)
         d, at = z.shape[1], np.hstack([z, start])
         radians = np.max(np.abs(spans) * self.flow.rate(z), initial=0.0)
         if not radians <= _MOST_STEPS * _STEP or np.max(np.abs(start), initial=0.0) > _LARGEST:
-            return _Reached(z, start), np.full_like(start, np.nan)
+            return start, np.full_like(start, np.nan)
         steps = max(1, ceil(radians / _STEP))
         errors = np.zeros_like(start)
         rates = partial(self._rates, size=size, d=d)
         for _ in range(steps):
             at, error = extrapolated(rates, at, (spans / steps)[:, None])
             errors += np.abs(error[:, d:])
-        return _Reached(at[:, :d], at[:, d:]), errors
+        ends = at[:, d:]
+        # No rate of an error is more than about 2 in these units, for a z of 1.
+        missed = 4 * (1 + np.abs(spans)) * np.linalg.norm(at[:, :d] - arrival, axis=1)
+        largest = np.max(np.abs(np.hstack([start, ends])), axis=1)
+        return ends, errors + (largest * (_NOISE + missed))[:, None]
 
     def _rates(self, at: Floats, size: float, d: int) -> Floats:
         flow = self.flow

@@ -43,7 +43,6 @@ _FLOAT_DIGITS: Final = 20
 
 def integrated(
     scene: Scene,
-    flow: Flow,
     elapsed: Sequence[Fraction],
     more_digits: int = 0,
     is_rough: bool = False,
@@ -58,7 +57,7 @@ def integrated(
         points = _refined(elapsed, parts)
         truth = solution(scene).motion(points, _TRUTH_DIGITS + more_digits)
         with np.errstate(all="ignore"):  # what overflows is not finite, and then there is no answer
-            parts_of_steps = _steps(scene, flow, points, truth, is_rough)
+            parts_of_steps = _steps(scene, points, truth, is_rough)
             if parts_of_steps is not None:
                 short, momentum, centre = parts_of_steps
                 # Products of so many steps each.
@@ -71,8 +70,6 @@ def integrated(
 
 def _refined(elapsed: Sequence[Fraction], parts: int) -> list[Fraction]:
     """Return these times, and others that divide each span between them into so many equal parts."""
-    if parts == 1:
-        return list(elapsed)
     points = [elapsed[0]]
     for begin, end in pairwise(elapsed):
         points += [begin + (end - begin) * Fraction(k, parts) for k in range(1, parts + 1)]
@@ -80,13 +77,14 @@ def _refined(elapsed: Sequence[Fraction], parts: int) -> list[Fraction]:
 
 
 def _steps(
-    scene: Scene, flow: Flow, points: Sequence[Fraction], truth: Motion, is_rough: bool
+    scene: Scene, points: Sequence[Fraction], truth: Motion, is_rough: bool
 ) -> tuple[Floats, Floats, Floats] | None:
     """The steps on (z, theta, c) from point to point, and z and c there, counted in the flow's units.
 
     A turn of the body moves its later path too. The centre counts from its start, and has no rows where
     it is not tracked.
     """
+    flow = Flow.of(scene)
     with mp.workdps(_FLOAT_DIGITS):
         units = np.array([mp.convert(unit) for unit in flow.components])
         z = (kind_of(scene.body).momentum_rows(scene.body, truth) / units).astype(float)

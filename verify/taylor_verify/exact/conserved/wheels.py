@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from taylor_verify.exact.conserved.derivation import Derivation
 from taylor_verify.exact.conserved.polynomial import TooLong, terms
+from taylor_verify.exact.euler.invariants import momentum, space_momentum
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.exact.row_arithmetic import applied, largest, norms, ones, squares, turned
+from taylor_verify.exact.row_arithmetic import applied, norms, ones
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.motion import Motion
@@ -34,10 +35,15 @@ class Wheels:
             H = H + applied(matrix, motion[name])
         return H
 
-    def slopes(self, motion: Motion, size: Array) -> dict[str, Array]:
-        """Bounds of what own states add to a quantity that changes with H by at most ``size``."""
-        like = motion["omega"]
-        return {name: size * _norm(matrix, like) for name, matrix in self.by_state.items()}
+    def felt_by(self, quantity: Invariant, slope: Callable[[Motion], Array]) -> Invariant:
+        """The quantity with bounds of what own states add to it; it changes with H by at most ``slope``."""
+
+        def sensitivity(motion: Motion) -> dict[str, Array]:
+            size, like = slope(motion), motion["omega"]
+            own = {name: size * _norm(matrix, like) for name, matrix in self.by_state.items()}
+            return {**quantity.sensitivity(motion), **own}
+
+        return replace(quantity, sensitivity=sensitivity)
 
 
 def with_wheels(scene: Scene, loads: Loads) -> Iterator[Invariant]:
@@ -48,26 +54,10 @@ def with_wheels(scene: Scene, loads: Loads) -> Iterator[Invariant]:
     wheels = _wheels(scene, loads)
     if wheels is None:
         return
-    yield Invariant(
-        "H2",
-        lambda motion: squares(wheels.momentum(motion)),
-        lambda motion: largest(squares(wheels.momentum(motion))),
-        lambda motion: {
-            "momentum": 2 * wheels.momentum(motion),
-            **wheels.slopes(motion, 2 * norms(wheels.momentum(motion))),
-        },
-    )
+    H = wheels.momentum
+    yield wheels.felt_by(momentum(H), lambda motion: 2 * norms(H(motion)))
     if "attitude" in scene.track:
-        yield Invariant(
-            "H_space",
-            lambda motion: turned(motion["attitude"], wheels.momentum(motion)),
-            lambda motion: largest(norms(wheels.momentum(motion))),
-            lambda motion: {
-                "momentum": ones(motion["omega"]),
-                "attitude": norms(wheels.momentum(motion)),
-                **wheels.slopes(motion, ones(motion["omega"])),
-            },
-        )
+        yield wheels.felt_by(space_momentum(H), lambda motion: ones(motion["omega"]))
 
 
 def _wheels(scene: Scene, loads: Loads) -> Wheels | None:

@@ -7,6 +7,8 @@ Written from the definitions and independent of the equations of motion.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from taylor_verify.exact.invariant import Array, Invariant
 from taylor_verify.exact.row_arithmetic import applied, dot, largest, norms, ones, squares, turned
 from taylor_verify.scenes.bodies import RigidBody
@@ -28,30 +30,23 @@ def energy(body: RigidBody) -> Invariant:
     )
 
 
-def momentum(body: RigidBody) -> Invariant:
-    """H2 = |I omega + h|^2."""
-
-    def value(motion: Motion) -> Array:
-        return squares(whole(body, motion))
-
+def momentum(H: Callable[[Motion], Array]) -> Invariant:
+    """H2 = |H|^2."""
     return Invariant(
         "H2",
-        value,
-        lambda motion: largest(value(motion)),
-        lambda motion: {"momentum": 2 * whole(body, motion)},
+        lambda motion: squares(H(motion)),
+        lambda motion: largest(squares(H(motion))),
+        lambda motion: {"momentum": 2 * H(motion)},
     )
 
 
-def space_momentum(body: RigidBody) -> Invariant:
+def space_momentum(H: Callable[[Motion], Array]) -> Invariant:
     """R H; a small rotation d of the attitude adds d x R H."""
     return Invariant(
         "H_space",
-        lambda motion: turned(motion["attitude"], whole(body, motion)),
-        lambda motion: largest(norms(whole(body, motion))),
-        lambda motion: {
-            "momentum": ones(motion["omega"]),
-            "attitude": norms(whole(body, motion)),
-        },
+        lambda motion: turned(motion["attitude"], H(motion)),
+        lambda motion: largest(norms(H(motion))),
+        lambda motion: {"momentum": ones(motion["omega"]), "attitude": norms(H(motion))},
     )
 
 

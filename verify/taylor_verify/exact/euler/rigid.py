@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Final, final
 
 from taylor_verify.exact.euler.invariants import energy, momentum, space_momentum, whole
@@ -82,8 +83,9 @@ class Rigid(Kind[RigidBody, Spin]):
 
     def invariants(self, scene: Scene) -> tuple[Invariant, ...]:
         body: RigidBody = scene.body  # type: ignore[assignment]
-        in_body: tuple[Invariant, ...] = energy(body), momentum(body)
-        return (*in_body, space_momentum(body)) if "attitude" in scene.track else in_body
+        H = partial(whole, body)
+        in_body: tuple[Invariant, ...] = energy(body), momentum(H)
+        return (*in_body, space_momentum(H)) if "attitude" in scene.track else in_body
 
     def sizes(self, scene: Scene, motion: Motion) -> list[Array]:
         body: RigidBody = scene.body  # type: ignore[assignment]

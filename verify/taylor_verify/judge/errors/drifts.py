@@ -25,11 +25,10 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
-from taylor_verify.exact.invariants import Invariant, decisive, invariants
+from taylor_verify.exact.invariants import Invariant, decisive
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.errors.state import Errors, Floats, Series, joined
 from taylor_verify.numbers.precision import exact_value
@@ -41,32 +40,10 @@ from taylor_verify.scenes.scene import Scene
 Column = np.ndarray[Any, Any]
 
 
-def drifts(
-    scene: Scene,
-    start: Motion,
-    truth: Motion,
-    answer: Motion,
-    own: Mapping[str, Column],
-    digits: int,
-    of: Sequence[Invariant] | None = None,
-) -> list[tuple[Invariant, Errors]]:
-    """Return the drift of every conserved quantity, as mpmath numbers at the ambient precision.
-
-    ``of`` are the quantities, where not all are wanted.
-
-    ``start`` is the exact initial state as a Motion of one row. The scales come from the exact motion
-    ``truth``, so that an answer that diverges does not hide its own drift. ``own`` are the answer's exact
-    numbers with its quaternions, from which arcs start; ``digits`` is the precision of the arcs. An
-    answer that is not finite drifts by NaN.
-    """
-    total = Drifts(scene, start, digits, of)
-    total.add(scene.clock.elapsed, truth, answer, own)
-    return total.errors()
-
-
 class Drifts:
-    """The drifts of an answer whose rows come in blocks, at one ambient precision of mpmath.
+    """The drifts of some quantities of an answer whose rows come in blocks, at one ambient precision.
 
+    ``start`` is the exact initial state as a Motion of one row; ``digits`` is the precision of the arcs.
     ``arc_scene`` is the scene with the quantities that an arc can begin with. A quantity that is ``worked``
     is compared with its value along the exact motion.
     """
@@ -76,14 +53,14 @@ class Drifts:
         scene: Scene,
         start: Motion,
         digits: int,
-        of: Sequence[Invariant] | None = None,
+        of: Sequence[Invariant],
         arc_scene: Scene | None = None,
         worked: Collection[str] = (),
     ) -> None:
         self._scene, self._digits = scene, digits
         self._arc_scene = scene if arc_scene is None else arc_scene
         self._worked = worked
-        self._invariants = invariants(scene) if of is None else of
+        self._invariants = of
         self._series = {invariant.name: Series() for invariant in self._invariants}
         self._begin = in_mpfr(start)
         # The end of the last block, and the sums of all increments.
@@ -102,7 +79,11 @@ class Drifts:
         answer: Motion,
         own: Mapping[str, Column],
     ) -> None:
-        """Add the next rows. Raises Unsettled if an arc cannot be computed."""
+        """Add the next rows. Raises Unsettled if an arc cannot be computed.
+
+        The scales come from the exact motion ``truth``, so that an answer that diverges does not hide its
+        own drift. ``own`` are the answer's exact numbers with its quaternions, from which arcs start.
+        """
         scene, quick = self._scene, in_mpfr(answer)
         is_steady = not any(self._is_balanced(invariant) for invariant in self._invariants)
         self._is_lost = self._is_lost or not (is_steady or _is_finite(answer))
@@ -173,6 +154,7 @@ class Drifts:
         """
         scene, end, last = self._arc_scene, self._end, [len(elapsed) - 1]
         begins = (end.time, *elapsed[:-1])
+        spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
         with precision():
             earlier, beside = (
                 joined(before, rows).at(range(len(elapsed)))
@@ -180,7 +162,7 @@ class Drifts:
             )
             arc_ends = neighbours(
                 scene,
-                [*begins, *elapsed],
+                spans,
                 (earlier, truth),
                 beside,
                 self._digits,
@@ -188,7 +170,6 @@ class Drifts:
             )
         if arc_ends is None:
             states = _states(scene, own)
-            spans = [b - a for a, b in zip(begins, elapsed, strict=True)]
             starts = [end.state, *states[:-1]]
             arc_ends = in_mpfr(arcs(scene, starts, spans, self._digits, begins))
         (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
@@ -198,9 +179,7 @@ class Drifts:
     def _derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats | None:
         """Return the derivatives of the motion over arcs under written loads; None where none are known."""
         exact = truth(self._scene, self._digits)
-        if not isinstance(exact, Linearised):
-            return None
-        return exact.derivatives(Flow.of(self._scene), begins, ends)
+        return exact.derivatives(begins, ends) if isinstance(exact, Linearised) else None
 
 
 # The arcs.

@@ -42,14 +42,6 @@ def _named_law(state: Held) -> str:
 
 
 @dataclass(frozen=True)
-class Law:
-    """The errors of a held state at the rows on its instants, zero at others, and their roundoff floor."""
-
-    errors: Errors
-    attainable: Floats
-
-
-@dataclass(frozen=True)
 class Laws:
     """The laws of the held states that an answer has.
 
@@ -63,8 +55,11 @@ class Laws:
     bits: int
     roundoff: float
 
-    def __iter__(self) -> Iterator[Law]:
-        """Yield the law of each state that rows of the answer determine."""
+    def __iter__(self) -> Iterator[tuple[Errors, Floats]]:
+        """Yield the errors and the roundoff floor of each law that rows of the answer determine.
+
+        They are those at the rows on the instants of its state, and zero at others.
+        """
         loads = self.scene.body.loads
         if loads is None:
             return
@@ -89,7 +84,7 @@ class Laws:
             names |= {step.name for step in steps if step.operation == "input"}
         return names
 
-    def _law(self, loads: Loads, state: Held, rows: Sequence[int]) -> Law:
+    def _law(self, loads: Loads, state: Held, rows: Sequence[int]) -> tuple[Errors, Floats]:
         places, count = _places(loads, state), len(self._elapsed)
         errors, floor = np.full(count, mpf(0), dtype=object), np.zeros(count)
         peaks = [or_one(peak) for peak in self.truth.peaks[state.name]]
@@ -101,10 +96,8 @@ class Laws:
             apart = self._numbers[state.name][k] - np.array(values, dtype=object)
             errors[k] = norms(apart[None, :])[0] / peaks[k]
             floor[k] = 2 * self.roundoff * sizes[k] / float(peaks[k])
-        known = Errors(
-            _named_law(state), f"max|{state.name}|", in_doubles(errors), np.zeros(count), {}
-        )
-        return Law(known, floor)
+        unit, widths = f"max|{state.name}|", np.zeros(count)
+        return Errors(_named_law(state), unit, in_doubles(errors), widths, {}), floor
 
     @cached_property
     def _numbers(self) -> Mapping[str, Column]:

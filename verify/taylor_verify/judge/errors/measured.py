@@ -29,12 +29,12 @@ from taylor_verify.judge.errors.state import (
     Errors,
     Floats,
     States,
+    VelocityErrors,
     in_doubles,
     joined,
     norms,
     state_distances,
 )
-from taylor_verify.judge.errors.velocity import VelocityErrors
 from taylor_verify.judge.floor.arithmetic import MORE_DIGITS
 from taylor_verify.judge.gates import index_of_largest
 from taylor_verify.records.quantities import VELOCITIES, state_groups
@@ -130,8 +130,7 @@ class Comparison:
         """Measure all quantities. Raises Unsettled if the exact motion cannot be computed."""
         states, excess, arc = States(), list[Floats](), Arc()
         start = self.exact.motion([Fraction(0)], self.digits + MORE_DIGITS)
-        conserved = self._determined(start)
-        worked = self._worked(conserved, start)
+        conserved, worked = self._determined(start)
         arc_scene = self._arc_scene
         groups = state_groups(arc_scene.model, arc_scene.track)
         drifts = Drifts(self.scene, start, self.digits, conserved, arc_scene, worked)
@@ -154,7 +153,8 @@ class Comparison:
             at_nodes.append(block.truth.at([k - first for k in block.places if k in wanted]))
             last = block
         assert last is not None
-        errors = [each for each in states.errors() if self._has_quantity(each.quantity)]
+        has = {self.scene.known_groups[name].quantity for name in self._has}
+        errors = [each for each in states.errors() if each.quantity in has]
         moving = [(one.group, *one.joined()) for one in velocities]
         every = [*errors, *(of_one for _, of_one, _ in moving)]
         block = self._shifted(every, last)
@@ -178,10 +178,6 @@ class Comparison:
     def _has(self) -> set[str]:
         return {"attitude" if name == "quaternion" else name for name in self.quantities}
 
-    def _has_quantity(self, quantity: str) -> bool:
-        groups = self.scene.known_groups
-        return any(groups[name].quantity == quantity for name in self._has)
-
     @property
     def _arc_scene(self) -> Scene:
         """The scene with the quantities that an arc from a row can begin with.
@@ -192,28 +188,21 @@ class Comparison:
         has_frame = "quaternion" in self.quantities or "attitude" not in self.scene.track
         return self.scene if has_frame else replace(self.scene, track=frozenset())
 
-    def _determined(self, start: Motion) -> list[Invariant]:
-        """Return the conserved quantities that depend on nothing that the answer lacks."""
+    def _determined(self, start: Motion) -> tuple[list[Invariant], frozenset[str]]:
+        """Return the conserved quantities that depend on nothing that the answer lacks.
+
+        The names are of those that change under written loads, where no arc shows by how much.
+        """
         has = {_BLOCKS.get(name, name) for name in self._has}
-        every = invariants(self.scene)
-        return [
-            invariant
-            for invariant in every
-            if has.issuperset(blocks := invariant.sensitivity(start).keys())
-            and (invariant.is_conserved or self._has_balance(blocks) or self._has_loads)
-        ]
-
-    def _worked(self, conserved: Collection[Invariant], start: Motion) -> frozenset[str]:
-        """Return the names of what changes under written loads, where no arc shows by how much."""
-        return frozenset(
-            each.name
-            for each in conserved
-            if not (each.is_conserved or self._has_balance(each.sensitivity(start).keys()))
-        )
-
-    @property
-    def _has_loads(self) -> bool:
-        return self.scene.body.loads is not None
+        determined, worked = list[Invariant](), set[str]()
+        for invariant in invariants(self.scene):
+            blocks = invariant.sensitivity(start).keys()
+            is_followed = invariant.is_conserved or self._has_balance(blocks)
+            if has.issuperset(blocks) and (is_followed or self.scene.body.loads is not None):
+                determined.append(invariant)
+                if not is_followed:
+                    worked.add(invariant.name)
+        return determined, frozenset(worked)
 
     def _has_balance(self, blocks: Collection[str]) -> bool:
         """Return True if a quantity that depends on these blocks is known at the end of an arc."""

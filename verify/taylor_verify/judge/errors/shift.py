@@ -101,12 +101,13 @@ def time_shifts(
     ``truth`` is the exact motion of ``scene`` at its instants to ``digits`` digits. The shift is None if an
     error is not finite or a rate is beyond float64. If the motion rests, no shift explains anything.
     """
-    every = [Compared(Run(scene, exact, truth, answer, digits), errors) for errors in of]
+    run = Run(scene, exact, truth, answer, digits)
+    every = [Compared(run, errors) for errors in of]
     starts = [_start(compared) for compared in every]
     reaches = [courses.reach(start) for start in starts if start is not None]
-    passage = Passage(every[0].run, max(reaches, default=0.0)) if every else None
+    passage = Passage(run, max(reaches, default=0.0))
     return [
-        None if start is None or passage is None else _shift(compared, start, passage)
+        None if start is None else _shift(compared, start, passage)
         for compared, start in zip(every, starts, strict=True)
     ]
 

@@ -279,13 +279,16 @@ class Compared:
 
     def over_scales(self, motion: Mapping[str, Any]) -> Floats:
         """Return the rows of a motion over the scales of the errors, flattened, in float64."""
-        body = self.run.scene.body
-        rows = {p: motion[p] if p in motion else velocity(p, body, motion) for p in self._scales}
         parts = [
-            each.reshape(len(each), -1).astype(float) * float(1 / self._scales[p])
-            for p, each in rows.items()
+            rows.reshape(len(rows), -1).astype(float) * float(1 / self._scales[part])
+            for part, rows in self._parts(motion).items()
         ]
         return np.concatenate(parts, axis=1)
+
+    def _parts(self, motion: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the compared quantities of a motion, of which velocities are made of the momenta."""
+        body = self.run.scene.body
+        return {p: motion[p] if p in motion else velocity(p, body, motion) for p in self._scales}
 
     def largest(self, fit: Shifted) -> float:
         """Return the largest remaining error, in the unit of the error."""
@@ -311,9 +314,8 @@ class Compared:
         self, truth: Mapping[str, Any], rows: Sequence[int] | slice
     ) -> tuple[Floats, float]:
         """Return the error of these rows of the answer, in units of a power of two near the largest."""
-        parts, body = self._scales, self.run.scene.body
-        known = {p: truth[p] if p in truth else velocity(p, body, truth) for p in parts}
-        errors = {p: self.run.answer[p][rows] - known[p] for p in parts}
+        parts = self._scales
+        errors = {p: self.run.answer[p][rows] - exact for p, exact in self._parts(truth).items()}
         errors = {p: error.reshape(len(error), -1) for p, error in errors.items()}
         with np.errstate(all="ignore"):  # overflow and underflow are handled below
             relative = np.concatenate(

@@ -17,8 +17,9 @@ from typing import Any, Final
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.judge.velocities import exact_matrix, velocity_forms
-from taylor_verify.records.quantities import Measure, Quantity
+from taylor_verify.judge.velocities import exact_matrix, velocity, velocity_forms
+from taylor_verify.records.quantities import GROUPS, QUANTITIES, Measure, Quantity
+from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
@@ -253,3 +254,29 @@ class States:
         width = np.maximum.reduce([self._widths[name, part].joined()[0] for part in values])
         sizes = np.concatenate(self._so_far[name]) if name in self._so_far else 1.0
         return Errors(name, about.unit, larger, width, scales, is_state=True, sizes=sizes)
+
+
+class VelocityErrors:
+    """Errors of U or Omega, which are no states, of an answer that is read in blocks.
+
+    ``group`` is the name of their columns.
+    """
+
+    def __init__(self, group: str) -> None:
+        self.group = group
+        self._states, self._sizes = States(), Series()
+
+    def add(self, body: Body, truth: Motion, answer: Column) -> None:
+        """Add the next rows of the exact motion and of the ``answer`` (n, 3)."""
+        rows = velocity(self.group, body, truth.quantities)
+        about, sizes = QUANTITIES[GROUPS[self.group].quantity], norms(rows)
+        most = largest(sizes)
+        distances = {self.group: norms(answer - rows)}
+        widths = {self.group: truth.radius * or_one(most)}
+        block = Distances(about.name, about.unit, distances, widths, {self.group: most})
+        self._sizes.add(sizes, self._states.add(block)[self.group])
+
+    def joined(self) -> tuple[Errors, Floats]:
+        """Return the errors of all rows, and the size of the velocity there over its largest."""
+        (errors,) = self._states.errors()
+        return errors, self._sizes.joined()[0]

@@ -140,9 +140,9 @@ def complete_verdict(
 def comparable(file: TrajectoryFile, scene: Scene) -> list[str]:
     """Return the file's groups that can be compared with the scene. Raises Refused if there are none."""
     known = _known(scene)
-    every, untracked = scene.known_groups, _untracked(scene)
-    groups = [n for n in file.groups if n in known and every[n].quantity not in untracked]
-    if groups:
+    every, tracked = scene.known_groups, {quantity.name for quantity in scene.tracked}
+    compared = {n for n in known if n in VELOCITIES or every[n].quantity in tracked}
+    if groups := [name for name in file.groups if name in compared]:
         return groups
     foreign = [name for name in file.groups if name not in known]
     if foreign:
@@ -168,18 +168,10 @@ def _columns(scene: Scene, groups: Iterable[str]) -> str:
     return " ".join(column for name in groups for column in scene.known_groups[name].columns)
 
 
-def _untracked(scene: Scene) -> set[str]:
-    """Return the quantities that the scene could track but does not track."""
-    return {*TRACKED[scene.model], *_own_states(scene)} - {each.name for each in scene.tracked}
-
-
-def _own_states(scene: Scene) -> Iterator[str]:
-    return (state.name for state in scene.own_states)
-
-
 def _known(scene: Scene) -> list[str]:
     """Return the groups that a file for this model may have; for a solid in a fluid also its velocities."""
-    quantities = {MAIN[scene.model], *TRACKED[scene.model], *_own_states(scene)}
+    own = (state.name for state in scene.own_states)
+    quantities = {MAIN[scene.model], *TRACKED[scene.model], *own}
     velocities = VELOCITIES if scene.model == "kirchhoff" else ()
     every = scene.known_groups
     return [n for n, group in every.items() if group.quantity in quantities or n in velocities]

@@ -33,7 +33,6 @@ from taylor_verify.judge.files.coverage import (
     span_notes,
 )
 from taylor_verify.judge.files.file_rows import FileRows, first_flaw
-from taylor_verify.judge.files.parts import in_parts
 from taylor_verify.judge.files.stored import storing, with_file_kinds
 from taylor_verify.judge.first_row import initial_verdict
 from taylor_verify.judge.floor.counted_steps import Steps
@@ -129,8 +128,10 @@ def judge_file(
     another part of the file. Raises Refused if nothing can be compared.
     """
     if file.apart:
-        options = (rung, accept_conventions, partial, tolerances)
-        return in_parts(file, lambda part, others: judge_file(part, scene, *options, others))
+        parts = (replace(file, apart=()), *file.apart)
+        every = [name for part in parts for name in part.groups]
+        options = (rung, accept_conventions, partial, tolerances, every)
+        return _of_parts(file, [judge_file(part, scene, *options) for part in parts])
     groups = comparable(file, scene)
     asked, has = scene, [*groups, *elsewhere]
     notes = (*file.notes, *coverage_notes(file, has, scene))
@@ -182,16 +183,40 @@ def judge_file(
     if judged.record is not None:
         notes += tuple(load_notes(scene))
     left = () if accept_conventions else known.findings
-    verdicts = with_file_kinds(judged.verdicts, file, rung, left)
-    of_file = (file, known.findings, accept_conventions, breaks_of(scene))
-    missing = explained.missing_load
     return FileJudgement(
-        verdicts,
+        with_file_kinds(judged.verdicts, file, rung, left),
         judged.record,
-        *of_file,
+        file,
+        conventions=known.findings,
+        accepted=accept_conventions,
+        breaks=breaks_of(scene),
+        missing_load=explained.missing_load,
         causes=explained.causes,
         notes=notes,
-        missing_load=missing,
+    )
+
+
+def _of_parts(file: TrajectoryFile, judged: Sequence[FileJudgement]) -> FileJudgement:
+    """Return the judgement of a file by those of its parts, each of which has rows of its own.
+
+    A state is judged in the part that has all of its rows.
+    """
+    verdicts: dict[str, Verdict] = {}
+    for verdict in (verdict for part in judged for verdict in part.verdicts):
+        before = verdicts.get(verdict.quantity, verdict)
+        is_worse = GRAVITY.index(verdict.verdict) < GRAVITY.index(before.verdict)
+        if before is verdict or is_state(verdict.quantity) or is_worse:
+            verdicts[verdict.quantity] = verdict
+    conventions = {finding.sentence: finding for part in judged for finding in part.conventions}
+    causes = {cause.sentence: cause for part in judged for cause in part.causes}
+    return replace(
+        judged[0],
+        file=file,
+        verdicts=tuple(verdicts.values()),
+        conventions=tuple(conventions.values()),
+        causes=tuple(causes.values()),
+        notes=tuple(dict.fromkeys(note for part in judged for note in part.notes)),
+        missing_load=next((part.missing_load for part in judged if part.missing_load), ()),
     )
 
 

@@ -93,7 +93,7 @@ class Floor:
             for part, scale in errors.parts.items()
         ]
         attainable: Floats = self.unit_roundoff * np.max(parts, axis=0)
-        return larger_neighbour(attainable, self._path_times, self.times) / errors.sizes
+        return larger_neighbour(attainable, self.orbit.durations, self.times) / errors.sizes
 
     def of_velocity(self, group: str, errors: Errors, sizes: Floats) -> Floats:
         """Return the error of a velocity that the rounding of x and y, and of the velocity itself, leaves.
@@ -120,7 +120,7 @@ class Floor:
         The motion ``at_nodes`` is in numbers of MPFR.
         """
         nodes = self.nodes
-        ends = np.searchsorted(self._path_times, self.times[nodes], side="right")
+        ends = np.searchsorted(self.orbit.durations, self.times[nodes], side="right")
         injected, steady = np.zeros((2, len(nodes)))
         for block, relative in self._relative(invariant, at_nodes, scale):
             has_arcs = self._has_arcs(block, invariant)
@@ -143,7 +143,7 @@ class Floor:
         """
         times, squares = self.times[self.nodes], np.zeros(len(self.nodes))
         for block, relative in self._relative(invariant, at_nodes, scale):
-            carried = larger_neighbour(self.carried[block], self._path_times, times)
+            carried = larger_neighbour(self.carried[block], self.orbit.durations, times)
             squares += (np.linalg.norm(relative, axis=1) * carried) ** 2
         error: Floats = self.unit_roundoff * np.sqrt(squares)
         return larger_neighbour(error, times, self.times)
@@ -166,7 +166,7 @@ class Floor:
     def terms(self, attainable: Floats, errors: Errors, carried: Carried) -> RoundoffFloor:
         """Return the terms of the floor at the sample of the largest error."""
         worst = int(np.argmax(errors.values))
-        reached = self._path_times <= self.times[worst]
+        reached = self.orbit.durations <= self.times[worst]
         steps = max(1, round(float(np.sum(self.steps_at[reached]))))
         value = float(attainable[worst])
         alike = min(self._alike(reached), steps)
@@ -255,10 +255,6 @@ class Floor:
                 begin, arc = k, np.eye(size)
         return _Arcs(squares, lengths)
 
-    @cached_property
-    def _path_times(self) -> Floats:
-        return np.array([abs(float(t)) for t in self.orbit.elapsed])
-
 
 def _length(excess: float, roundings: float) -> str:
     """Return the length 1 + excess as text, with the digits that distinguish it from 1."""
@@ -336,7 +332,7 @@ def orbit_of(scene: Scene, digits: int = DIGITS) -> Path:
 def radians(orbit: Path) -> float:
     """Return the angle that the fastest rate of an orbit covers by its end."""
     rates = orbit.flow.rate(orbit.momentum) / float(orbit.flow.time)
-    times = np.array([abs(float(t)) for t in orbit.elapsed])
+    times = orbit.durations
     if orbit.scene.body.loads is not None and len(times) > 1:
         # What the loads do to the momenta, over their largest size.
         size = np.max(np.linalg.norm(orbit.momentum, axis=1)) or 1.0
@@ -362,7 +358,7 @@ def _at_instants(rounded: Floats, orbit: Path, steps_at: Floats) -> Floats:
     loads = orbit.scene.body.loads
     if loads is None or not loads.held_states:
         return rounded
-    result, times = rounded.copy(), np.array([abs(float(t)) for t in orbit.elapsed])
+    result, times = rounded.copy(), orbit.durations
     counts = {state.name: np.zeros(len(times)) for state in loads.held_states}
     for instant in loads.instants(orbit.elapsed[-1]):
         # Two times that are one in float64 have no step between them.

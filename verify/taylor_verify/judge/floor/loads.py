@@ -45,41 +45,51 @@ class Piece:
         """Return dM/dv for each output M and each step v."""
         return [gradient(self.steps, self.values, output) for output in self.outputs]
 
+    def _by(self, k: int) -> Floats:
+        """Return v dM/dv of step k, (times, outputs)."""
+        return np.column_stack([g[k] * self.values[k] for g in self.gradients])
+
+    def _nothing(self) -> Floats:
+        return np.zeros((len(self.places), len(self.outputs)))
+
     def sizes(self) -> Floats:
         """Return the sum of |dM/dv| |v| over all steps but the numbers, which are data."""
-        made = [k for k, step in enumerate(self.steps) if step.operation != "number"]
-        columns = [
-            sum((abs(g[k] * self.values[k]) for k in made), np.zeros(len(self.places)))
-            for g in self.gradients
-        ]
-        return np.column_stack(columns)
+        made = (k for k, step in enumerate(self.steps) if step.operation != "number")
+        return sum((abs(self._by(k)) for k in made), self._nothing())
 
     def by_length(self) -> Floats:
         """Return d dM/dd by output, for a quaternion of length d: R(q) has its square, q itself d."""
         powers = {**dict.fromkeys(QUATERNION, 1.0), **dict.fromkeys(ROTATION, 2.0)}
-        read = [(k, powers[s.name]) for k, s in enumerate(self.steps) if s.name in powers]
-        columns = [
-            sum((power * g[k] * self.values[k] for k, power in read), np.zeros(len(self.places)))
-            for g in self.gradients
-        ]
-        return np.column_stack(columns)
+        read = ((k, powers[s.name]) for k, s in enumerate(self.steps) if s.name in powers)
+        return sum((power * self._by(k) for k, power in read), self._nothing())
 
-    def numbers(self) -> Iterator[tuple[Fraction, Floats]]:
-        """Yield each number p of the steps with p dM/dp, (times, outputs)."""
-        places: dict[Fraction, list[int]] = {}
+    def numbers(self) -> dict[Fraction, Floats]:
+        """Return p dM/dp of each number p of the steps, (times, outputs)."""
+        by: dict[Fraction, Floats] = {}
         for k, step in enumerate(self.steps):
             if step.operation == "number" and step.number:
-                places.setdefault(abs(step.number), []).append(k)
-        for number, equal in places.items():
-            columns = [sum(g[k] * self.values[k] for k in equal) for g in self.gradients]
-            yield number, np.column_stack(columns)
+                number = abs(step.number)
+                by[number] = by.get(number, 0.0) + self._by(k)
+        return by
+
+    def by_numbers(self) -> Floats:
+        """Return the sum of |p dM/dp| over all numbers p."""
+        return sum(map(abs, self.numbers().values()), self._nothing())
 
 
 @dataclass(frozen=True)
 class Along:
-    """The motion of a path in the units of its scene, and its loads."""
+    """The motion of a path in the units of its scene, and its loads.
+
+    Its equations are those of the ``other`` body if there is one, at the same state.
+    """
 
     path: Path
+    other: Body | None = None
+
+    @property
+    def body(self) -> Body:
+        return self.path.scene.body if self.other is None else self.other
 
     @cached_property
     def loads(self) -> Loads:
@@ -128,27 +138,28 @@ class Along:
             groups.setdefault(id(piece), (piece, []))[1].append(k)
         return list(groups.values())
 
-    def forces(self, body: Body | None = None) -> Floats:
-        """Return the loads at every time; those at another body's velocities with the same state."""
-        return self.outputs(body)[:, : self.loads_count]
+    def forces(self) -> Floats:
+        """Return the loads at every time."""
+        return self.split(self.outputs())[0]
 
-    def outputs(self, body: Body | None = None) -> Floats:
+    def outputs(self) -> Floats:
         """Return the loads, rates and values of own states, and the momentum of wheels, at every time."""
-        along = self if body is None else _Beside(self.path, body)
-        return _placed(
-            along, lambda piece: np.column_stack([piece.values[k] for k in piece.outputs])
-        )
+        return self._placed(lambda each: np.column_stack([each.values[k] for k in each.outputs]))
+
+    def _placed(self, of: Callable[[Piece], Floats]) -> Floats:
+        """Return rows of each piece, in the order of the times."""
+        first = self.loads.piece(Fraction(0))
+        width = len((*first.outputs, *first.rates, *first.values, *first.rotor))
+        rows = np.zeros((len(self.path.elapsed), width))
+        for piece in self.pieces():
+            rows[piece.places] = of(piece)
+        return rows
 
     def split(self, outputs: Floats) -> list[Floats]:
         """Return the columns of outputs: loads, rates, values, and the momentum of wheels."""
         first = self.loads.piece(Fraction(0))
         ends = np.cumsum([len(first.outputs), len(first.rates), len(first.values)])
         return np.split(outputs, ends, axis=1)
-
-    @property
-    def loads_count(self) -> int:
-        """The number of components of the loads."""
-        return len(self.loads.piece(Fraction(0)).outputs)
 
     @property
     def own_starts(self) -> list[float]:
@@ -181,20 +192,15 @@ class Along:
 
     def sizes(self) -> Floats:
         """Return what the roundings inside the texts add up to by output, in units of roundoff."""
-        return _placed(self, Piece.sizes)
+        return self._placed(Piece.sizes)
 
     def by_numbers(self) -> Floats:
         """Return what a rounding of each number of the texts adds up to by output."""
-
-        def total(piece: Piece) -> Floats:
-            parts = [abs(by) for _, by in piece.numbers()]
-            return sum(parts, np.zeros((len(piece.places), len(piece.outputs))))
-
-        return _placed(self, total)
+        return self._placed(Piece.by_numbers)
 
     def by_length(self) -> Floats:
         """Return the derivative of the outputs by the length of a quaternion that makes R and q."""
-        return _placed(self, Piece.by_length)
+        return self._placed(Piece.by_length)
 
     def pushes(self, change: Floats) -> tuple[Floats, Floats]:
         """Return the errors of the rates, and of held values, by changes of the outputs.
@@ -205,7 +211,7 @@ class Along:
         kind = kind_of(body)
         pushed = np.array(kind.pushed(body), dtype=float)
         loads, rates, values, _ = self.split(change)
-        push, own = np.zeros((len(change), d + 6 + self.own_count)), d + 6 + rates.shape[1]
+        push, own = np.zeros((len(change), self.width)), d + 6 + rates.shape[1]
         push[:, :d] = loads @ pushed.T @ kind.momentum_matrix(body).astype(float).T
         push[:, d + 6 : own] = rates
         if self.loads.rotor:
@@ -216,9 +222,9 @@ class Along:
         return push, taken
 
     @property
-    def own_count(self) -> int:
-        """The number of components of the scene's own states."""
-        return sum(rows.shape[1] for rows in self.path.carried.own.values())
+    def width(self) -> int:
+        """The number of components of momentum, turn, centre and own states."""
+        return len(self.sizes_of_state)
 
     @property
     def sizes_of_state(self) -> Floats:
@@ -228,29 +234,15 @@ class Along:
         own = [float(path.units[n]) for n, rows in path.carried.own.items() for _ in rows[0]]
         return np.array([*units, *[float(path.flow.length)] * 3, *own])
 
-    @property
-    def body(self) -> Body:
-        return self.path.scene.body
-
-    def rates(self, body: Body | None = None) -> tuple[Floats, Floats, Floats]:
+    def rates(self) -> tuple[Floats, Floats, Floats]:
         """Return the rates of z, of the turn and of the centre, (n, d), (n, 3) and (n, 3)."""
-        other = self.body if body is None else body
-        kind, z = kind_of(other), self.state
-        equations = kind.equations(other)
+        kind, z = kind_of(self.body), self.state
         constant, linear, hessian, spin, velocity = (
-            np.array(part, dtype=float)
-            for part in (
-                equations.constant,
-                equations.linear,
-                equations.hessian,
-                equations.spin,
-                equations.velocity,
-            )
+            part.astype(float) for part in kind.equations(self.body)
         )
-        pushed = (self.forces(body) + self._of_wheels(z @ spin.T)) @ np.array(
-            kind.pushed(other), dtype=float
-        ).T
-        rate = constant + z @ linear.T + np.einsum("iab,ta,tb->ti", hessian, z, z) / 2 + pushed
+        pushed = np.array(kind.pushed(self.body), dtype=float)
+        rate = constant + z @ linear.T + np.einsum("iab,ta,tb->ti", hessian, z, z) / 2
+        rate = rate + (self.forces() + self._of_wheels(z @ spin.T)) @ pushed.T
         turn = np.einsum("tij,tj->ti", self.attitude, z @ spin.T)
         if not len(velocity):
             return rate, turn, np.zeros_like(turn)
@@ -281,7 +273,7 @@ class Along:
         for state in self.loads.states:
             rows = self.path.carried.own[state.name]
             inputs |= dict(zip(state.components, rows.T, strict=True))
-        inputs |= {f"r{i + 1}{j + 1}": R[:, i, j] for i in range(3) for j in range(3)}
+        inputs |= dict(zip(ROTATION, R.reshape(-1, 9).T, strict=True))
         if self.loads.inputs.isdisjoint(QUATERNION):
             return inputs
         return inputs | dict(zip(QUATERNION, self.quaternions.T, strict=True))
@@ -290,28 +282,3 @@ class Along:
     def quaternions(self) -> Floats:
         """Unit quaternions of the attitude, continuous from the scene's."""
         return quaternions(self.attitude, self.path.scene.initial.attitude)
-
-
-@dataclass(frozen=True)
-class _Beside(Along):
-    """The motion of a path, taken for one of a body with other numbers."""
-
-    other: Body
-
-    @property
-    def body(self) -> Body:
-        return self.other
-
-    @cached_property
-    def state(self) -> Floats:
-        return Along(self.path).state
-
-
-def _placed(along: Along, of: Callable[[Piece], Floats]) -> Floats:
-    """Return rows of each piece, in the order of the times."""
-    first = along.loads.piece(Fraction(0))
-    width = len((*first.outputs, *first.rates, *first.values, *first.rotor))
-    rows = np.zeros((len(along.path.elapsed), width))
-    for piece in along.pieces():
-        rows[piece.places] = of(piece)
-    return rows

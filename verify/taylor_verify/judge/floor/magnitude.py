@@ -90,7 +90,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     quaternion turns the frame about all axes equally. With ``velocities`` m_i replaces |x_i| where it is
     larger.
     """
-    problem = _posed(_without_loads(given, path), bits)
+    problem = _posed(given, path, bits)
     sizes = _sizes(problem, path)
     rates = _rates(problem, sizes)
     if given.body.loads is not None:
@@ -104,11 +104,11 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
         for name in moving:
             rounded[name] = np.where(sizes[name] > 0, np.maximum(rounded[name], _least(bits)), 0.0)
     columns = []
-    for block in _of_body(path):
+    for block in path.blocks:
         if block == "attitude":
             turn = _ANGLE * np.sqrt(sum(rounded[name] ** 2 for name in _QUATERNION))
             columns += [turn / np.sqrt(3.0)] * 3
-        else:
+        elif block not in path.carried.own:
             unit = float(_unit(problem, block) / path.units[block])
             columns += [rounded[name] * unit for name in _COMPONENTS[block]]
     roundings_at: Floats = np.column_stack(columns)
@@ -121,10 +121,6 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
     return roundings_at
 
 
-def _of_body(path: Path) -> list[str]:
-    return [block for block in path.blocks if block not in path.carried.own]
-
-
 def _of_own_states(path: Path, h: float) -> Floats:
     """Return r of states of the scene's own, those with a rate first; of a held one that of its value."""
     along, own = Along(path), path.carried.own
@@ -134,14 +130,6 @@ def _of_own_states(path: Path, h: float) -> Floats:
     units = [float(path.units[name]) for name, rows in own.items() for _ in rows[0]]
     counted: Floats = rounded / np.array(units)
     return counted
-
-
-def _without_loads(given: Scene, path: Path) -> Scene:
-    """Return the scene without written loads, which tracks what the path carries."""
-    if given.body.loads is None:
-        return given
-    frame = frozenset(path.blocks) & {"attitude", "centre"}
-    return replace(given, body=given.body.with_loads(None), track=frame)
 
 
 def _with_loads(rates: Mapping[str, Floats], problem: Problem, path: Path) -> dict[str, Floats]:
@@ -164,8 +152,11 @@ def _through_velocities(body: Body, path: Path) -> Floats:
     return magnitudes
 
 
-def _posed(given: Scene, bits: int) -> Problem:
-    """Return the posed equations of the body at this precision."""
+def _posed(given: Scene, path: Path, bits: int) -> Problem:
+    """Return the posed equations of the body at this precision, without written loads."""
+    if given.body.loads is not None:
+        frame = frozenset(path.blocks) & {"attitude", "centre"}
+        given = replace(given, body=given.body.with_loads(None), track=frame)
     end = given.clock.instants[-1]
     return pose(replace(given, clock=Clock(given.clock.start, (end,))), Rung(f"mp{bits}", bits))
 
@@ -201,14 +192,8 @@ def _rates(problem: Problem, sizes: Mapping[str, Floats]) -> dict[str, Floats]:
 
 def _least(bits: int) -> float:
     """Return the least normal number of the format with this many bits; 0 for MPFR's numbers."""
-    return next(
-        (
-            2.0 ** max(number_format.emin, -1074)
-            for number_format in FORMATS.values()
-            if number_format.bits == bits
-        ),
-        0.0,
-    )
+    exponents = {each.bits: each.emin for each in FORMATS.values()}
+    return 2.0 ** max(exponents[bits], -1074) if bits in exponents else 0.0
 
 
 def _largest(columns: Mapping[str, Floats], names: Sequence[str]) -> float:

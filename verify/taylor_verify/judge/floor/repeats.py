@@ -86,38 +86,22 @@ def _squares(change: Floats, steps_at: Floats) -> Floats:
 
 
 def _courses(path: Path) -> list[Course]:
-    """Return the courses of the momenta, of the attitude and of the centre, as far as tracked."""
-    if path.scene.body.loads is not None:
-        return _by_differences(path)
-    courses = [_momenta(path)]
+    """Return the courses of the momenta, of attitude and centre as far as tracked, and of own states.
+
+    Under written loads derivatives are differences along the path.
+    """
+    scene = path.scene
+    courses = [_momenta(path) if scene.body.loads is None else _differences(path, path.momentum)]
     if "attitude" in path.blocks:
         courses.append(_turns(path, courses[0]))
     if "centre" in path.blocks:
-        courses.append(_followed_centre(path) if is_of_run(path.scene) else _centre(path))
-    return courses
-
-
-def _by_differences(path: Path) -> list[Course]:
-    """Return the courses under written loads, whose derivatives are differences along the path."""
-    momenta = _differences(path, path.momentum)
-    courses = [momenta]
-    if "attitude" in path.blocks:
-        courses.append(_turns(path, momenta))
-    if "centre" in path.blocks:
-        courses.append(_followed_centre(path))
-    taken = {state.name for state in path.scene.own_states if isinstance(state, Held)}
+        courses.append(_centre(path))
+    taken = {state.name for state in scene.own_states if isinstance(state, Held)}
     for name, rows in path.carried.own.items():
         x = rows / float(path.units[name])
         still = np.zeros_like(x)
         courses.append(Course(x, still, still) if name in taken else _differences(path, x))
     return courses
-
-
-def _followed_centre(path: Path) -> Course:
-    """Return the course of a centre that the path follows closely."""
-    length = path.units["centre"]
-    start = [float(c / length) for c in path.scene.initial.parts()["centre"]]
-    return _differences(path, path.centre + start)
 
 
 def _differences(path: Path, x: Floats) -> Course:
@@ -154,9 +138,11 @@ def _turns(path: Path, momenta: Course) -> Course:
 
 
 def _centre(path: Path) -> Course:
-    """Return c, c' and c'' in space axes."""
+    """Return c, c' and c'' in space axes; differences along a path of one run, which is close to it."""
     scene, length = path.scene, path.units["centre"]
-    start = [float(c / length) for c in scene.initial.parts()["centre"]]
+    c = path.centre + [float(each / length) for each in scene.initial.parts()["centre"]]
+    if is_of_run(scene):
+        return _differences(path, c)
     exact = rates(scene, solution(scene).motion(path.elapsed, _DIGITS))
     unit, later = (
         exact.units["centre"] - floor_log2(length),
@@ -168,7 +154,7 @@ def _centre(path: Path) -> Course:
         np.linalg.norm(rows, axis=1)[:, None]
         for rows in (rate, path.momentum @ path.flow.equations.spin.T, bend)
     )
-    return Course(path.centre + start, _resolved(rate, speed), _resolved(bend, turn * speed + push))
+    return Course(c, _resolved(rate, speed), _resolved(bend, turn * speed + push))
 
 
 def _resolved(values: Floats, terms: Floats) -> Floats:

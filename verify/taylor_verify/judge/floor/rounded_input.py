@@ -16,7 +16,6 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -38,7 +37,7 @@ from taylor_verify.judge.floor.attainable import (
     orbit_of,
     orbit_of_run,
 )
-from taylor_verify.judge.floor.moves import Moves
+from taylor_verify.judge.floor.moves import CHANGE, Moves
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS
@@ -108,9 +107,9 @@ def _by_derivative(given: Scene, rung: Rung) -> InputRounding:
     rows = [places[given.clock.elapsed[k]] for k in nodes]
     instants = tuple(given.clock.instants[k] for k in nodes)
     scene = replace(given, clock=Clock(given.clock.start, instants))
-    changes = [partial(_with_one, given, place) for place in _numbers(given)]
+    changed = [_with_factors(given, {place: 1 + CHANGE}) for place in _numbers(given)]
     with mp.workprec(working_bits(rung.bits)):
-        moves, roundoff = Moves(path, changes), float(rung.unit_roundoff)
+        moves, roundoff = Moves(path, changed), float(rung.unit_roundoff)
         gates = _Gates(scene, moves.here(rows))
         draws = [gates.squares(motion) for motion in moves.motions(rows, roundoff)]
         total = {name: np.mean([draw[name] for draw in draws], axis=0) for name in draws[0]}
@@ -133,10 +132,6 @@ def _at_samples(
     }
 
 
-def _with_one(scene: Scene, place: Place, change: Fraction) -> Scene:
-    return _with_factors(scene, {place: 1 + change})
-
-
 class _Gates:
     """The quantities that gates compare, beside the exact motion ``here`` of a scene.
 
@@ -145,31 +140,31 @@ class _Gates:
 
     def __init__(self, scene: Scene, here: Motion) -> None:
         self._scene, self._here, self._invariants = scene, here, invariants(scene)
-        self._conserved = self._conserved_along(here)
         self._velocities = self._velocities_along(here)
+        with precision():
+            motion = self._undamped(here)
+            self._conserved = [
+                (each.value(motion), each.scale(motion)) for each in self._invariants
+            ]
 
     def squares(self, there: Motion) -> dict[str, Floats]:
         """Return the squared change of every quantity by one move, in the units of the gates."""
         states = state_errors(self._scene, self._here, there)
         changes = {each.quantity: each.values for each in states}
         with precision():
-            for name, (values, _) in self._conserved_along(there).items():
-                before, scale = self._conserved[name]
-                change = values - before
-                changes[name] = (row_norms(change) if change.ndim > 1 else abs(change)) / scale
+            motion = self._undamped(there)
+            for each, (before, scale) in zip(self._invariants, self._conserved, strict=True):
+                change = each.value(motion) - before
+                sizes = row_norms(change) if change.ndim > 1 else abs(change)
+                changes[each.name] = sizes / scale
         for name, after in self._velocities_along(there).items():
             before = self._velocities[name]
             changes[name] = norms(after - before) / (max(norms(before)) or 1)
         return {name: values.astype(float) ** 2 for name, values in changes.items()}
 
-    def _conserved_along(self, motion: Motion) -> dict[str, tuple[Any, Any]]:
-        """The values and the scale of each conserved quantity, in the numbers of MPFR."""
-        with precision():
-            elapsed = self._scene.clock.elapsed
-            undamped = without_damping(self._scene, in_mpfr(motion), elapsed)
-            return {
-                each.name: (each.value(undamped), each.scale(undamped)) for each in self._invariants
-            }
+    def _undamped(self, motion: Motion) -> Motion:
+        """The motion in the numbers of MPFR, with the momenta that damping would not have changed."""
+        return without_damping(self._scene, in_mpfr(motion), self._scene.clock.elapsed)
 
     def _velocities_along(self, motion: Motion) -> dict[str, Any]:
         if not has_velocities(self._scene.body):
