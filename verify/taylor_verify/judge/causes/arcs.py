@@ -239,7 +239,10 @@ class Arcs(Evidence):
 
     def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:
         """Return the ends of the arcs by the equations, with at least the components they depend on."""
-        begin = self.begin(max(count, equations.coupled))
+        return self.moved(equations, self.begin(max(count, equations.coupled)), steps)
+
+    def moved(self, equations: Equations, begin: Floats, steps: int) -> Floats:
+        """Return the ends of the arcs from other states at their begins."""
         return moved(self.answer, equations, begin, self.since, self.spans, steps)
 
     def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:

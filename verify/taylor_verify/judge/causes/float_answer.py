@@ -265,6 +265,7 @@ class Answer:
             places=np.concatenate([[self.places[0] - self.stride], self.places]),
             file=start.before(self.file),
             truth=start.before(self.truth),
+            own_attitudes=None,
         )
 
     @cached_property

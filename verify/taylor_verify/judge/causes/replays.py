@@ -116,7 +116,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
                 name=_name(steps, answer.n, h),
                 kind="method",
                 defects=steps.left,
-                motion=partial(_motion, steps.method, steps.count),
+                motion=partial(_motion, steps),
                 near=_LEAVES,
                 changes=held_over_steps(answer, h) if steps.method is HELD else {},
                 method=(steps.method, steps.count),
@@ -253,17 +253,11 @@ def _fine(method: Method) -> int:
     return _FINE_OF_DEAR if method.is_dear else _FINE
 
 
-def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
+def _motion(steps: Steps, answer: Answer) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
-    times = answer.times if answer.is_from_start else np.r_[answer.begins, answer.times]
-    since, spans = times[:-1], np.diff(times)
-
-    def go(z: Floats) -> Floats:
-        return replay(answer, method, answer.right, z, since, spans, steps)
-
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
-    components = max(answer.right.coupled, answer.n + frame * method.has_frame)
-    return whole(answer, answer.right, go, components)
+    components = max(answer.right.coupled, answer.n + frame * steps.method.has_frame)
+    return whole(stepped(answer, steps), answer.right, components)
 
 
 def stepped(answer: Answer, steps: Steps) -> Answer:
