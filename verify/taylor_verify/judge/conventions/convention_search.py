@@ -27,7 +27,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.causes.quick_motion import quick_motion
-from taylor_verify.judge.conventions.axis_orders import Axes, Frames, renamings
+from taylor_verify.judge.conventions.axis_orders import AXES, Axes, Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
     EXPLAINS,
@@ -39,7 +39,6 @@ from taylor_verify.judge.conventions.fits import (
     simplest,
 )
 from taylor_verify.judge.conventions.meanings import readings, rotations
-from taylor_verify.judge.conventions.unrefuted_axes import unrefuted
 from taylor_verify.judge.conventions.worlds import World, worlds
 from taylor_verify.judge.velocities import has_velocities, velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
@@ -67,6 +66,8 @@ _FEW_ROWS: Final = 12
 # Number of evenly chosen rows that represent a beginning.
 _MOST_ROWS: Final = 24
 _DIGITS: Final = 20
+# The matrices P^T of all renamings, for rows v of which v P^T is P v.
+_RENAMING: Final = np.array([axes.vectors(np.eye(3)) for axes in AXES])
 # For a hypothesis the Taylor route goes at most this many spans of the scene.
 MOST_SPANS: Final = 10
 
@@ -227,7 +228,9 @@ class _Search:
             if reading.in_space:
                 vectors, known = (np.einsum("nij,nj->ni", R, rows) for rows in (vectors, right))
             axes = of_space if reading.in_space or is_placed else of_body
-            axes |= unrefuted(vectors, known, most * size)
+            apart = np.max(np.linalg.norm(vectors @ _RENAMING - known, axis=2), axis=1)
+            # NaN refutes nothing.
+            axes |= {each for each, far in zip(AXES, apart > most * size, strict=True) if not far}
         return of_body, of_space
 
     @cached_property
