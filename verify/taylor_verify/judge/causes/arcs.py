@@ -174,6 +174,10 @@ class Evidence:
         """The error of the evidence itself, as a part of the defects."""
         return 0.0
 
+    def along(self, changes: Changes) -> float:
+        """Return the cosine between the defects and what changes make of them, about; 1 if it is unknown."""
+        return 1.0
+
     @cached_property
     def floor(self) -> float:
         """The rounding of the file as a part of the defects."""
@@ -302,8 +306,7 @@ class Arcs(Evidence):
 
     def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
         answer, n = self.answer, self.answer.n
-        equations = answer.right.copies(sets) if len(sets) > 1 else answer.right.changed(sets[0])
-        ends = self.ends(equations, steps or self.steps, self.compared)
+        ends = self.ends(answer.right.copies(sets), steps or self.steps, self.compared)
         defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
         if self.compared > n:
             assert answer.file.q is not None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -18,29 +18,28 @@ from taylor_verify.words.causes import with_numbers
 _SAME: Final = 1e-10
 
 
-def without_numbers(numbers: Floats) -> Candidate:
-    """Raise ValueError: a fault without numbers has no other ones."""
-    raise ValueError(numbers)
-
-
 @dataclass(frozen=True)
 class Candidate:
-    """A fault with the part of the ``defects`` that it leaves, and its motion at the rows of an answer.
+    """A fault with the part of the ``defects`` that it leaves, and the motion of its changes at rows.
 
-    It may be proven if it leaves no more than ``near``. ``changes`` are those of the equations; a
-    ``method`` with a number of steps takes their place. ``of`` returns it with other numbers.
+    It may be proven if it leaves no more than ``near``. ``changes`` are those of the equations; the steps
+    of a ``method`` take their place.
     """
 
     name: str
     kind: str
     defects: float
-    motion: Callable[[Answer], Motion | None]
+    motion: Callable[[Answer, Changes], Motion | None]
     near: float
     numbers: Floats | None = None
     changes: Changes = field(default_factory=dict)
     family: Family | None = None
     method: Any = None
-    of: Callable[[Floats], Candidate] = without_numbers
+
+    def of(self, numbers: Floats) -> Candidate:
+        """Return the candidate of a family with other numbers."""
+        assert self.family is not None
+        return replace(self, numbers=numbers, changes=self.family.changes(numbers))
 
     @property
     def count(self) -> int:

@@ -81,9 +81,8 @@ def _first_wrong(answer: Answer) -> int:
 def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motion]:
     """Yield the motion at the rows of an answer of each set of changes."""
     for part in parts_of(sets):
-        right = answer.right
-        equations = right.copies(part) if len(part) > 1 else right.changed(part[0])
-        rows = _course(answer, replace(equations, has_momenta=True), len(part), h)
+        equations = replace(answer.right.copies(part), has_momenta=True)
+        rows = _course(answer, equations, len(part), h)
         yield from (_motion(answer, each) for each in rows)
 
 

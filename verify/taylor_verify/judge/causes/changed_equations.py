@@ -138,7 +138,12 @@ class Equations:
         return replace(self, **changes)
 
     def copies(self, sets: Sequence[Changes]) -> Equations:
-        """Return equations with an axis of parameter sets; a set names the parameters that it changes."""
+        """Return equations with an axis of parameter sets, if there are several.
+
+        A set names the parameters that it changes.
+        """
+        if len(sets) == 1:
+            return self.changed(sets[0])
         names = {name for changes in sets for name in changes}
         right = {name: getattr(self, name) for name in names}
         if "turns" in names and self.turns is None:

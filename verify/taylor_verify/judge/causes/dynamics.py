@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import combinations
 from typing import Any, Final
 
@@ -13,13 +13,14 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
+from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
     Fault,
+    Fitted,
     Sizes,
     across,
     both,
@@ -244,9 +245,8 @@ class Search:
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
-                    method = (steps.method, steps.count)
                     text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
-                    return replace(cause, text=text, method=method)
+                    return replace(cause, text=text, method=steps)
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
@@ -268,20 +268,19 @@ class Search:
             of.name,
             of.kind,
             left / self.evidence.size,
-            lambda answer: self.motion(answer, changes),
+            self.motion,
             near=_LOOSE if is_loose else LEAVES,
             changes=changes,
             numbers=numbers,
             family=family,
-            of=partial(self._fitted, family, left) if family else without_numbers,
         )
 
-    def _fitted(self, family: Family, size: float, numbers: Floats) -> Candidate:
-        return self._candidate(family, size, family.changes(numbers), numbers)
+    def _fitted(self, family: Family, fit: Fitted) -> Candidate:
+        return self._candidate(family, fit.size, family.changes(fit.numbers), fit.numbers)
 
     def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
-        faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
+        faults = [fault for fault in faults if self.evidence.along(fault.changes) > _ALONG[0]]
         near = [*self._near(faults)]
         every: Any = self.evidence.defects([fault.changes for fault in near]) if near else []
         for fault, defects in zip(near, every, strict=True):
@@ -309,13 +308,10 @@ class Search:
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
 
-    def _along(self, changes: Changes) -> float:
-        return self.evidence.along(changes) if isinstance(self.evidence, Arcs) else 1.0
-
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         ahead = [(family, family.ahead) for family in families]
-        ahead = [each for each in ahead if abs(self._along(each[1][0])) > _ALONG[1]]
+        ahead = [each for each in ahead if abs(self.evidence.along(each[1][0])) > _ALONG[1]]
         sets = [changes for _, of_family in ahead for changes in of_family]
         defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
         linear = list[_Linear]()
@@ -349,7 +345,7 @@ class Search:
                 if family.kind == "clock" and isinstance(self.evidence, Arcs) and not counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
-                    candidate = self._fitted(family, fit.size, fit.numbers)
+                    candidate = self._fitted(family, fit)
                     if self._is_exact(candidate):
                         counts.append(family.count)
                         limit = min(limit, max(BETTER * each.left, _NEARLY))
@@ -379,4 +375,4 @@ class Search:
             family = both(self.answer.right, few[i].family, few[k].family)
             fit = gauss_newton(self.evidence, family)
             if fit.size / size < max(PAIR, 3 * self.floor):
-                yield self._fitted(family, fit.size, fit.numbers)
+                yield self._fitted(family, fit)

@@ -26,7 +26,7 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angl
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
 from taylor_verify.judge.causes.replayed_methods import UPDATES
-from taylor_verify.judge.causes.replays import replay
+from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16
@@ -60,10 +60,10 @@ _WRONG: Final = (
 Maps = Callable[[Arcs], Floats]
 
 
-def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | None:
+def kinematics(answer: Answer, right: Equations, method: Steps | None = None) -> Cause | None:
     """Return the proven cause of a wrong attitude by equations that are right for the moving part.
 
-    A ``method`` of the moving part, with its number of steps, is taken for that part. An attitude that
+    The steps of a ``method`` of the moving part are taken for that part. An attitude that
     follows from the file's own omega is not wrong by itself.
     """
     answer = answer.with_start(right.mass)
@@ -118,7 +118,7 @@ class _Turns(Evidence):
         return np.asarray(ends * signs - unit)
 
     def motion(self, answer: Answer, changes: Changes) -> Motion:
-        return _chained(partial(maps_of_attitude, self.right.changed(changes)), answer)
+        return _chained(partial(maps_of_attitude, self.right.changed(changes)), answer, changes)
 
     def candidate(self, name: str, kind: str, maps: Maps) -> Candidate:
         """Return the candidate whose attitudes follow by maps of q."""
@@ -128,7 +128,7 @@ class _Turns(Evidence):
         return Candidate(name, kind, left, partial(_chained, maps), _REPLAYED)
 
 
-def _chained(maps: Maps, answer: Answer) -> Motion:
+def _chained(maps: Maps, answer: Answer, _: Changes) -> Motion:
     assert answer.start.q is not None
     return Motion(answer.truth.v, chained(maps(row_to_row(answer)), answer.start.q[0]))
 
@@ -160,7 +160,7 @@ def _families(answer: Answer, right: Equations) -> list[Family]:
     ]
 
 
-def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
+def _updates(turns: _Turns, method: Steps | None) -> Iterator[Candidate]:
     arcs, right, n = turns.arcs, turns.right, turns.answer.n
     if right.coupled > n:
         return
@@ -173,7 +173,7 @@ def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
 
         if method is None and not _is_along(exact, exact - error(_FEW)):
             continue
-        steps = method[1] if method else _steps(order, partial(_apart, error, exact), turns.size)
+        steps = method.count if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))
         h = float(np.median(np.abs(arcs.spans))) / best
@@ -216,14 +216,14 @@ def _updated(update: Any, q: Floats, rates: list[Floats], h: Floats) -> Floats:
     return q
 
 
-def _rates(right: Equations, arcs: Arcs, method: Any, steps: int) -> list[Floats]:
+def _rates(right: Equations, arcs: Arcs, method: Steps | None, steps: int) -> list[Floats]:
     """Return omega at the begin of the arcs and after each of so many steps."""
     answer, h = arcs.answer, arcs.spans / steps
     v = arcs.begin(answer.n)
     rows = [v]
     if method:
         for k in range(steps):
-            rows.append(replay(answer, method[0], right, rows[-1], arcs.since + k * h, h, 1))
+            rows.append(replay(answer, method.method, right, rows[-1], arcs.since + k * h, h, 1))
     else:
         spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
         ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)
@@ -235,7 +235,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
     return (right.inverse @ v if right.has_momenta else v)[:, -3:]
 
 
-def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) -> Floats:
+def _maps(right: Equations, update: Any, steps: int, method: Steps | None, arcs: Arcs) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
     n = arcs.answer.n
     q = with_units(arcs.begin(n)[0])[:, n:]

@@ -119,7 +119,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
                 motion=partial(_motion, steps),
                 near=_LEAVES,
                 changes=held_over_steps(answer, h) if steps.method is HELD else {},
-                method=(steps.method, steps.count),
+                method=steps,
             )
 
 
@@ -235,9 +235,7 @@ class _Replays:
         arcs, answer = self.arcs, self.arcs.answer
         rows = []
         for part in parts_of(sets):
-            equations = (
-                answer.right.copies(part) if len(part) > 1 else answer.right.changed(part[0])
-            )
+            equations = answer.right.copies(part)
             begin = arcs.begin(max(answer.n, equations.coupled))
             ends = replay(answer, method, equations, begin, arcs.since, arcs.spans, steps)
             rest = (arcs.end - ends[:, : answer.n]) / answer.sizes[:, None]
@@ -253,7 +251,7 @@ def _fine(method: Method) -> int:
     return _FINE_OF_DEAR if method.is_dear else _FINE
 
 
-def _motion(steps: Steps, answer: Answer) -> Motion | None:
+def _motion(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
     components = max(answer.right.coupled, answer.n + frame * steps.method.has_frame)

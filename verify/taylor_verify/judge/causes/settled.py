@@ -116,7 +116,7 @@ class Choice:
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""
-        motion = candidate.motion(self.answer)
+        motion = candidate.motion(self.answer, candidate.changes)
         if motion is None:
             return None
         leaves = self.answer.leaves(motion)
@@ -129,7 +129,7 @@ class Choice:
         assert numbers is not None
 
         def rest(numbers: Floats) -> Floats:
-            motion = candidate.of(numbers).motion(few)
+            motion = candidate.motion(few, family.changes(numbers))
             if motion is None:
                 raise ValueError(numbers)
             return np.asarray((few.file.v - motion.v) / few.sizes).ravel()
