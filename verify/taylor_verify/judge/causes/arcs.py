@@ -175,7 +175,7 @@ class Evidence:
         return 0.0
 
     def along(self, changes: Changes) -> float:
-        """Return the cosine between the defects and what changes make of them, about; 1 if it is unknown."""
+        """Return the cosine between the defects and what changes make of them, or 1 if it is unknown."""
         return 1.0
 
     @cached_property
