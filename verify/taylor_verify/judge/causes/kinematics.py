@@ -25,7 +25,7 @@ from taylor_verify.judge.causes.fit import Family, Fault, linear
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
-from taylor_verify.judge.causes.replayed_methods import UPDATES
+from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.scenes.instants import evenly
 
@@ -166,13 +166,14 @@ def _updates(turns: _Turns, method: Steps | None) -> Iterator[Candidate]:
         return
     q, rates = arcs.begin(n + 4)[:, n:], cache(partial(_rates, right, arcs, method))
     exact = turns.rest(arcs.ends(right, arcs.steps, n + 4)[0, n : n + 4])
-    for name, (order, update) in UPDATES.items():
+    for name, update in UPDATES.items():
 
         def error(steps: int, update: Any = update) -> Floats:
             return turns.rest(_updated(update, q, rates(steps), arcs.spans / steps)[0])
 
         if method is None and not _is_along(exact, exact - error(_FEW)):
             continue
+        order = 2 if name == OF_SECOND_ORDER else 1
         steps = method.count if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))
