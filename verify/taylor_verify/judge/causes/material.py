@@ -132,7 +132,8 @@ def material(
     first = np.array(given.initial.attitude, dtype=float)
     truth = exact.at(instants, has_momenta).signed_as(first).at(np.s_[1:])
     start = exact.at(instants[:1], has_momenta=False).signed_as(first)
-    compared = file.at(rows).signed_as(truth.first_attitude)
+    assert truth.q is not None
+    compared = file.at(rows).signed_as(truth.q[0])
     return Answer(
         right,
         start,

@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, Final
 
-import numpy as np
-
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.material import ExactMotion
@@ -57,12 +55,7 @@ def shown(answer: Answer) -> dict[str, Any]:
 
 
 def _leaves(changed: Scene, answer: Answer) -> dict[str, float]:
-    """Return the part of the error of each failed quantity that the exact motion of a scene leaves."""
+    """Return the part of the error of each failed group that the exact motion of a scene leaves."""
     exact = ExactMotion(changed, answer.file.c is not None)
     elapsed = [Fraction(t) for t in answer.times.tolist()]
-    errors = answer.errors(exact.at(elapsed, answer.right.has_momenta))
-    return {
-        name: float(np.max(error)) / answer.worst[name]
-        for name, error in errors.items()
-        if name in answer.failed and answer.worst[name]
-    }
+    return answer.leaves(exact.at(elapsed, answer.right.has_momenta))
