@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -33,8 +33,6 @@ _ORDER: Final = 2.0**8
 _SMOOTH: Final = 2.0**4
 # Times so far from a switch, relative to the time, are on one side of it whatever rounds.
 _INSIDE: Final = 2.0**-50
-# The work of reading other texts.
-_NEW_TEXTS: Final = 4_000.0
 # Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
 _STATES: Final = 2400
@@ -174,10 +172,6 @@ class Evidence:
         """The error of the evidence itself, as a part of the defects."""
         return 0.0
 
-    def along(self, changes: Changes) -> float:
-        """Return the cosine between the defects and what changes make of them, or 1 if it is unknown."""
-        return 1.0
-
     @cached_property
     def floor(self) -> float:
         """The rounding of the file as a part of the defects."""
@@ -256,48 +250,6 @@ class Arcs(Evidence):
         """
         parts = [self._defects(part, steps) for part in parts_of(sets)]
         return np.concatenate(parts)
-
-    def along(self, changes: Changes) -> float:
-        """Return the cosine between the defects and what a changed text makes of the arcs, about.
-
-        That is the load at both ends times the span, for short arcs without a switch inside. For other
-        changes, and where only other arcs show the text, it is 1.
-        """
-        smooth = self._smooth
-        if "acting" not in changes or self._are_long or not smooth.any():
-            return 1.0
-        self.answer.budget.spend(_NEW_TEXTS)
-        push = (self._push(self.answer.right.changed(changes)) - self._push_of_right)[:, smooth]
-        if not push.any() and not smooth.all():
-            return 1.0
-        defects = self.of_right[: self.answer.n, : len(self.first)][:, smooth]
-        size = float(np.linalg.norm(push) * np.linalg.norm(defects))
-        return float(np.sum(push * defects)) / size if size > 0 else 0.0
-
-    @cached_property
-    def _smooth(self) -> Any:
-        """True for each arc without a switch inside, (arcs,)."""
-        low, high = (of(self.since, self.since + self.spans) for of in (np.minimum, np.maximum))
-        switches = self.answer.right.switches[:, None]
-        return np.all((switches <= low) | (switches >= high), axis=0)
-
-    @cached_property
-    def _are_long(self) -> bool:
-        omega = self.answer.right.velocities(self.since, self.begin(self.answer.n))[0, -3:]
-        return bool(np.max(np.linalg.norm(omega, axis=0) * np.abs(self.spans)) > 1)
-
-    @cached_property
-    def _push_of_right(self) -> Floats:
-        return self._push(self.answer.right)
-
-    def _push(self, equations: Equations) -> Floats:
-        answer, count = self.answer, len(self.first)
-        rows = np.concatenate([self.first, self.last])
-        z, times = answer.states(max(answer.n, equations.coupled), rows).T[None], answer.times[rows]
-        load = equations.loads_at(times, z, equations.velocities(times, z))[0]
-        pushed = (load[:, :count] + load[:, count:]) / 2 * self.spans
-        rates = pushed if equations.has_momenta else equations.inverse @ pushed
-        return np.asarray(rates / answer.sizes[:, None])
 
     @cached_property
     def compared(self) -> int:

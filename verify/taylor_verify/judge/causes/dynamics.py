@@ -58,8 +58,6 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
-# Nor is a text whose load makes nothing like the defects: the cosine is less, of faults and of families.
-_ALONG: Final = (0.5, 0.3)
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
@@ -280,7 +278,6 @@ class Search:
 
     def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
-        faults = [fault for fault in faults if self.evidence.along(fault.changes) > _ALONG[0]]
         near = [*self._near(faults)]
         every: Any = self.evidence.defects([fault.changes for fault in near]) if near else []
         for fault, defects in zip(near, every, strict=True):
@@ -310,12 +307,10 @@ class Search:
 
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
-        ahead = [(family, family.ahead) for family in families]
-        ahead = [each for each in ahead if abs(self.evidence.along(each[1][0])) > _ALONG[1]]
-        sets = [changes for _, of_family in ahead for changes in of_family]
+        sets = [changes for family in families for changes in family.ahead]
         defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
         linear = list[_Linear]()
-        for family, _ in ahead:
+        for family in families:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
