@@ -56,7 +56,8 @@ def moved(
         some = np.flatnonzero(span)
         part = float(np.max(np.abs(span), initial=0.0))
         count = max(1, ceil(steps * part / longest * (1 - _INSIDE))) if longest else steps
-        if len(some) == len(span) or equations.has_loads_of_arcs:
+        has_loads_of_arcs = np.ndim(equations.load) == len(("sets", "components", "arcs"))
+        if len(some) == len(span) or has_loads_of_arcs:
             begin = _in_blocks(answer, equations, begin, at, span, count)
         elif len(some):
             ends = _in_blocks(answer, equations, begin[:, :, some], at[some], span[some], count)

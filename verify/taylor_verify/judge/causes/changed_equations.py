@@ -85,11 +85,6 @@ class Equations:
         return self.acting is not None or bool(np.any(self.load))
 
     @property
-    def has_loads_of_arcs(self) -> bool:
-        """True if each arc has a constant load of its own."""
-        return np.ndim(self.load) == len(("sets", "components", "arcs"))
-
-    @property
     def loads(self) -> Loads | None:
         """The loads that the scene writes as texts."""
         return None if self.acting is None else self.acting.written

@@ -123,7 +123,8 @@ def in_states(answer: Answer) -> Cause | None:
     right = answer.right
     if not answer.moving:
         return None
-    search = _search_from_start(answer)
+    courses = Courses.of(answer)
+    search = Search(answer, courses, courses.motion, answer.moving)
     faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
     faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
@@ -167,11 +168,6 @@ def _search_by(answer: Answer, arcs: Arcs) -> Search:
     return Search(
         answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
     )
-
-
-def _search_from_start(answer: Answer) -> Search:
-    courses = Courses.of(answer)
-    return Search(answer, courses, courses.motion, answer.moving)
 
 
 def _written(answer: Answer) -> list[Family]:

@@ -261,7 +261,7 @@ def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     still = np.all(q[1:] == q[:-1], axis=1)
     if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= by_omega[bad]):
         return None
-    if still[bad].all() and len(bad) >= _LAST and _is_one_part(bad):
+    if still[bad].all() and len(bad) >= _LAST and np.all(np.diff(bad) == 1):
         return _stands_still(answer, maps, bad)
     if len(bad) > min(_FEW_JUMPS, answer.count // _ONE_IN):
         return None
@@ -275,23 +275,16 @@ def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     return _proven(answer, maps, begins, words)
 
 
-def _is_one_part(rows: Places) -> bool:
-    return bool(np.all(np.diff(rows) == 1))
-
-
 def _stands_still(answer: Answer, maps: Floats, bad: Places) -> Cause | None:
     """Return the cause of attitudes that do not change in one part of the run."""
     last = int(bad[-1]) + 1
     still = maps.copy()
     still[bad] = np.eye(4)
-    where = f"from t = {answer.times[bad[0]] + answer.right.start:.6g}"
-    if last < answer.count - 1:
-        where += f" to {answer.times[last] + answer.right.start:.6g}"
-    else:
-        where += " on"
-    return _proven(
-        answer, still, [0], f"attitude stands still {where}, and follows the motion before"
-    )
+    times = answer.times + answer.right.start
+    end = f" to {times[last]:.6g}" if last < answer.count - 1 else " on"
+    where = f"from t = {times[bad[0]]:.6g}{end}"
+    words = f"attitude stands still {where}, and follows the motion before"
+    return _proven(answer, still, [0], words)
 
 
 def _proven(answer: Answer, maps: Floats, begins: list[int], words: str) -> Cause | None:

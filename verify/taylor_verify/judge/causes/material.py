@@ -54,10 +54,7 @@ class ExactMotion:
         self._scene = scene
         track = frozenset({"attitude", *["centre"] * has_centre})
         self._exact = solution(replace(scene, track=track))
-
-    @property
-    def has_closed_form(self) -> bool:
-        return self._exact.route != "taylor"
+        self.has_closed_form = self._exact.route != "taylor"
 
     def at(self, elapsed: list[Fraction], has_momenta: bool) -> Motion:
         """Return the rows at these times since the start, with momenta or velocities. Raises Unsettled."""

@@ -182,11 +182,13 @@ class _Replays:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
-            rests = self._stepped(method, _fine(method), self.sets)
-            for place, count in self._near(method, defects, rests, near):
+            fine = self._stepped(method, _fine(method), self.sets)
+            for place, count in self._near(method, defects, fine, near):
                 (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
                 if np.all(np.isfinite(rest)):
-                    yield Steps(name, method, count, min(self._lefts(place, rest)))
+                    rests = (across(basis, rest) for basis in self._beside(place))
+                    left = min(float(np.linalg.norm(each)) for each in rests)
+                    yield Steps(name, method, count, left / self.size)
 
     def _near(
         self, method: Method, defects: Floats, rests: Floats, near: float
@@ -225,10 +227,6 @@ class _Replays:
     def _beside(self, place: int) -> Sequence[Floats]:
         none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
         return [none, *self.bases] if place == 0 else [none]
-
-    def _lefts(self, place: int, rest: Floats) -> list[float]:
-        rests = [across(basis, rest) for basis in self._beside(place)]
-        return [float(np.linalg.norm(each)) / self.size for each in rests]
 
     def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
         """Return what so many steps of an arc leave, (sets, entries)."""

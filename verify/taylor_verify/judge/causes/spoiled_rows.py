@@ -85,8 +85,9 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
             continue
         for name, between in _KINDS.items():
             v = between(answer, nodes, file.v, rates)
-            q = None if file.q is None else _unit(between(answer, nodes, file.q, turns))
-            motion = Motion(v, q)
+            q = None if file.q is None else between(answer, nodes, file.q, turns)
+            unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
+            motion = Motion(v, unit)
             errors = {name: error[: nodes[-1]] for name, error in answer.errors(motion).items()}
             leaves = answer.parts(errors)
             allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
@@ -94,10 +95,6 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
                 words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
                 return Cause(words, "interpolation", leaves)
     return None
-
-
-def _unit(q: Floats) -> Floats:
-    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
 
 
 def _rates(answer: Answer) -> tuple[Floats, Floats]:

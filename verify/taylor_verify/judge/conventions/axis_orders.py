@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import permutations, product
+from itertools import permutations, product, starmap
 from typing import Any, Final
 
 import numpy as np
@@ -42,11 +42,6 @@ class Axes:
     def moved(self) -> list[int]:
         return [i for i in range(3) if self.order[i] != i or self.signs[i] < 0]
 
-    @property
-    def is_proper(self) -> bool:
-        """Return True for a rotation, False for a reflection."""
-        return bool(np.linalg.det(self.vectors(np.eye(3))) > 0)
-
     def effect(self, active: Collection[int]) -> tuple[tuple[int, int] | None, ...]:
         """Return the part of the permutation that is visible if only ``active`` columns are nonzero."""
         pairs = zip(self.order, self.signs, strict=True)
@@ -74,15 +69,11 @@ class Axes:
         return tuple(column.tolist())
 
 
-# The 24 rotations of a cube, simplest first.
+_SIGNED: Final = starmap(Axes, product(permutations(range(3)), product((1, -1), repeat=3)))
+# The 24 rotations of a cube, simplest first: a reflection has the determinant -1.
 AXES: Final = tuple(
     sorted(
-        (
-            axes
-            for order in permutations(range(3))
-            for signs in product((1, -1), repeat=3)
-            if (axes := Axes(order, signs)).is_proper
-        ),
+        (axes for axes in _SIGNED if np.linalg.det(axes.vectors(np.eye(3))) > 0),
         key=lambda axes: (len(axes.moved), axes.signs.count(-1)),
     )
 )
