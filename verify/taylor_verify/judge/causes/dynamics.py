@@ -19,7 +19,6 @@ from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
-    Fault,
     Fitted,
     Sizes,
     across,
@@ -232,7 +231,7 @@ class Search:
         few = [each.slopes for each in linear if each.family.count <= FEW]
         right, budget = self.answer.right, self.answer.budget
         texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
-        faults = [fault.changes for fault in (*faults_of_terms(right), *texts)]
+        faults = [fault.changes(fault.right) for fault in (*faults_of_terms(right), *texts)]
         budget.left = max(budget.left, _BESIDE)
         with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
@@ -252,39 +251,27 @@ class Search:
 
     # Evidence.
 
-    def _candidate(
-        self, of: Fault | Family, left: float, changes: Changes, numbers: Floats | None = None
-    ) -> Candidate:
+    def _candidate(self, family: Family, fit: Fitted) -> Candidate:
         answer, right = self.answer, self.answer.right
-        is_loose = answer.file.q is None and right.changed(changes).coupled > right.coupled
-        family = of if isinstance(of, Family) else None
-        return Candidate(
-            of.name,
-            of.kind,
-            left / self.evidence.size,
-            self.motion,
-            near=_LOOSE if is_loose else LEAVES,
-            changes=changes,
-            numbers=numbers,
-            family=family,
-        )
+        coupled = right.changed(family.changes(fit.numbers)).coupled
+        near = _LOOSE if answer.file.q is None and coupled > right.coupled else LEAVES
+        return Candidate(family, fit.numbers, fit.size / self.evidence.size, self.motion, near)
 
-    def _fitted(self, family: Family, fit: Fitted) -> Candidate:
-        return self._candidate(family, fit.size, family.changes(fit.numbers), fit.numbers)
-
-    def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
+    def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
         near = [*self._near(faults)]
-        every: Any = self.evidence.defects([fault.changes for fault in near]) if near else []
+        sets = [fault.changes(fault.right) for fault in near]
+        every: Any = self.evidence.defects(sets) if near else []
         for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
-                yield self._candidate(fault, left, fault.changes)
+                yield self._candidate(fault, Fitted(fault.right, left))
 
-    def _near(self, faults: Sequence[Fault]) -> Iterator[Fault]:
+    def _near(self, faults: Sequence[Family]) -> Iterator[Family]:
         """Yield the faults that leave little by few steps, whose error the right scene has too."""
         evidence = self.evidence
-        right, *every = evidence.defects([{}, *(f.changes for f in faults)], evidence.few_steps)
+        sets = [fault.changes(fault.right) for fault in faults]
+        right, *every = evidence.defects([{}, *sets], evidence.few_steps)
         for fault, defects in zip(faults, every, strict=True):
             if np.linalg.norm(evidence.of_right + defects - right) < 2 * _FAULT * evidence.size:
                 yield fault
@@ -336,7 +323,7 @@ class Search:
                 if family.kind == "clock" and isinstance(self.evidence, Arcs) and not counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
-                    candidate = self._fitted(family, fit)
+                    candidate = self._candidate(family, fit)
                     if self._is_exact(candidate):
                         counts.append(family.count)
                         limit = min(limit, max(BETTER * each.left, _NEARLY))
@@ -366,4 +353,4 @@ class Search:
             family = both(self.answer.right, few[i].family, few[k].family)
             fit = gauss_newton(self.evidence, family)
             if fit.size / size < max(PAIR, 3 * self.floor):
-                yield self._fitted(family, fit)
+                yield self._candidate(family, fit)

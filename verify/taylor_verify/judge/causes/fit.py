@@ -38,7 +38,7 @@ _MOST_STEPS: Final = 128
 
 @dataclass(frozen=True)
 class Family:
-    """Faults with numbers: ``right`` are the scene's, ``scale`` natural sizes of a change.
+    """Faults with numbers, or one without: ``right`` are the scene's, ``scale`` natural sizes of a change.
 
     ``kind`` is the class that a family belongs to; families of one kind are no alternatives.
     ``labels`` name the numbers of a body, whose changes are said one by one.
@@ -71,13 +71,9 @@ class Family:
         return np.asarray(((flat[0] - flat[1]) / (2 * DIFFERENCE * self.scale[:, None])).T)
 
 
-@dataclass(frozen=True)
-class Fault:
-    """A change of the scene that has no number to fit."""
-
-    name: str
-    kind: str
-    changes: Changes
+def fault(name: str, kind: str, changes: Changes) -> Family:
+    """Return a change of the scene that has no number to fit."""
+    return Family(name, kind, np.zeros(0), np.zeros(0), lambda _: changes)
 
 
 @dataclass(frozen=True)

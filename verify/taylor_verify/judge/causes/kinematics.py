@@ -21,7 +21,7 @@ from taylor_verify.judge.causes.changed_equations import (
     to_space,
 )
 from taylor_verify.judge.causes.dynamics import Search
-from taylor_verify.judge.causes.fit import Family, Fault, linear
+from taylor_verify.judge.causes.fit import Family, fault, linear
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
@@ -78,7 +78,7 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
     search = Search(answer, turns, turns.motion, ["attitude"])
     candidates = [*_updates(turns, method)]
     if method is None:
-        faults = [Fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
+        faults = [fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
         candidates += [*search.without_numbers(faults), *search.fitted(_families(answer, right))]
         name = (
             "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
@@ -125,7 +125,8 @@ class _Turns(Evidence):
         q = self.arcs.begin(self.answer.n + 4)[0, self.answer.n :]
         rest = self.rest(np.einsum("aij,ja->ia", maps(self.arcs), q))
         left = float(np.linalg.norm(rest)) / self.size
-        return Candidate(name, kind, left, partial(_chained, maps), _REPLAYED)
+        of_maps = fault(name, kind, {})
+        return Candidate(of_maps, of_maps.right, left, partial(_chained, maps), _REPLAYED)
 
 
 def _chained(maps: Maps, answer: Answer, _: Changes) -> Motion:

@@ -16,7 +16,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, parts_of
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.fit import across, orthonormal
+from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.misread_states import held_over_steps
@@ -112,15 +112,10 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     for steps in _each_best(replayed.steps(known, _ALONE)):
         if steps.left < max(_LEAVES, _CLEAR * replayed.floor):
             h = steps.step(answer)
-            yield Candidate(
-                name=_name(steps, answer.n, h),
-                kind="method",
-                defects=steps.left,
-                motion=partial(_motion, steps),
-                near=_LEAVES,
-                changes=held_over_steps(answer, h) if steps.method is HELD else {},
-                method=steps,
-            )
+            changes = held_over_steps(answer, h) if steps.method is HELD else {}
+            of_steps = fault(_name(steps, answer.n, h), "method", changes)
+            motion = partial(_motion, steps)
+            yield Candidate(of_steps, of_steps.right, steps.left, motion, _LEAVES, steps)
 
 
 def _name(steps: Steps, n: int, h: float) -> str:
