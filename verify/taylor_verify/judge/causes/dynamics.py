@@ -238,7 +238,8 @@ class Search:
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
-                    text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
+                    beside = f"beside steps of {steps.name}, h = {steps.step(self.answer):.6g}"
+                    text = f"{cause.text or cause.name}, {beside}"
                     return replace(cause, text=text, method=steps)
         return None
 

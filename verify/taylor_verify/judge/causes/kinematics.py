@@ -225,7 +225,7 @@ def _rates(right: Equations, arcs: Arcs, method: Steps | None, steps: int) -> li
     rows = [v]
     if method:
         for k in range(steps):
-            rows.append(replay(answer, method.method, right, rows[-1], arcs.since + k * h, h, 1))
+            rows.append(replay(answer, method.method, 1, right, rows[-1], arcs.since + k * h, h))
     else:
         spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
         ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs, parts_of
+from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, fault, orthonormal
@@ -71,18 +71,15 @@ class Steps:
     def step(self, answer: Answer) -> float:
         return float(np.median(np.abs(np.diff(answer.times)))) / self.count
 
-    def words(self, answer: Answer) -> str:
-        return f"beside steps of {self.name}, h = {self.step(answer):.6g}"
-
 
 def replay(
     answer: Answer,
     method: Method,
+    steps: int,
     equations: Equations,
     v: Floats,
     since: Floats,
     spans: Floats,
-    steps: int,
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
     h = spans / steps
@@ -225,15 +222,9 @@ class _Replays:
 
     def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
         """Return what so many steps of an arc leave, (sets, entries)."""
-        arcs, answer = self.arcs, self.arcs.answer
-        rows = []
-        for part in parts_of(sets):
-            equations = answer.right.copies(part)
-            begin = arcs.begin(max(answer.n, equations.coupled))
-            ends = replay(answer, method, equations, begin, arcs.since, arcs.spans, steps)
-            rest = (arcs.end - ends[:, : answer.n]) / answer.sizes[:, None]
-            rows.append(np.broadcast_to(rest, (len(part), *rest.shape[1:])))
-        return self._compared(np.concatenate(rows))
+        answer = self.arcs.answer
+        own = replace(answer, stepping=partial(replay, answer, method, steps))
+        return self._compared(replace(self.arcs, answer=own, steps_given=1).defects(sets))
 
     def _compared(self, defects: Floats) -> Floats:
         n, arcs = self.arcs.answer.n, len(self.arcs.first)
@@ -257,6 +248,6 @@ def stepped(answer: Answer, steps: Steps) -> Answer:
 
     def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
         count = max(1, round(float(np.median(np.abs(spans))) / h))
-        return replay(answer, steps.method, equations, begin, since, spans, count)
+        return replay(answer, steps.method, count, equations, begin, since, spans)
 
     return replace(answer, stepping=ends)
