@@ -12,11 +12,11 @@ from fractions import Fraction
 from functools import cache
 from itertools import permutations, product
 from operator import itemgetter
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.conventions.axis_vectors import vectors
+from taylor_verify.judge.conventions.axis_vectors import Vector, vectors
 from taylor_verify.judge.conventions.convention_search import attitudes_at, beginnings
 from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Finding
 from taylor_verify.judge.conventions.meanings import rotations
@@ -42,16 +42,6 @@ _UNITS: Final = {
 _NOISE: Final = 64 * FLOAT64
 # Quaternions that are integrated without restoring their length stay as near to it.
 _UNIT: Final = 0.1
-
-
-class Meaning(Protocol):
-    """A meaning of the numbers of a row, with its departures from the form that they were read by."""
-
-    def words(self, own: str) -> list[str]: ...
-
-    def quaternion(self, numbers: Sequence[Fraction]) -> Sequence[Value]: ...
-
-    def quaternions(self, rows: Floats) -> Floats: ...
 
 
 @dataclass(frozen=True)
@@ -97,6 +87,10 @@ class Angles:
     def _moving(self) -> str:
         """The sequence of the same turns about axes that move along, in the opposite order."""
         return self.sequence[::-1] if self.is_fixed else self.sequence
+
+
+# A meaning of the numbers of a row.
+Meaning = Angles | Vector
 
 
 @cache
