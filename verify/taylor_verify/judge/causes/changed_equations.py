@@ -26,9 +26,9 @@ from taylor_verify.scenes.loads.loads import Loads
 Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
-_AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
-AXES: Final = _AXES | _AXES_OF_NUMBERS
+_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
+    ("damping", "clock", "ahead", "late"), 0
+)
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
@@ -63,12 +63,6 @@ class Equations:
     late: Any = 0.0
     in_world: bool = False
     added: Floats | None = None
-
-    @classmethod
-    def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
-        """Return the right equations of a free body with wheels of this momentum."""
-        n = len(mass)
-        return cls(mass, rotor, np.zeros(n), np.zeros((n, basis(n).count)), scene_mass=mass)
 
     @property
     def size(self) -> int:
@@ -123,10 +117,8 @@ class Equations:
     @property
     def sets(self) -> int:
         """Number of parameter sets."""
-        shapes = {name: np.shape(getattr(self, name)) for name in AXES}
-        return max(
-            shapes[name][0] if len(shapes[name]) > axes else 1 for name, axes in AXES.items()
-        )
+        shapes = [(np.shape(getattr(self, name)), axes) for name, axes in _AXES.items()]
+        return max(shape[0] if len(shape) > axes else 1 for shape, axes in shapes)
 
     def changed(self, changes: Changes) -> Equations:
         """Return the equations with one set of other parameters."""

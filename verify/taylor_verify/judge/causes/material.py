@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices, steady_signs
@@ -87,10 +88,13 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     if acting is not None and _are_constant(acting.written):
         constant, acting = np.ravel(acting.loads(0.0, np.zeros(n))).tolist(), None
     added = body.added_mass
-    return replace(
-        Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
+    return Equations(
+        mass,
+        rotor=np.array(parts.get("rotor", (0, 0, 0)), dtype=float),
         load=np.array(constant, dtype=float) if acting is None else np.zeros(n),
+        extra=np.zeros((n, basis(n).count)),
         has_momenta=has_momenta,
+        scene_mass=mass,
         start=float(given.clock.start),
         damping=float(body.damping),
         added=None if added is None else np.array(added, dtype=float),

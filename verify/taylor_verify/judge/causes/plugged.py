@@ -14,11 +14,10 @@ from typing import Any, Final
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.material import ExactMotion
+from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.records.plugins import Plugin, plugins
 from taylor_verify.scenes.scene import Scene
 
-# At most this part of the error of each failed quantity is left by a cause.
-_PROVEN: Final = 1e-3
 _MOST: Final = 20
 _log = logging.getLogger(__name__)
 
@@ -38,7 +37,7 @@ def _of(plugin: Plugin, scene: Scene, answer: Answer) -> Iterator[Cause]:
         candidates = plugin.content.candidates(scene, shown(answer))
         for _, changed in zip(range(_MOST), candidates, strict=False):
             leaves = _leaves(changed, answer)
-            if leaves and max(leaves.values()) <= _PROVEN:
+            if leaves and max(leaves.values()) <= LEAVES:
                 yield Cause(changed.title, f"{plugin.name} {plugin.origin}", leaves)
     except Exception as error:  # other people's code
         reason = f"{type(error).__name__}: {error}"
