@@ -139,19 +139,13 @@ class Evidence:
 
     answer: Answer
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         """Return what each set of changed parameters leaves, (sets, n, rows), relative to the motion."""
         raise NotImplementedError
 
-    @property
-    def steps(self) -> int:
-        """The steps from row to row."""
-        raise NotImplementedError
-
-    @property
-    def few_steps(self) -> int:
-        """The steps from row to row for derivatives."""
-        return self.steps
+    def coarse(self, sets: Sequence[Changes]) -> Floats:
+        """Return the defects as well as derivatives need them."""
+        return self.defects(sets)
 
     @cached_property
     def rounding(self) -> Floats:
@@ -212,7 +206,7 @@ class Arcs(Evidence):
         """The fewest steps of an arc whose error is below a tenth of the file's rounding, or no cause."""
         if self.steps_given:
             return self.steps_given
-        coarse = self.defects([{}], self.few_steps)[0]
+        (coarse,) = self.coarse([{}])
         telling = _TELLING * np.sqrt(np.mean(coarse**2)) if np.all(np.isfinite(coarse)) else 0.0
         goal = np.maximum(0.1 * self.answer.rounding, max(_FINEST, telling))[:, None]
         return max(self.few_steps, self._steps(goal))
@@ -256,6 +250,9 @@ class Arcs(Evidence):
     def compared(self) -> int:
         """Number of components that are compared: v, and q where momenta do not tell the velocities."""
         return self.answer.n + 4 * (self.answer.keeps_momenta and self.answer.file.q is not None)
+
+    def coarse(self, sets: Sequence[Changes]) -> Floats:
+        return self.defects(sets, self.few_steps)
 
     def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
         answer, n = self.answer, self.answer.n

@@ -41,14 +41,10 @@ class Courses(Evidence):
             answer.at(np.s_[: _first_wrong(answer) + _ROWS]) if is_held else answer.thinned(_SPREAD)
         )
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         answer = self.answer
         motions = courses(answer, sets, self.step)
         return np.array([((answer.file.v - each.v) / answer.sizes).T for each in motions])
-
-    @property
-    def steps(self) -> int:
-        return 1
 
     @cached_property
     def step(self) -> float:

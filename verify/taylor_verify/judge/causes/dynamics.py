@@ -272,7 +272,7 @@ class Search:
         """Yield the faults that leave little by few steps, whose error the right scene has too."""
         evidence = self.evidence
         sets = [fault.changes(fault.right) for fault in faults]
-        right, *every = evidence.defects([{}, *sets], evidence.few_steps)
+        right, *every = evidence.coarse([{}, *sets])
         for fault, defects in zip(faults, every, strict=True):
             if np.linalg.norm(evidence.of_right + defects - right) < 2 * _FAULT * evidence.size:
                 yield fault
@@ -292,7 +292,7 @@ class Search:
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
         sets = [changes for family in families for changes in family.ahead]
-        defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
+        defects, first = self.evidence.coarse([{}, *sets]), 1
         linear = list[_Linear]()
         for family in families:
             change = defects[first : first + family.count] - defects[0]

@@ -167,7 +167,7 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
     (defects,) = evidence.defects([family.changes(numbers)])
     first = size = float(np.linalg.norm(defects))
     for count in range(_ROUNDS):
-        slopes = family.slopes(evidence.defects(family.around(numbers), evidence.few_steps))
+        slopes = family.slopes(evidence.coarse(family.around(numbers)))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
         before = size

@@ -95,16 +95,12 @@ class _Turns(Evidence):
     right: Equations
 
     @property
-    def steps(self) -> int:
-        return self.arcs.steps
-
-    @property
     def rounding(self) -> Floats:
         return np.full(4, max(self.answer.noise[1], 1e-16))
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         n = self.answer.n
-        ends = self.arcs.ends(self.right.copies(sets), self.steps, n + 4)[:, n : n + 4]
+        ends = self.arcs.ends(self.right.copies(sets), self.arcs.steps, n + 4)[:, n : n + 4]
         return self.rest(np.broadcast_to(ends, (len(sets), *ends.shape[1:])))
 
     def rest(self, q: Floats) -> Floats:
