@@ -40,7 +40,7 @@ from taylor_verify.judge.conventions.fits import (
 )
 from taylor_verify.judge.conventions.meanings import readings, rotations
 from taylor_verify.judge.conventions.worlds import World, worlds
-from taylor_verify.judge.velocities import has_velocities, velocities
+from taylor_verify.judge.velocities import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
@@ -246,9 +246,14 @@ class _Search:
 
     def _may_explain(self, world: World) -> bool:
         """Return False for a world that is not possible, or whose motion in float64 explains nothing."""
-        if not self._is_possible(world):
+        try:
+            given, exact = self.solution(world)
+        except NotRepresentable:
             return False
-        given, exact = self.solution(world)
+        span = max(abs(t) for t in self.scene.clock.elapsed)
+        reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
+        if reach > MOST_SPANS * span and (world.scale != 1 or exact.route == "taylor"):
+            return False
         if exact.route != "taylor":
             return True
         first = exact.evaluate([Fraction(0)], _DIGITS)
@@ -262,7 +267,7 @@ class _Search:
 
     def _with_velocities(self, given: Scene, truth: Mapping[str, Any]) -> dict[str, Floats]:
         """Return the motion in doubles, with the velocities of a body in a fluid."""
-        if has_velocities(given.body):
+        if given.body.has_velocities:
             with mp.workdps(_DIGITS):
                 truth = {**truth, **velocities(given.body, truth)}
         return {name: rows.astype(float) for name, rows in truth.items()}
@@ -302,15 +307,6 @@ class _Search:
         alike = [reading for reading, _ in good if reading.cost == cost]
         motion = _motion(group, right)
         return BestReading(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
-
-    def _is_possible(self, world: World) -> bool:
-        try:
-            given, exact = self.solution(world)
-        except NotRepresentable:
-            return False
-        span = max(abs(t) for t in self.scene.clock.elapsed)
-        reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
-        return reach <= MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
 
 
 # The errors of the groups.

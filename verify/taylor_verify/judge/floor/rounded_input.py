@@ -38,7 +38,7 @@ from taylor_verify.judge.floor.attainable import (
     orbit_of_run,
 )
 from taylor_verify.judge.floor.moves import Moves
-from taylor_verify.judge.velocities import has_velocities, velocity
+from taylor_verify.judge.velocities import velocity
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, VELOCITIES
 from taylor_verify.scenes.motion import Clock, Motion
@@ -144,7 +144,7 @@ def _squares(scene: Scene, here: Motion, there: Motion) -> dict[str, Floats]:
         change = invariant.value(there) - invariant.value(here)
         sizes = norms(change) if change.ndim > 1 else abs(change)
         changes[invariant.name] = sizes / invariant.scale(here)
-    if has_velocities(scene.body):
+    if scene.body.has_velocities:
         for group in VELOCITIES:
             before, after = (velocity(group, scene.body, m.quantities) for m in both)
             changes[GROUPS[group].quantity] = norms(after - before) / (max(norms(before)) or 1)
