@@ -155,8 +155,7 @@ class Evidence:
     @cached_property
     def of_right(self) -> Floats:
         """The defects of the right equations, (n, rows)."""
-        defects: Floats = self.defects([{}])[0]
-        return defects
+        return np.asarray(self.defects([{}])[0])
 
     @cached_property
     def size(self) -> float:

@@ -122,8 +122,7 @@ class Answer:
     @cached_property
     def rounding(self) -> Floats:
         """Noise of each component of v relative to its vector."""
-        own: Floats = np.maximum(self.noise[0] / self.sizes, 8 * _ROUNDOFF)
-        return own
+        return np.asarray(np.maximum(self.noise[0] / self.sizes, 8 * _ROUNDOFF))
 
     @cached_property
     def groups(self) -> dict[str, slice]:

@@ -165,15 +165,11 @@ def _explained(
     first, *others = good
     count = len(first.words(file.form))
     alike = [other for other in others if len(other.words(file.form)) == count]
-    noun = _noun(file.form)
+    noun = "the angles"
+    if file.form not in SEQUENCES:
+        noun = f"the columns taken as {FORMS[file.form].words if file.form else 'q0 q1 q2 q3'}"
     words, *more = (f"{noun} {'; '.join(m.words(file.form))}" for m in (first, *alike))
     return Finding("quaternion", words, plain, best, tuple(more)), first
-
-
-def _noun(form: str) -> str:
-    if form in SEQUENCES:
-        return "the angles"
-    return f"the columns taken as {FORMS[form].words if form else 'q0 q1 q2 q3'}"
 
 
 def _apart(matrices: Floats, right: Floats) -> float:

@@ -49,18 +49,15 @@ class Axes:
 
     def vectors(self, rows: Array) -> Array:
         """Return P v for every row v."""
-        renamed: Array = rows[:, self.order] * np.array(self.signs)
-        return renamed
+        return np.asarray(rows[:, self.order] * np.array(self.signs))
 
     def left(self, matrices: Array) -> Array:
         """Return P R for every matrix R."""
-        renamed: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
-        return renamed
+        return np.asarray(matrices[:, self.order, :] * np.array(self.signs)[:, None])
 
     def right(self, matrices: Array) -> Array:
         """Return R P^T for every matrix R."""
-        renamed: Array = matrices[:, :, self.order] * np.array(self.signs)
-        return renamed
+        return np.asarray(matrices[:, :, self.order] * np.array(self.signs))
 
     @cached_property
     def quaternion(self) -> tuple[int, ...]:
@@ -116,8 +113,7 @@ class Frames:
         turned = rotation.product(forward, backward)
         square = sum(e * e for e in self.space.quaternion) * sum(e * e for e in backward)
         length = mp.sqrt(square) if rows.dtype == object else np.sqrt(square)
-        renamed: Array = np.array(turned).T / length
-        return renamed
+        return np.asarray(np.array(turned).T / length)
 
 
 def renamings(body: Collection[int], space: Collection[int], joined: bool) -> Iterator[Frames]:
@@ -146,5 +142,4 @@ def quaternion_columns(matrices: Array) -> Array:
     squares[:, 1:, 1:] = matrices + transposed
     squares[:, range(1, 4), range(1, 4)] += (1 - trace)[:, None]
     largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
-    quaternions: Array = squares[np.arange(len(squares)), largest]
-    return quaternions
+    return np.asarray(squares[np.arange(len(squares)), largest])
