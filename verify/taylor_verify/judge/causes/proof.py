@@ -44,11 +44,11 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
 
     With ``components`` it has so many, and else all that the answer has.
     """
-    begun = answer.with_start(equations.mass)
-    if begun.count < 2:
+    from_start = answer.with_start(equations.mass)
+    if from_start.count < 2:
         return None
-    n, count, arcs = answer.n, components or equations.coupled, row_to_row(begun)
-    rows = begun.states(count)
+    n, count, arcs = answer.n, components or equations.coupled, row_to_row(from_start)
+    rows = from_start.states(count)
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
