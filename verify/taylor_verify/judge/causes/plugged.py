@@ -33,10 +33,12 @@ def plugged_causes(answer: Answer) -> list[Cause]:
 
 def _of(plugin: Plugin, scene: Scene, answer: Answer) -> Iterator[Cause]:
     """Yield the proven causes of one package; an error of its code is a line of the log."""
+    elapsed = [Fraction(t) for t in answer.times.tolist()]
     try:
         candidates = plugin.content.candidates(scene, shown(answer))
         for _, changed in zip(range(_MOST), candidates, strict=False):
-            leaves = _leaves(changed, answer)
+            exact = ExactMotion(changed, answer.file.c is not None)
+            leaves = answer.leaves(exact.at(elapsed, answer.right.has_momenta))
             if leaves and max(leaves.values()) <= LEAVES:
                 yield Cause(changed.title, f"{plugin.name} {plugin.origin}", leaves)
     except Exception as error:  # other people's code
@@ -51,10 +53,3 @@ def shown(answer: Answer) -> dict[str, Any]:
     rows = {name: answer.file.v[:, part] for name, part in answer.groups.items()}
     others = {"quaternion": answer.file.q, "centre": answer.file.c}
     return {"t": answer.times, **rows, **{n: r for n, r in others.items() if r is not None}}
-
-
-def _leaves(changed: Scene, answer: Answer) -> dict[str, float]:
-    """Return the part of the error of each failed group that the exact motion of a scene leaves."""
-    exact = ExactMotion(changed, answer.file.c is not None)
-    elapsed = [Fraction(t) for t in answer.times.tolist()]
-    return answer.leaves(exact.at(elapsed, answer.right.has_momenta))
