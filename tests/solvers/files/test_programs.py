@@ -37,7 +37,7 @@ def exact(scene: str) -> Mapping[str, Any]:
         name: rows_of(columns, names) for name, names in VECTORS.items() if names[0] in columns
     }
     if isinstance(given.body, ImmersedBody):
-        forms = velocity_forms(given.body).forms["linear_velocity"]
+        forms = velocity_forms(given.body)["linear_velocity"]
         parts = [groups[name] @ np.array(form, dtype=float).T for name, form in forms.items()]
         groups["linear_velocity"] = np.sum(parts, axis=0)
     return {**groups, "attitude": rotations(rows_of(columns, QUATERNION)), "t": columns["t"]}

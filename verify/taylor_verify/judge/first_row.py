@@ -77,18 +77,9 @@ def _nearness(gate: Gate, k: int, finding: Finding) -> float:
 
 
 def _remark(quantity: str, error: float, finding: Finding, start: float) -> str:
-    off = f"its {quantity} is off by {error:.3g}"
+    row, off = f"the row at the start, t = {start:g}", f"its {quantity} is off by {error:.3g}"
     if not error <= finding.bound:
-        return f"{_row(start)}, is not the scene's initial state: {off}"
+        return f"{row}, is not the scene's initial state: {off}"
     if finding.is_rounding or finding.tolerance is None:
-        return _right_start(start)
-    return f"{_right_start(start)} to within the tolerance: {off}"
-
-
-def _right_start(start: float) -> str:
-    """Return the sentence on a correct start."""
-    return f"{_row(start)}, is the scene's initial state"
-
-
-def _row(start: float) -> str:
-    return f"the row at the start, t = {start:g}"
+        return f"{row}, is the scene's initial state"
+    return f"{row}, is the scene's initial state to within the tolerance: {off}"

@@ -6,7 +6,7 @@ U   velocity of the body's origin, body axes        Omega   angular velocity, bo
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from mpmath import mp
@@ -19,32 +19,19 @@ from taylor_verify.scenes.bodies import Body
 Array = np.ndarray[Any, Any]
 
 
-class VelocityForms(NamedTuple):
-    """Matrices from momenta to each velocity, by column group; ``mass_matrix`` is the inverse map."""
-
-    forms: Mapping[str, Mapping[str, Matrix]]
-    mass_matrix: Matrix
-
-
-def has_velocities(body: Body) -> bool:
-    """Return True if this body has velocities besides its momenta."""
-    return body.has_velocities
-
-
-def velocity_forms(body: Body) -> VelocityForms:
-    """Return the forms U = A x + B y and Omega = B^T x + C y of a body that has velocities."""
+def velocity_forms(body: Body) -> Mapping[str, Mapping[str, Matrix]]:
+    """Return the forms U = A x + B y and Omega = B^T x + C y of a body that has velocities, by group."""
     parts = body.parts()
     A, B, C = parts["linear"], parts["coupling"], parts["angular"]
-    forms = {
+    return {
         "linear_velocity": {"linear_impulse": A, "angular_impulse": B},
         "omega": {"linear_impulse": transpose(B), "angular_impulse": C},
     }
-    return VelocityForms(forms, inverse(body.energy_matrix))
 
 
 def velocity(group: str, body: Body, quantities: Quantities) -> Any:
     """Return the velocity of a column group at every sample, from the exact coefficients."""
-    linear = velocity_forms(body).forms[group].items()
+    linear = velocity_forms(body)[group].items()
     return sum(quantities[name] @ exact_matrix(matrix).T for name, matrix in linear)
 
 
@@ -55,7 +42,7 @@ def velocities(body: Body, quantities: Quantities) -> dict[str, Any]:
 
 def momenta(body: Body, quantities: Quantities) -> dict[str, Any]:
     """Return the momenta at every sample, by the exact mass matrix: (x, y) = M (U, Omega)."""
-    M = exact_matrix(velocity_forms(body).mass_matrix)
+    M = exact_matrix(inverse(body.energy_matrix))
     both = np.concatenate([quantities[name] for name in VELOCITIES], axis=1) @ M.T
     return {name: both[:, 3 * k : 3 * k + 3] for k, name in enumerate(body.STATE.MOVING)}
 

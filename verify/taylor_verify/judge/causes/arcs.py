@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -33,8 +33,6 @@ _ORDER: Final = 2.0**8
 _SMOOTH: Final = 2.0**4
 # Times so far from a switch, relative to the time, are on one side of it whatever rounds.
 _INSIDE: Final = 2.0**-50
-# The work of reading other texts.
-_NEW_TEXTS: Final = 4_000.0
 # Sets of parameters in one flow, and states: more do not fit the caches.
 _SETS: Final = 48
 _STATES: Final = 2400
@@ -58,7 +56,8 @@ def moved(
         some = np.flatnonzero(span)
         part = float(np.max(np.abs(span), initial=0.0))
         count = max(1, ceil(steps * part / longest * (1 - _INSIDE))) if longest else steps
-        if len(some) == len(span) or equations.has_loads_of_arcs:
+        has_loads_of_arcs = np.ndim(equations.load) == len(("sets", "components", "arcs"))
+        if len(some) == len(span) or has_loads_of_arcs:
             begin = _in_blocks(answer, equations, begin, at, span, count)
         elif len(some):
             ends = _in_blocks(answer, equations, begin[:, :, some], at[some], span[some], count)
@@ -140,19 +139,13 @@ class Evidence:
 
     answer: Answer
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         """Return what each set of changed parameters leaves, (sets, n, rows), relative to the motion."""
         raise NotImplementedError
 
-    @property
-    def steps(self) -> int:
-        """The steps from row to row."""
-        raise NotImplementedError
-
-    @property
-    def few_steps(self) -> int:
-        """The steps from row to row for derivatives."""
-        return self.steps
+    def coarse(self, sets: Sequence[Changes]) -> Floats:
+        """Return the defects as well as derivatives need them."""
+        return self.defects(sets)
 
     @cached_property
     def rounding(self) -> Floats:
@@ -162,8 +155,7 @@ class Evidence:
     @cached_property
     def of_right(self) -> Floats:
         """The defects of the right equations, (n, rows)."""
-        defects: Floats = self.defects([{}])[0]
-        return defects
+        return np.asarray(self.defects([{}])[0])
 
     @cached_property
     def size(self) -> float:
@@ -213,7 +205,7 @@ class Arcs(Evidence):
         """The fewest steps of an arc whose error is below a tenth of the file's rounding, or no cause."""
         if self.steps_given:
             return self.steps_given
-        coarse = self.defects([{}], self.few_steps)[0]
+        (coarse,) = self.coarse([{}])
         telling = _TELLING * np.sqrt(np.mean(coarse**2)) if np.all(np.isfinite(coarse)) else 0.0
         goal = np.maximum(0.1 * self.answer.rounding, max(_FINEST, telling))[:, None]
         return max(self.few_steps, self._steps(goal))
@@ -239,7 +231,10 @@ class Arcs(Evidence):
 
     def ends(self, equations: Equations, steps: int, count: int = 0) -> Floats:
         """Return the ends of the arcs by the equations, with at least the components they depend on."""
-        begin = self.begin(max(count, equations.coupled))
+        return self.moved(equations, self.begin(max(count, equations.coupled)), steps)
+
+    def moved(self, equations: Equations, begin: Floats, steps: int) -> Floats:
+        """Return the ends of the arcs from other states at their begins."""
         return moved(self.answer, equations, begin, self.since, self.spans, steps)
 
     def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
@@ -250,57 +245,17 @@ class Arcs(Evidence):
         parts = [self._defects(part, steps) for part in parts_of(sets)]
         return np.concatenate(parts)
 
-    def along(self, changes: Changes) -> float:
-        """Return the cosine between the defects and what a changed text makes of the arcs, about.
-
-        That is the load at both ends times the span, for short arcs without a switch inside. For other
-        changes, and where only other arcs show the text, it is 1.
-        """
-        smooth = self._smooth
-        if "acting" not in changes or self._are_long or not smooth.any():
-            return 1.0
-        self.answer.budget.spend(_NEW_TEXTS)
-        push = (self._push(self.answer.right.changed(changes)) - self._push_of_right)[:, smooth]
-        if not push.any() and not smooth.all():
-            return 1.0
-        defects = self.of_right[: self.answer.n, : len(self.first)][:, smooth]
-        size = float(np.linalg.norm(push) * np.linalg.norm(defects))
-        return float(np.sum(push * defects)) / size if size > 0 else 0.0
-
-    @cached_property
-    def _smooth(self) -> Any:
-        """True for each arc without a switch inside, (arcs,)."""
-        low, high = (of(self.since, self.since + self.spans) for of in (np.minimum, np.maximum))
-        switches = self.answer.right.switches[:, None]
-        return np.all((switches <= low) | (switches >= high), axis=0)
-
-    @cached_property
-    def _are_long(self) -> bool:
-        omega = self.answer.right.velocities(self.since, self.begin(self.answer.n))[0, -3:]
-        return bool(np.max(np.linalg.norm(omega, axis=0) * np.abs(self.spans)) > 1)
-
-    @cached_property
-    def _push_of_right(self) -> Floats:
-        return self._push(self.answer.right)
-
-    def _push(self, equations: Equations) -> Floats:
-        answer, count = self.answer, len(self.first)
-        rows = np.concatenate([self.first, self.last])
-        z, times = answer.states(max(answer.n, equations.coupled), rows).T[None], answer.times[rows]
-        load = equations.loads_at(times, z, equations.velocities(times, z))[0]
-        pushed = (load[:, :count] + load[:, count:]) / 2 * self.spans
-        rates = pushed if equations.has_momenta else equations.inverse @ pushed
-        return np.asarray(rates / answer.sizes[:, None])
-
     @cached_property
     def compared(self) -> int:
         """Number of components that are compared: v, and q where momenta do not tell the velocities."""
         return self.answer.n + 4 * (self.answer.keeps_momenta and self.answer.file.q is not None)
 
+    def coarse(self, sets: Sequence[Changes]) -> Floats:
+        return self.defects(sets, self.few_steps)
+
     def _defects(self, sets: Sequence[Changes], steps: int) -> Floats:
         answer, n = self.answer, self.answer.n
-        equations = answer.right.copies(sets) if len(sets) > 1 else answer.right.changed(sets[0])
-        ends = self.ends(equations, steps or self.steps, self.compared)
+        ends = self.ends(answer.right.copies(sets), steps or self.steps, self.compared)
         defects = (self.end - ends[:, :n]) / answer.sizes[:, None]
         if self.compared > n:
             assert answer.file.q is not None

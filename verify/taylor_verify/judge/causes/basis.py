@@ -6,7 +6,6 @@ the scene, and these taken for components in space axes (R^T f). nu is omega, or
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
@@ -65,15 +64,11 @@ def basis(n: int) -> Basis:
         "squares": [f"abs({name})*{name}" for name in names],
         "frame": [f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)],
     }
-    groups = dict(_slices({**of_group, "loads": names, "turned loads": names}))
+    groups, begin = dict[str, slice](), 0
+    for name, columns in {**of_group, "loads": names, "turned loads": names}.items():
+        groups[name] = slice(begin, begin + len(columns))
+        begin += len(columns)
     return Basis(n, groups, tuple(text for texts in of_group.values() for text in texts), pairs)
-
-
-def _slices(groups: dict[str, list[str]]) -> Iterator[tuple[str, slice]]:
-    begin = 0
-    for name, texts in groups.items():
-        yield name, slice(begin, begin + len(texts))
-        begin += len(texts)
 
 
 def coriolis(gyro: Floats, turn: Any = 0.0, munk: Any = 0.0) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 
 class Spent(Exception):
@@ -15,7 +15,7 @@ class Spent(Exception):
 class Budget:
     """``left`` is the work that may still be done: about one for each microsecond of a processor."""
 
-    left: float = field(default=300_000.0)
+    left: float = 300_000.0
 
     @contextmanager
     def at_most(self, work: float) -> Iterator[None]:

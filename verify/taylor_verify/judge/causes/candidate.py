@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -18,52 +19,53 @@ from taylor_verify.words.causes import with_numbers
 _SAME: Final = 1e-10
 
 
-def without_numbers(numbers: Floats) -> Candidate:
-    """Raise ValueError: a fault without numbers has no other ones."""
-    raise ValueError(numbers)
-
-
 @dataclass(frozen=True)
 class Candidate:
-    """A fault with the part of the ``defects`` that it leaves, and its motion at the rows of an answer.
+    """A fault with its numbers, the part of the ``defects`` that it leaves, and its motion at rows.
 
-    It may be proven if it leaves no more than ``near``. ``changes`` are those of the equations; a
-    ``method`` with a number of steps takes their place. ``of`` returns it with other numbers.
+    It may be proven if it leaves no more than ``near``. The steps of a ``method`` take the place of its
+    changes.
     """
 
-    name: str
-    kind: str
+    family: Family
+    numbers: Floats
     defects: float
-    motion: Callable[[Answer], Motion | None]
+    motion: Callable[[Answer, Changes], Motion | None]
     near: float
-    numbers: Floats | None = None
-    changes: Changes = field(default_factory=dict)
-    family: Family | None = None
     method: Any = None
-    of: Callable[[Floats], Candidate] = without_numbers
+
+    @property
+    def kind(self) -> str:
+        return self.family.kind
 
     @property
     def count(self) -> int:
         """Number of the numbers that were fitted."""
-        return 0 if self.numbers is None else len(self.numbers)
+        return self.family.count
+
+    @cached_property
+    def changes(self) -> Changes:
+        """The changes of the equations."""
+        return self.family.changes(self.numbers)
 
     @property
     def text(self) -> str:
         """The name, with numbers where there are some."""
-        if self.family is None or self.numbers is None:
-            return self.name
-        return with_numbers(self.name, self.family.labels, self.family.right, self.numbers)
+        family = self.family
+        if not self.count:
+            return family.name
+        return with_numbers(family.name, family.labels, family.right, self.numbers)
 
     @property
     def is_nothing(self) -> bool:
         """True for the scene's own numbers, a factor that prints as 1, and a step back in time."""
-        if self.numbers is None or self.family is None:
+        if not self.count:
             return False
         if np.all(np.abs(self.numbers - self.family.right) <= _SAME * self.family.scale):
             return True
         if self.kind == "damping step":
             return not self.numbers[0] > 0
-        is_factor = self.kind == "clock" or self.name.startswith("factor")
+        is_factor = self.kind == "clock" or self.family.name.startswith("factor")
         return is_factor and f"{self.numbers[0]:.6g}" == "1"
 
 

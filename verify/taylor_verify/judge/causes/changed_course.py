@@ -41,14 +41,10 @@ class Courses(Evidence):
             answer.at(np.s_[: _first_wrong(answer) + _ROWS]) if is_held else answer.thinned(_SPREAD)
         )
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         answer = self.answer
         motions = courses(answer, sets, self.step)
         return np.array([((answer.file.v - each.v) / answer.sizes).T for each in motions])
-
-    @property
-    def steps(self) -> int:
-        return 1
 
     @cached_property
     def step(self) -> float:
@@ -81,9 +77,8 @@ def _first_wrong(answer: Answer) -> int:
 def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motion]:
     """Yield the motion at the rows of an answer of each set of changes."""
     for part in parts_of(sets):
-        right = answer.right
-        equations = right.copies(part) if len(part) > 1 else right.changed(part[0])
-        rows = _course(answer, replace(equations, has_momenta=True), len(part), h)
+        equations = replace(answer.right.copies(part), has_momenta=True)
+        rows = _course(answer, equations, len(part), h)
         yield from (_motion(answer, each) for each in rows)
 
 

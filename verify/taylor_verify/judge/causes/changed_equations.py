@@ -26,9 +26,9 @@ from taylor_verify.scenes.loads.loads import Loads
 Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1}
-_AXES_OF_NUMBERS: Final = dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
-AXES: Final = _AXES | _AXES_OF_NUMBERS
+_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
+    ("damping", "clock", "ahead", "late"), 0
+)
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
@@ -64,12 +64,6 @@ class Equations:
     in_world: bool = False
     added: Floats | None = None
 
-    @classmethod
-    def of_mass(cls, mass: Floats, rotor: Floats) -> Equations:
-        """Return the right equations of a free body with wheels of this momentum."""
-        n = len(mass)
-        return cls(mass, rotor, np.zeros(n), np.zeros((n, basis(n).count)), scene_mass=mass)
-
     @property
     def size(self) -> int:
         """Number of components of nu: 3 or 6."""
@@ -83,11 +77,6 @@ class Equations:
     def has_loads(self) -> bool:
         """True if the scene has loads, constant or written as texts."""
         return self.acting is not None or bool(np.any(self.load))
-
-    @property
-    def has_loads_of_arcs(self) -> bool:
-        """True if each arc has a constant load of its own."""
-        return np.ndim(self.load) == len(("sets", "components", "arcs"))
 
     @property
     def loads(self) -> Loads | None:
@@ -128,17 +117,20 @@ class Equations:
     @property
     def sets(self) -> int:
         """Number of parameter sets."""
-        shapes = {name: np.shape(getattr(self, name)) for name in AXES}
-        return max(
-            shapes[name][0] if len(shapes[name]) > axes else 1 for name, axes in AXES.items()
-        )
+        shapes = [(np.shape(getattr(self, name)), axes) for name, axes in _AXES.items()]
+        return max(shape[0] if len(shape) > axes else 1 for shape, axes in shapes)
 
     def changed(self, changes: Changes) -> Equations:
         """Return the equations with one set of other parameters."""
         return replace(self, **changes)
 
     def copies(self, sets: Sequence[Changes]) -> Equations:
-        """Return equations with an axis of parameter sets; a set names the parameters that it changes."""
+        """Return equations with an axis of parameter sets, if there are several.
+
+        A set names the parameters that it changes.
+        """
+        if len(sets) == 1:
+            return self.changed(sets[0])
         names = {name for changes in sets for name in changes}
         right = {name: getattr(self, name) for name in names}
         if "turns" in names and self.turns is None:

@@ -27,7 +27,9 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         return ""
     other, lines, n = right.changed(changes), dict[str, str](), right.size
     if "acting" in changes:
-        lines |= _changed_texts(right.loads, other.loads)
+        before = _entries_by_key(right.loads)
+        after = _entries_by_key(other.loads)
+        lines |= {key: words for key, words in after.items() if before.get(key) != words}
     if not _is_written(other, changes):
         return ""
     if "mass" in changes:
@@ -45,13 +47,8 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     return "; ".join(f"{key} = {words}" for key, words in lines.items())
 
 
-def _changed_texts(right: Loads | None, other: Loads | None) -> dict[str, str]:
-    """Return the keys of a scene whose numbers or texts are others, each with all of its entries."""
-    before, after = _entries_by_key(right), _entries_by_key(other)
-    return {key: words for key, words in after.items() if before.get(key) != words}
-
-
 def _entries_by_key(loads: Loads | None) -> dict[str, str]:
+    """Return the keys of the numbers and texts of a scene's loads, each with all of its entries."""
     entries: dict[str, list[str]] = {}
     for place in () if loads is None else places(loads):
         text = f'"{place.entry}"' if isinstance(place.entry, str) else number(float(place.entry))

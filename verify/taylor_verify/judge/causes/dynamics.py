@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import combinations
 from typing import Any, Final
 
@@ -13,13 +13,13 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause, without_numbers
+from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
-    Fault,
+    Fitted,
     Sizes,
     across,
     both,
@@ -57,8 +57,6 @@ _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
 _FAULT: Final = 0.3
 _LINEAR: Final = 0.6
-# Nor is a text whose load makes nothing like the defects: the cosine is less, of faults and of families.
-_ALONG: Final = (0.5, 0.3)
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
@@ -124,7 +122,8 @@ def in_states(answer: Answer) -> Cause | None:
     right = answer.right
     if not answer.moving:
         return None
-    search = _search_from_start(answer)
+    courses = Courses.of(answer)
+    search = Search(answer, courses, courses.motion, answer.moving)
     faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
     faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
@@ -168,11 +167,6 @@ def _search_by(answer: Answer, arcs: Arcs) -> Search:
     return Search(
         answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
     )
-
-
-def _search_from_start(answer: Answer) -> Search:
-    courses = Courses.of(answer)
-    return Search(answer, courses, courses.motion, answer.moving)
 
 
 def _written(answer: Answer) -> list[Family]:
@@ -237,16 +231,16 @@ class Search:
         few = [each.slopes for each in linear if each.family.count <= FEW]
         right, budget = self.answer.right, self.answer.budget
         texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
-        faults = [fault.changes for fault in (*faults_of_terms(right), *texts)]
+        faults = [fault.changes(fault.right) for fault in (*faults_of_terms(right), *texts)]
         budget.left = max(budget.left, _BESIDE)
         with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
-                    method = (steps.method, steps.count)
-                    text = f"{cause.text or cause.name}, {steps.words(self.answer)}"
-                    return replace(cause, text=text, method=method)
+                    beside = f"beside steps of {steps.name}, h = {steps.step(self.answer):.6g}"
+                    text = f"{cause.text or cause.name}, {beside}"
+                    return replace(cause, text=text, method=steps)
         return None
 
     def _is_exact(self, candidate: Candidate) -> bool:
@@ -258,41 +252,27 @@ class Search:
 
     # Evidence.
 
-    def _candidate(
-        self, of: Fault | Family, left: float, changes: Changes, numbers: Floats | None = None
-    ) -> Candidate:
+    def _candidate(self, family: Family, fit: Fitted) -> Candidate:
         answer, right = self.answer, self.answer.right
-        is_loose = answer.file.q is None and right.changed(changes).coupled > right.coupled
-        family = of if isinstance(of, Family) else None
-        return Candidate(
-            of.name,
-            of.kind,
-            left / self.evidence.size,
-            lambda answer: self.motion(answer, changes),
-            near=_LOOSE if is_loose else LEAVES,
-            changes=changes,
-            numbers=numbers,
-            family=family,
-            of=partial(self._fitted, family, left) if family else without_numbers,
-        )
+        coupled = right.changed(family.changes(fit.numbers)).coupled
+        near = _LOOSE if answer.file.q is None and coupled > right.coupled else LEAVES
+        return Candidate(family, fit.numbers, fit.size / self.evidence.size, self.motion, near)
 
-    def _fitted(self, family: Family, size: float, numbers: Floats) -> Candidate:
-        return self._candidate(family, size, family.changes(numbers), numbers)
-
-    def without_numbers(self, faults: Sequence[Fault]) -> Iterator[Candidate]:
+    def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
-        faults = [fault for fault in faults if self._along(fault.changes) > _ALONG[0]]
         near = [*self._near(faults)]
-        every: Any = self.evidence.defects([fault.changes for fault in near]) if near else []
+        sets = [fault.changes(fault.right) for fault in near]
+        every: Any = self.evidence.defects(sets) if near else []
         for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
-                yield self._candidate(fault, left, fault.changes)
+                yield self._candidate(fault, Fitted(fault.right, left))
 
-    def _near(self, faults: Sequence[Fault]) -> Iterator[Fault]:
+    def _near(self, faults: Sequence[Family]) -> Iterator[Family]:
         """Yield the faults that leave little by few steps, whose error the right scene has too."""
         evidence = self.evidence
-        right, *every = evidence.defects([{}, *(f.changes for f in faults)], evidence.few_steps)
+        sets = [fault.changes(fault.right) for fault in faults]
+        right, *every = evidence.coarse([{}, *sets])
         for fault, defects in zip(faults, every, strict=True):
             if np.linalg.norm(evidence.of_right + defects - right) < 2 * _FAULT * evidence.size:
                 yield fault
@@ -309,17 +289,12 @@ class Search:
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
                 yield [family for family in families if least <= family.count <= most]
 
-    def _along(self, changes: Changes) -> float:
-        return self.evidence.along(changes) if isinstance(self.evidence, Arcs) else 1.0
-
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
-        ahead = [(family, family.ahead) for family in families]
-        ahead = [each for each in ahead if abs(self._along(each[1][0])) > _ALONG[1]]
-        sets = [changes for _, of_family in ahead for changes in of_family]
-        defects, first = self.evidence.defects([{}, *sets], self.evidence.few_steps), 1
+        sets = [changes for family in families for changes in family.ahead]
+        defects, first = self.evidence.coarse([{}, *sets]), 1
         linear = list[_Linear]()
-        for family, _ in ahead:
+        for family in families:
             change = defects[first : first + family.count] - defects[0]
             first += family.count
             slopes = (change.reshape(family.count, -1) / (DIFFERENCE * family.scale[:, None])).T
@@ -349,7 +324,7 @@ class Search:
                 if family.kind == "clock" and isinstance(self.evidence, Arcs) and not counts:
                     fit = by_factor(self.evidence, family, fit)
                 if np.isfinite(fit.size):
-                    candidate = self._fitted(family, fit.size, fit.numbers)
+                    candidate = self._candidate(family, fit)
                     if self._is_exact(candidate):
                         counts.append(family.count)
                         limit = min(limit, max(BETTER * each.left, _NEARLY))
@@ -379,4 +354,4 @@ class Search:
             family = both(self.answer.right, few[i].family, few[k].family)
             fit = gauss_newton(self.evidence, family)
             if fit.size / size < max(PAIR, 3 * self.floor):
-                yield self._fitted(family, fit.size, fit.numbers)
+                yield self._candidate(family, fit)

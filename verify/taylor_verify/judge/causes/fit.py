@@ -26,8 +26,6 @@ _GAIN: Final = 0.95
 # One number is fitted in a few rounds, each far better than the last.
 _GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
-# Defects above this are measured with the few steps that derivatives take.
-_COARSE: Final = 1e-3
 # Factors of a clock that is not nearly right.
 _CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
 _FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
@@ -38,7 +36,7 @@ _MOST_STEPS: Final = 128
 
 @dataclass(frozen=True)
 class Family:
-    """Faults with numbers: ``right`` are the scene's, ``scale`` natural sizes of a change.
+    """Faults with numbers, or one without: ``right`` are the scene's, ``scale`` natural sizes of a change.
 
     ``kind`` is the class that a family belongs to; families of one kind are no alternatives.
     ``labels`` name the numbers of a body, whose changes are said one by one.
@@ -71,13 +69,9 @@ class Family:
         return np.asarray(((flat[0] - flat[1]) / (2 * DIFFERENCE * self.scale[:, None])).T)
 
 
-@dataclass(frozen=True)
-class Fault:
-    """A change of the scene that has no number to fit."""
-
-    name: str
-    kind: str
-    changes: Changes
+def fault(name: str, kind: str, changes: Changes) -> Family:
+    """Return a change of the scene that has no number to fit."""
+    return Family(name, kind, np.zeros(0), np.zeros(0), lambda _: changes)
 
 
 @dataclass(frozen=True)
@@ -169,20 +163,16 @@ class Fitted:
 
 def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
     """Return the best numbers of a family; of infinite size where they cannot be computed."""
-    numbers, steps = family.right if begin is None else begin, evidence.few_steps
-    (defects,) = evidence.defects([family.changes(numbers)], steps)
+    numbers = family.right if begin is None else begin
+    (defects,) = evidence.defects([family.changes(numbers)])
     first = size = float(np.linalg.norm(defects))
     for count in range(_ROUNDS):
-        if steps != evidence.steps and size <= _COARSE * np.sqrt(evidence.of_right.size):
-            steps = evidence.steps
-            (defects,) = evidence.defects([family.changes(numbers)], steps)
-            size = float(np.linalg.norm(defects))
-        slopes = family.slopes(evidence.defects(family.around(numbers), evidence.few_steps))
+        slopes = family.slopes(evidence.coarse(family.around(numbers)))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
         before = size
         for trials in _trial_steps(slopes, defects.ravel(), family.scale):
-            tried = evidence.defects([family.changes(numbers + step) for step in trials], steps)
+            tried = evidence.defects([family.changes(numbers + step) for step in trials])
             sizes = _sizes(tried)
             best = int(np.argmin(sizes))
             if sizes[best] < size:
@@ -194,8 +184,6 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
         is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
         if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
-    if steps != evidence.steps:
-        size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
     return Fitted(numbers, size)
 
 

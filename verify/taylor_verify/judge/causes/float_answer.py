@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -46,15 +46,9 @@ class Motion:
         q, c = (None if part is None else part[rows] for part in (self.q, self.c))
         return Motion(self.v[rows], q, c)
 
-    @property
-    def first_attitude(self) -> Floats | None:
-        return None if self.q is None else np.asarray(self.q[0])
-
-    def signed_as(self, first: Floats | None) -> Motion:
+    def signed_as(self, first: Floats) -> Motion:
         """Return the motion with the signs of the attitudes such that the first is near to this one."""
-        if self.q is None or first is None or self.q[0] @ first >= 0:
-            return self
-        return replace(self, q=-self.q)
+        return self if self.q is None or self.q[0] @ first >= 0 else replace(self, q=-self.q)
 
     def before(self, other: Motion) -> Motion:
         """Return the rows with those of another motion behind them, and its quantities."""
@@ -128,8 +122,7 @@ class Answer:
     @cached_property
     def rounding(self) -> Floats:
         """Noise of each component of v relative to its vector."""
-        own: Floats = np.maximum(self.noise[0] / self.sizes, 8 * _ROUNDOFF)
-        return own
+        return np.asarray(np.maximum(self.noise[0] / self.sizes, 8 * _ROUNDOFF))
 
     @cached_property
     def groups(self) -> dict[str, slice]:
@@ -199,7 +192,10 @@ class Answer:
 
     def leaves(self, motion: Motion) -> dict[str, float]:
         """Return the part of each failed group's error that a motion leaves, where the motion has it."""
-        errors = self.errors(motion)
+        return self.parts(self.errors(motion))
+
+    def parts(self, errors: Mapping[str, Floats]) -> dict[str, float]:
+        """Return the largest errors of the failed groups as parts of those of the answer."""
         return {
             name: float(np.max(errors[name])) / self.worst[name]
             for name in self.failed
@@ -265,6 +261,7 @@ class Answer:
             places=np.concatenate([[self.places[0] - self.stride], self.places]),
             file=start.before(self.file),
             truth=start.before(self.truth),
+            own_attitudes=None,
         )
 
     @cached_property

@@ -21,12 +21,12 @@ from taylor_verify.judge.causes.changed_equations import (
     to_space,
 )
 from taylor_verify.judge.causes.dynamics import Search
-from taylor_verify.judge.causes.fit import Family, Fault, linear
+from taylor_verify.judge.causes.fit import Family, fault, linear
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
-from taylor_verify.judge.causes.replayed_methods import UPDATES
-from taylor_verify.judge.causes.replays import replay
+from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
+from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16
@@ -60,10 +60,10 @@ _WRONG: Final = (
 Maps = Callable[[Arcs], Floats]
 
 
-def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | None:
+def kinematics(answer: Answer, right: Equations, method: Steps | None = None) -> Cause | None:
     """Return the proven cause of a wrong attitude by equations that are right for the moving part.
 
-    A ``method`` of the moving part, with its number of steps, is taken for that part. An attitude that
+    The steps of a ``method`` of the moving part are taken for that part. An attitude that
     follows from the file's own omega is not wrong by itself.
     """
     answer = answer.with_start(right.mass)
@@ -78,7 +78,7 @@ def kinematics(answer: Answer, right: Equations, method: Any = None) -> Cause | 
     search = Search(answer, turns, turns.motion, ["attitude"])
     candidates = [*_updates(turns, method)]
     if method is None:
-        faults = [Fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
+        faults = [fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
         candidates += [*search.without_numbers(faults), *search.fitted(_families(answer, right))]
         name = (
             "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
@@ -95,16 +95,12 @@ class _Turns(Evidence):
     right: Equations
 
     @property
-    def steps(self) -> int:
-        return self.arcs.steps
-
-    @property
     def rounding(self) -> Floats:
         return np.full(4, max(self.answer.noise[1], 1e-16))
 
-    def defects(self, sets: Sequence[Changes], steps: int = 0) -> Floats:
+    def defects(self, sets: Sequence[Changes]) -> Floats:
         n = self.answer.n
-        ends = self.arcs.ends(self.right.copies(sets), self.steps, n + 4)[:, n : n + 4]
+        ends = self.arcs.ends(self.right.copies(sets), self.arcs.steps, n + 4)[:, n : n + 4]
         return self.rest(np.broadcast_to(ends, (len(sets), *ends.shape[1:])))
 
     def rest(self, q: Floats) -> Floats:
@@ -118,17 +114,18 @@ class _Turns(Evidence):
         return np.asarray(ends * signs - unit)
 
     def motion(self, answer: Answer, changes: Changes) -> Motion:
-        return _chained(partial(maps_of_attitude, self.right.changed(changes)), answer)
+        return _chained(partial(maps_of_attitude, self.right.changed(changes)), answer, changes)
 
     def candidate(self, name: str, kind: str, maps: Maps) -> Candidate:
         """Return the candidate whose attitudes follow by maps of q."""
         q = self.arcs.begin(self.answer.n + 4)[0, self.answer.n :]
         rest = self.rest(np.einsum("aij,ja->ia", maps(self.arcs), q))
         left = float(np.linalg.norm(rest)) / self.size
-        return Candidate(name, kind, left, partial(_chained, maps), _REPLAYED)
+        of_maps = fault(name, kind, {})
+        return Candidate(of_maps, of_maps.right, left, partial(_chained, maps), _REPLAYED)
 
 
-def _chained(maps: Maps, answer: Answer) -> Motion:
+def _chained(maps: Maps, answer: Answer, _: Changes) -> Motion:
     assert answer.start.q is not None
     return Motion(answer.truth.v, chained(maps(row_to_row(answer)), answer.start.q[0]))
 
@@ -160,20 +157,21 @@ def _families(answer: Answer, right: Equations) -> list[Family]:
     ]
 
 
-def _updates(turns: _Turns, method: Any) -> Iterator[Candidate]:
+def _updates(turns: _Turns, method: Steps | None) -> Iterator[Candidate]:
     arcs, right, n = turns.arcs, turns.right, turns.answer.n
     if right.coupled > n:
         return
     q, rates = arcs.begin(n + 4)[:, n:], cache(partial(_rates, right, arcs, method))
     exact = turns.rest(arcs.ends(right, arcs.steps, n + 4)[0, n : n + 4])
-    for name, (order, update) in UPDATES.items():
+    for name, update in UPDATES.items():
 
         def error(steps: int, update: Any = update) -> Floats:
             return turns.rest(_updated(update, q, rates(steps), arcs.spans / steps)[0])
 
         if method is None and not _is_along(exact, exact - error(_FEW)):
             continue
-        steps = method[1] if method else _steps(order, partial(_apart, error, exact), turns.size)
+        order = 2 if name == OF_SECOND_ORDER else 1
+        steps = method.count if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))
         h = float(np.median(np.abs(arcs.spans))) / best
@@ -216,14 +214,14 @@ def _updated(update: Any, q: Floats, rates: list[Floats], h: Floats) -> Floats:
     return q
 
 
-def _rates(right: Equations, arcs: Arcs, method: Any, steps: int) -> list[Floats]:
+def _rates(right: Equations, arcs: Arcs, method: Steps | None, steps: int) -> list[Floats]:
     """Return omega at the begin of the arcs and after each of so many steps."""
     answer, h = arcs.answer, arcs.spans / steps
     v = arcs.begin(answer.n)
     rows = [v]
     if method:
         for k in range(steps):
-            rows.append(replay(answer, method[0], right, rows[-1], arcs.since + k * h, h, 1))
+            rows.append(replay(answer, method.method, 1, right, rows[-1], arcs.since + k * h, h))
     else:
         spans, since = np.outer(np.arange(1, steps + 1), h).ravel(), np.tile(arcs.since, steps)
         ends = moved(answer, right, np.tile(v, steps), since, spans, arcs.steps)
@@ -235,7 +233,7 @@ def _omega(right: Equations, v: Floats) -> Floats:
     return (right.inverse @ v if right.has_momenta else v)[:, -3:]
 
 
-def _maps(right: Equations, update: Any, steps: int, method: Any, arcs: Arcs) -> Floats:
+def _maps(right: Equations, update: Any, steps: int, method: Steps | None, arcs: Arcs) -> Floats:
     """Return the maps of q; an update is linear in q up to the length."""
     n = arcs.answer.n
     q = with_units(arcs.begin(n)[0])[:, n:]
@@ -260,7 +258,7 @@ def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     still = np.all(q[1:] == q[:-1], axis=1)
     if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= by_omega[bad]):
         return None
-    if still[bad].all() and len(bad) >= _LAST and _is_one_part(bad):
+    if still[bad].all() and len(bad) >= _LAST and np.all(np.diff(bad) == 1):
         return _stands_still(answer, maps, bad)
     if len(bad) > min(_FEW_JUMPS, answer.count // _ONE_IN):
         return None
@@ -274,23 +272,16 @@ def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     return _proven(answer, maps, begins, words)
 
 
-def _is_one_part(rows: Places) -> bool:
-    return bool(np.all(np.diff(rows) == 1))
-
-
 def _stands_still(answer: Answer, maps: Floats, bad: Places) -> Cause | None:
     """Return the cause of attitudes that do not change in one part of the run."""
     last = int(bad[-1]) + 1
     still = maps.copy()
     still[bad] = np.eye(4)
-    where = f"from t = {answer.times[bad[0]] + answer.right.start:.6g}"
-    if last < answer.count - 1:
-        where += f" to {answer.times[last] + answer.right.start:.6g}"
-    else:
-        where += " on"
-    return _proven(
-        answer, still, [0], f"attitude stands still {where}, and follows the motion before"
-    )
+    times = answer.times + answer.right.start
+    end = f" to {times[last]:.6g}" if last < answer.count - 1 else " on"
+    where = f"from t = {times[bad[0]]:.6g}{end}"
+    words = f"attitude stands still {where}, and follows the motion before"
+    return _proven(answer, still, [0], words)
 
 
 def _proven(answer: Answer, maps: Floats, begins: list[int], words: str) -> Cause | None:

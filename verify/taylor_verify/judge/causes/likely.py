@@ -128,7 +128,8 @@ def explained(answer: Answer) -> Explained:
     with suppress(*_SILENT):
         causes = causes_of(answer)
     causes = [*causes, *plugged_causes(answer)] if answer.has_rates else _of_frame(answer, causes)
-    is_motion = bool(causes) and not any(map(_is_convention, causes))
+    are_readings = (cause.kind in _READINGS or cause.name in _OTHER_BODIES for cause in causes)
+    is_motion = bool(causes) and not any(are_readings)
     missing: tuple[MissingLoad, ...] = ()
     if not causes and answer.has_rates and not set(answer.moving).isdisjoint(answer.failed):
         with suppress(*_SILENT):
@@ -142,10 +143,6 @@ def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
     explains = may_leave(answer, ["attitude"], 1) if "attitude" in answer.failed else 0.0
     left = [(cause, cause.leaves.get("attitude", np.inf)) for cause in causes]
     return [replace(cause, leaves={"attitude": part}) for cause, part in left if part <= explains]
-
-
-def _is_convention(cause: Cause) -> bool:
-    return cause.kind in _READINGS or cause.name in _OTHER_BODIES
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:

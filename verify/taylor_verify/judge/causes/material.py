@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices, steady_signs
@@ -54,10 +55,7 @@ class ExactMotion:
         self._scene = scene
         track = frozenset({"attitude", *["centre"] * has_centre})
         self._exact = solution(replace(scene, track=track))
-
-    @property
-    def has_closed_form(self) -> bool:
-        return self._exact.route != "taylor"
+        self.has_closed_form = self._exact.route != "taylor"
 
     def at(self, elapsed: list[Fraction], has_momenta: bool) -> Motion:
         """Return the rows at these times since the start, with momenta or velocities. Raises Unsettled."""
@@ -90,10 +88,13 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     if acting is not None and _are_constant(acting.written):
         constant, acting = np.ravel(acting.loads(0.0, np.zeros(n))).tolist(), None
     added = body.added_mass
-    return replace(
-        Equations.of_mass(mass, np.array(parts.get("rotor", (0, 0, 0)), dtype=float)),
+    return Equations(
+        mass,
+        rotor=np.array(parts.get("rotor", (0, 0, 0)), dtype=float),
         load=np.array(constant, dtype=float) if acting is None else np.zeros(n),
+        extra=np.zeros((n, basis(n).count)),
         has_momenta=has_momenta,
+        scene_mass=mass,
         start=float(given.clock.start),
         damping=float(body.damping),
         added=None if added is None else np.array(added, dtype=float),
@@ -132,7 +133,8 @@ def material(
     first = np.array(given.initial.attitude, dtype=float)
     truth = exact.at(instants, has_momenta).signed_as(first).at(np.s_[1:])
     start = exact.at(instants[:1], has_momenta=False).signed_as(first)
-    compared = file.at(rows).signed_as(truth.first_attitude)
+    assert truth.q is not None
+    compared = file.at(rows).signed_as(truth.q[0])
     return Answer(
         right,
         start,

@@ -11,7 +11,7 @@ from typing import Final
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.changed_texts import added, rewritten, written_out
-from taylor_verify.judge.causes.fit import Fault
+from taylor_verify.judge.causes.fit import Family, fault
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.written_numbers import Number
 from taylor_verify.scenes.loads.loads import Loads
@@ -22,14 +22,14 @@ _RATES: Final = tuple(Fraction(times) ** sign for times in _TIMES for sign in (1
 _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 
 
-def faults_of_states(right: Equations) -> Iterator[Fault]:
+def faults_of_states(right: Equations) -> Iterator[Family]:
     """Yield the own states of a scene, run otherwise; what no scene may have is none."""
     acting = right.acting
     assert acting is not None
     with suppress(ValueError):
         for name, other in _misread_states(acting.written):
             if next(other.faults(), None) is None:
-                yield Fault(name, "states", {"acting": acting.of(other)})
+                yield fault(name, "states", {"acting": acting.of(other)})
 
 
 def held_over_steps(answer: Answer, h: float) -> Changes:

@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.basis import EPSILON, coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.fit import Family, Fault, Sizes, linear
+from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
@@ -35,20 +35,20 @@ _TOGETHER: Final[dict[str, _Places]] = {
 _ADDED: Final = (("left out", 0.0), ("with the other sign", -1.0), ("twice", 2.0))
 
 
-def faults_of_bodies(right: Equations) -> Iterator[Fault]:
+def faults_of_bodies(right: Equations) -> Iterator[Family]:
     """Yield bodies that result from misreading the scene's, whole and in one of the two matrices alone."""
     misread = _misread_tensors(right) if right.size == 3 else _misread_masses(right)
     for name, mass in misread:
         extra = right.basis.factors(products=coriolis_of(mass - right.mass))
         is_body = np.all(np.linalg.eigvalsh(mass) > 0)
         if is_body:
-            yield Fault(name, "body", {"mass": mass})
+            yield fault(name, "body", {"mass": mass})
         # Wrong axes are wrong in both.
         if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
-            yield Fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
+            yield fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
         if is_body and right.size == 6:
             changes = {"mass": mass, "extra": -extra}
-            yield Fault(f"{name} in the mass matrix alone", "Coriolis matrix", changes)
+            yield fault(f"{name} in the mass matrix alone", "Coriolis matrix", changes)
 
 
 def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
@@ -122,20 +122,20 @@ def _coupled(mass: Floats, factor: float) -> Floats:
 # of A are -C_A(nu) nu, with the blocks [[0, -S(p)], [-S(p), -S(l)]] of (p, l) = A nu.
 
 
-def faults_of_added_mass(right: Equations) -> Iterator[Fault]:
+def faults_of_added_mass(right: Equations) -> Iterator[Family]:
     """Yield the faults of the entries of an added mass that the scene names."""
     if right.added is None or not np.any(right.added):
         return
     for words, places in _TOGETHER.items():
         listed = " ".join(f"C_{i}{k}" for i, k in places)
         name = f"entries {listed} of the added mass are 0 ({words})"
-        yield Fault(name, _KIND, _changed(right, places, 0.0))
+        yield fault(name, _KIND, _changed(right, places, 0.0))
     for i, k in product(range(1, 7), repeat=2):
         for words, factor in (("is 0", 0.0), ("has the other sign", -1.0)):
             changes = _changed(right, ((i, k),), factor)
             if np.any(changes["extra"]):
                 name = f"entry C_{i}{k} of the added mass {words}, in the Coriolis matrix"
-                yield Fault(name, _KIND, changes)
+                yield fault(name, _KIND, changes)
 
 
 def _changed(right: Equations, places: _Places, factor: float) -> dict[str, Floats]:

@@ -11,16 +11,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any, Final
 
-import numpy as np
-
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.material import ExactMotion
+from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.records.plugins import Plugin, plugins
 from taylor_verify.scenes.scene import Scene
 
-# At most this part of the error of each failed quantity is left by a cause.
-_PROVEN: Final = 1e-3
 _MOST: Final = 20
 _log = logging.getLogger(__name__)
 
@@ -36,11 +33,13 @@ def plugged_causes(answer: Answer) -> list[Cause]:
 
 def _of(plugin: Plugin, scene: Scene, answer: Answer) -> Iterator[Cause]:
     """Yield the proven causes of one package; an error of its code is a line of the log."""
+    elapsed = [Fraction(t) for t in answer.times.tolist()]
     try:
         candidates = plugin.content.candidates(scene, shown(answer))
         for _, changed in zip(range(_MOST), candidates, strict=False):
-            leaves = _leaves(changed, answer)
-            if leaves and max(leaves.values()) <= _PROVEN:
+            exact = ExactMotion(changed, answer.file.c is not None)
+            leaves = answer.leaves(exact.at(elapsed, answer.right.has_momenta))
+            if leaves and max(leaves.values()) <= LEAVES:
                 yield Cause(changed.title, f"{plugin.name} {plugin.origin}", leaves)
     except Exception as error:  # other people's code
         reason = f"{type(error).__name__}: {error}"
@@ -54,15 +53,3 @@ def shown(answer: Answer) -> dict[str, Any]:
     rows = {name: answer.file.v[:, part] for name, part in answer.groups.items()}
     others = {"quaternion": answer.file.q, "centre": answer.file.c}
     return {"t": answer.times, **rows, **{n: r for n, r in others.items() if r is not None}}
-
-
-def _leaves(changed: Scene, answer: Answer) -> dict[str, float]:
-    """Return the part of the error of each failed quantity that the exact motion of a scene leaves."""
-    exact = ExactMotion(changed, answer.file.c is not None)
-    elapsed = [Fraction(t) for t in answer.times.tolist()]
-    errors = answer.errors(exact.at(elapsed, answer.right.has_momenta))
-    return {
-        name: float(np.max(error)) / answer.worst[name]
-        for name, error in errors.items()
-        if name in answer.failed and answer.worst[name]
-    }

@@ -8,18 +8,16 @@ are usual.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs, enough_steps, moved
+from taylor_verify.judge.causes.arcs import Arcs, enough_steps, row_to_row
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.instants import evenly
-
-# A function from the states of all rows but the last (sets, components, arcs) to those one row later.
-Stepper = Callable[[Floats], Floats]
 
 # The standard of proof. What a cause leaves: of the error on the whole answer or of the defects, or so many
 # roundings of the file; never more than the caps, with no fitted number and with any.
@@ -41,61 +39,61 @@ def may_leave(answer: Answer, groups: Sequence[str], count: int = 0) -> float:
     return min(max(LEAVES, ROUNDINGS * answer.floor(groups)), CAPS[min(count, 1)])
 
 
-def whole(
-    answer: Answer, equations: Equations, stepper: Stepper | None = None, components: int = 0
-) -> Motion | None:
+def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion | None:
     """Return the motion of the equations from the start of the answer; None if it is not reached.
 
-    A ``stepper`` takes the place of the flow for the moving part, or for so many ``components``.
+    With ``components`` it has so many, and else all that the answer has.
     """
-    n, count = answer.n, components or equations.coupled
-    start = _start(answer, equations, count)
-    rows = answer.states(count)
-    times = answer.times
-    if not answer.is_from_start:
-        rows, times = np.vstack([start, rows]), np.r_[answer.begins, times]
-    rows[0] = start
-    since, spans = times[:-1], np.diff(times)
-    if not len(spans):
+    from_start = answer.with_start(equations.mass)
+    if from_start.count < 2:
         return None
-    steps = 1 if stepper else _enough_steps(answer, equations, rows, since, spans)
-    go = stepper or (lambda z: moved(answer, equations, z, since, spans, steps))
+    n, count, arcs = answer.n, components or equations.coupled, row_to_row(from_start)
+    rows = from_start.states(count)
+    frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
+    rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
+    steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
-    if not _shoot(rows, go, scale):
+    if not _shoot(rows, lambda z: arcs.moved(equations, z, steps), scale):
         return None
-    q, c = (rows[:, n : n + 4] if count > n else None), None
-    if q is None and (answer.file.q is not None or n == 6) and stepper is None:
-        q = _attitudes(answer, equations, rows, since, spans, steps)
-    if count > n + 4:
-        c = rows[:, n + 4 :]
-    elif n == 6 and q is not None and answer.file.c is not None:
-        c = _centres(answer, equations, rows[:, :6], q, since, spans, steps)
-    unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
-    motion = Motion(rows[:, :n], unit, c)
+    motion = Motion(
+        rows[:, :n],
+        rows[:, n : n + 4] if count > n else None,
+        rows[:, n + 4 :] if count > n + 4 else None,
+    )
+    if not components:
+        has_frame = answer.file.q is not None or n == 6
+        motion = _with_frame(motion, equations, replace(arcs, steps_given=steps), has_frame)
+    if motion.q is not None:
+        motion = replace(motion, q=motion.q / np.linalg.norm(motion.q, axis=1, keepdims=True))
     return motion if answer.is_from_start else motion.at(np.s_[1:])
 
 
-def _start(answer: Answer, equations: Equations, count: int) -> Floats:
-    frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
-    return np.concatenate([answer.first(equations.mass), *frame])[:count]
-
-
-def _enough_steps(
-    answer: Answer, equations: Equations, rows: Floats, since: Floats, spans: Floats
-) -> int:
+def _enough_steps(equations: Equations, arcs: Arcs, rows: Floats) -> int:
     """Return the steps of an arc whose error is below a tenth of the file's rounding."""
-    some = np.array(evenly(len(spans), _SOME))
+    answer, some = arcs.answer, np.array(evenly(len(arcs.first), _SOME))
     goal = np.maximum(0.1 * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
-    begin = rows[:-1][some].T[None]
-    return enough_steps(
-        lambda steps: moved(answer, equations, begin, since[some], spans[some], steps)[
-            0, : answer.n
-        ],
-        goal,
-    )
+    begin, few = rows[some].T[None], replace(arcs, first=some, last=some + 1)
+    return enough_steps(lambda steps: few.moved(equations, begin, steps)[0, : answer.n], goal)
 
 
-def _shoot(rows: Floats, go: Stepper, scale: Floats) -> bool:
+def _with_frame(motion: Motion, equations: Equations, arcs: Arcs, has_frame: bool) -> Motion:
+    """Return the motion with the attitudes and the centres that it lacks, as far as the answer has them."""
+    answer = arcs.answer
+    if motion.q is None and has_frame:
+        of_motion = replace(arcs, answer=replace(answer, file=motion))
+        assert answer.start.q is not None
+        q = chained(maps_of_attitude(equations, of_motion), answer.start.q[0])
+        motion = replace(motion, q=q)
+    if motion.c is None and answer.n == 6 and motion.q is not None and answer.file.c is not None:
+        begin = [motion.v[:-1].T, motion.q[:-1].T, np.zeros((3, len(arcs.first)))]
+        ends = arcs.moved(equations, np.concatenate(begin)[None], arcs.steps)[0, 10:].T
+        assert answer.start.c is not None
+        path = np.concatenate([answer.start.c, ends])
+        motion = replace(motion, c=np.cumsum(path, axis=0))
+    return motion
+
+
+def _shoot(rows: Floats, go: Callable[[Floats], Floats], scale: Floats) -> bool:
     """Correct the rows until they are one motion; False if they do not become one."""
     shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
     for _ in range(_ROUNDS):
@@ -116,15 +114,6 @@ def _shoot(rows: Floats, go: Stepper, scale: Floats) -> bool:
     return False
 
 
-def _attitudes(
-    answer: Answer, equations: Equations, rows: Floats, since: Floats, spans: Floats, steps: int
-) -> Floats:
-    """Return the attitudes of a motion; they are linear in the first one, given the moving part."""
-    assert answer.start.q is not None
-    ends = moved(answer, equations, with_units(rows[:-1].T), since, spans, steps)
-    return chained(ends[:, rows.shape[1] :].transpose(2, 1, 0), answer.start.q[0])
-
-
 def with_units(v: Floats) -> Floats:
     """Return v (n, arcs) with each of the four unit quaternions, (4, n + 4, arcs)."""
     n, arcs = v.shape
@@ -135,7 +124,7 @@ def with_units(v: Floats) -> Floats:
 def maps_of_attitude(equations: Equations, arcs: Arcs) -> Floats:
     """Return the maps of q over arcs, (arcs, 4, 4); they are linear, given the moving part."""
     n, begin = arcs.answer.n, with_units(arcs.begin(arcs.answer.n)[0])
-    ends = moved(arcs.answer, equations, begin, arcs.since, arcs.spans, arcs.steps)
+    ends = arcs.moved(equations, begin, arcs.steps)
     return np.asarray(ends[:, n:].transpose(2, 1, 0))
 
 
@@ -146,19 +135,3 @@ def chained(maps: Floats, first: Floats) -> Floats:
         q = each @ rows[-1]
         rows.append(q / np.linalg.norm(q))
     return np.array(rows)
-
-
-def _centres(
-    answer: Answer,
-    equations: Equations,
-    v: Floats,
-    q: Floats,
-    since: Floats,
-    spans: Floats,
-    steps: int,
-) -> Floats:
-    assert answer.start.c is not None
-    first = answer.start.c[0]
-    frame = np.concatenate([v[:-1].T, q[:-1].T, np.zeros((3, len(spans)))])[None]
-    ends = moved(answer, equations, frame, since, spans, steps)[0, 10:].T
-    return np.asarray(first + np.concatenate([np.zeros((1, 3)), np.cumsum(ends, axis=0)]))

@@ -5,7 +5,7 @@ What is found by it is asked again of the exact motion.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -37,33 +37,30 @@ def quick_motion(
     if scene.body.loads is not None or not are_known(scene.body) or not set(names) <= set(known):
         return None
     right = equations_of(scene, has_momenta=scene.model == "kirchhoff")
-    rows = {name: np.asarray(part.astype(float)) for name, part in known.items()}
-    parts = [rows[name] for name in names]
+    groups = (*names, "attitude", "centre")
+    rows = {name: np.asarray(known[name].astype(float)) for name in groups if name in known}
     if "attitude" in rows:
         q = quaternion_columns(rows["attitude"])
-        parts.append(q / np.linalg.norm(q, axis=1, keepdims=True))
-    if "centre" in rows:
-        parts.append(rows["centre"])
+        rows["attitude"] = q / np.linalg.norm(q, axis=1, keepdims=True)
     nearest = np.argmin(np.abs(times[:, None] - since[None, :]), axis=1)
-    begin = np.hstack(parts)[nearest].T[None]
-    n = right.size
-    omega = (begin[0, :n].T @ right.inverse.T if right.has_momenta else begin[0, :n].T)[:, -3:]
-    turn = np.max(np.linalg.norm(omega, axis=1) * np.abs(times - since[nearest]))
+    begin, begins = np.hstack([*rows.values()])[nearest].T[None], since[nearest]
+    omega, spans = right.velocities(begins, begin)[0, -3:], times - begins
+    turn = np.max(np.linalg.norm(omega, axis=0) * np.abs(spans))
     if not turn < np.inf:
         return None
     with np.errstate(all="ignore"):
         ends = _settled(
-            lambda steps: _ends(right.rates, begin, since[nearest], times, steps),
+            lambda steps: flow(right.rates, begin, begins, spans, steps)[0].T,
             int(min(max(np.ceil(turn / _STEP), _FEWEST), _MOST)),
         )
-    return _by_name(ends, rows, names)
+    edges = np.cumsum([part.shape[1] for part in rows.values()])[:-1]
+    motion = dict(zip(rows, np.split(ends, edges, axis=1), strict=True))
+    if "attitude" in motion:
+        motion["attitude"] = rotations(motion["attitude"])
+    return motion
 
 
-def _ends(rates: Any, begin: Floats, since: Floats, times: Floats, steps: int) -> Floats:
-    return np.asarray(flow(rates, begin, since, times - since, steps)[0].T)
-
-
-def _settled(ends: Any, steps: int) -> Floats:
+def _settled(ends: Callable[[int], Floats], steps: int) -> Floats:
     """Return the ends of as many steps as they need; NaN where the most are too few."""
     after = ends(steps)
     has_settled = np.zeros(len(after), dtype=bool)
@@ -76,13 +73,3 @@ def _settled(ends: Any, steps: int) -> Floats:
         if np.all(has_settled):
             break
     return np.where(has_settled[:, None], after, np.nan)
-
-
-def _by_name(ends: Floats, rows: Mapping[str, Floats], names: tuple[str, ...]) -> dict[str, Floats]:
-    motion = {name: ends[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)}
-    n = 3 * len(names)
-    if "attitude" in rows:
-        motion["attitude"] = rotations(ends[:, n : n + 4])
-    if "centre" in rows:
-        motion["centre"] = ends[:, n + 4 :]
-    return motion

@@ -178,17 +178,16 @@ def _quaternion_of(omega: Floats, h: Floats) -> Floats:
     return np.concatenate([np.cos(h * size / 2), omega * sine], axis=1)
 
 
-def _times(p: Floats, q: Floats) -> Floats:
-    """Return the product of quaternions whose components are on axis 1."""
-    return np.stack(rotation.product(_parts(p), _parts(q)), axis=1)
-
-
-def _parts(rows: Floats) -> list[Any]:
-    return list(rows.swapaxes(0, 1))
+def _turned(q: Floats, omega: Floats, h: Floats) -> Floats:
+    return np.stack(rotation.product(_parts(q), _parts(_quaternion_of(omega, h))), axis=1)
 
 
 def _slope(q: Floats, omega: Floats) -> Floats:
     return np.stack(attitude_rate(_parts(q), _parts(omega)), axis=1)
+
+
+def _parts(rows: Floats) -> list[Any]:
+    return list(rows.swapaxes(0, 1))
 
 
 def _in_turn(q: Floats, omega: Floats, cosine: Any, sine: Any) -> Floats:
@@ -204,36 +203,18 @@ def _turned_in_place(q: Floats, before: Floats, after: Floats, h: Floats) -> Flo
     return _in_turn(q, before, np.cos(h * size / 2), h / 2 * np.sinc(h * size / 2 / np.pi))
 
 
-UPDATES: Final[Mapping[str, tuple[int, _Update]]] = {
-    "turned by the rate at the begin of the step": (
-        1,
-        lambda q, before, after, h: _times(q, _quaternion_of(before, h)),
+UPDATES: Final[Mapping[str, _Update]] = {
+    "turned by the rate at the begin of the step": lambda q, w, after, h: _turned(q, w, h),
+    "turned by the rate at the end of the step": lambda q, w, after, h: _turned(q, after, h),
+    "turned by the mean of the rates of a step": lambda q, w, after, h: _turned(
+        q, (w + after) / 2, h
     ),
-    "turned by the rate at the end of the step": (
-        1,
-        lambda q, before, after, h: _times(q, _quaternion_of(after, h)),
-    ),
-    "turned by the mean of the rates of a step": (
-        2,
-        lambda q, before, after, h: _times(q, _quaternion_of((before + after) / 2, h)),
-    ),
-    "q + h q omega / 2 with the rate at the begin": (
-        1,
-        lambda q, before, after, h: q + h * _slope(q, before),
-    ),
-    "q + h q omega / 2 with the rate at the end": (
-        1,
-        lambda q, before, after, h: q + h * _slope(q, after),
-    ),
-    "quaternion updated in place": (
-        1,
-        lambda q, before, after, h: _in_turn(q, before, 1.0, h / 2),
-    ),
-    "quaternion turned by the rate at the begin of the step, updated in place": (
-        1,
-        _turned_in_place,
-    ),
+    "q + h q omega / 2 with the rate at the begin": lambda q, w, after, h: q + h * _slope(q, w),
+    "q + h q omega / 2 with the rate at the end": lambda q, w, after, h: q + h * _slope(q, after),
+    "quaternion updated in place": lambda q, w, after, h: _in_turn(q, w, 1.0, h / 2),
+    "quaternion turned by the rate at the begin of the step, updated in place": _turned_in_place,
 }
+OF_SECOND_ORDER: Final = "turned by the mean of the rates of a step"
 
 # The first-order updates of the attitude by which loads that read it differ.
 _WITH_EULER: Final = (
@@ -247,7 +228,7 @@ def with_updates(n: int) -> Iterator[tuple[str, Method]]:
     """Yield explicit Euler with other updates of the attitude, for states of n velocities and q."""
     euler = METHODS["explicit Euler"]
     for name in _WITH_EULER:
-        step = partial(_updated, euler.step, UPDATES[name][1], n)
+        step = partial(_updated, euler.step, UPDATES[name], n)
         yield f"explicit Euler, attitude {name}", Method(1, step)
 
 

@@ -13,10 +13,10 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.arcs import Arcs, parts_of
+from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.fit import across, orthonormal
+from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.misread_states import held_over_steps
@@ -71,18 +71,15 @@ class Steps:
     def step(self, answer: Answer) -> float:
         return float(np.median(np.abs(np.diff(answer.times)))) / self.count
 
-    def words(self, answer: Answer) -> str:
-        return f"beside steps of {self.name}, h = {self.step(answer):.6g}"
-
 
 def replay(
     answer: Answer,
     method: Method,
+    steps: int,
     equations: Equations,
     v: Floats,
     since: Floats,
     spans: Floats,
-    steps: int,
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
     h = spans / steps
@@ -112,15 +109,10 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     for steps in _each_best(replayed.steps(known, _ALONE)):
         if steps.left < max(_LEAVES, _CLEAR * replayed.floor):
             h = steps.step(answer)
-            yield Candidate(
-                name=_name(steps, answer.n, h),
-                kind="method",
-                defects=steps.left,
-                motion=partial(_motion, steps.method, steps.count),
-                near=_LEAVES,
-                changes=held_over_steps(answer, h) if steps.method is HELD else {},
-                method=(steps.method, steps.count),
-            )
+            changes = held_over_steps(answer, h) if steps.method is HELD else {}
+            of_steps = fault(_name(steps, answer.n, h), "method", changes)
+            motion = partial(_motion, steps)
+            yield Candidate(of_steps, of_steps.right, steps.left, motion, _LEAVES, steps)
 
 
 def _name(steps: Steps, n: int, h: float) -> str:
@@ -182,11 +174,13 @@ class _Replays:
         """Yield each method with numbers of steps, if its error is near to the defects."""
         defects = self._compared(self.arcs.defects(self.sets))
         for name, method in methods.items():
-            rests = self._stepped(method, _fine(method), self.sets)
-            for place, count in self._near(method, defects, rests, near):
+            fine = self._stepped(method, _fine(method), self.sets)
+            for place, count in self._near(method, defects, fine, near):
                 (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
                 if np.all(np.isfinite(rest)):
-                    yield Steps(name, method, count, min(self._lefts(place, rest)))
+                    rests = (across(basis, rest) for basis in self._beside(place))
+                    left = min(float(np.linalg.norm(each)) for each in rests)
+                    yield Steps(name, method, count, left / self.size)
 
     def _near(
         self, method: Method, defects: Floats, rests: Floats, near: float
@@ -226,23 +220,11 @@ class _Replays:
         none = np.zeros((self.arcs.answer.n * len(self.arcs.first), 0))
         return [none, *self.bases] if place == 0 else [none]
 
-    def _lefts(self, place: int, rest: Floats) -> list[float]:
-        rests = [across(basis, rest) for basis in self._beside(place)]
-        return [float(np.linalg.norm(each)) / self.size for each in rests]
-
     def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
         """Return what so many steps of an arc leave, (sets, entries)."""
-        arcs, answer = self.arcs, self.arcs.answer
-        rows = []
-        for part in parts_of(sets):
-            equations = (
-                answer.right.copies(part) if len(part) > 1 else answer.right.changed(part[0])
-            )
-            begin = arcs.begin(max(answer.n, equations.coupled))
-            ends = replay(answer, method, equations, begin, arcs.since, arcs.spans, steps)
-            rest = (arcs.end - ends[:, : answer.n]) / answer.sizes[:, None]
-            rows.append(np.broadcast_to(rest, (len(part), *rest.shape[1:])))
-        return self._compared(np.concatenate(rows))
+        answer = self.arcs.answer
+        own = replace(answer, stepping=partial(replay, answer, method, steps))
+        return self._compared(replace(self.arcs, answer=own, steps_given=1).defects(sets))
 
     def _compared(self, defects: Floats) -> Floats:
         n, arcs = self.arcs.answer.n, len(self.arcs.first)
@@ -253,17 +235,11 @@ def _fine(method: Method) -> int:
     return _FINE_OF_DEAR if method.is_dear else _FINE
 
 
-def _motion(method: Method, steps: int, answer: Answer) -> Motion | None:
+def _motion(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
-    times = answer.times if answer.is_from_start else np.r_[answer.begins, answer.times]
-    since, spans = times[:-1], np.diff(times)
-
-    def go(z: Floats) -> Floats:
-        return replay(answer, method, answer.right, z, since, spans, steps)
-
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
-    components = max(answer.right.coupled, answer.n + frame * method.has_frame)
-    return whole(answer, answer.right, go, components)
+    components = max(answer.right.coupled, answer.n + frame * steps.method.has_frame)
+    return whole(stepped(answer, steps), answer.right, components)
 
 
 def stepped(answer: Answer, steps: Steps) -> Answer:
@@ -272,6 +248,6 @@ def stepped(answer: Answer, steps: Steps) -> Answer:
 
     def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
         count = max(1, round(float(np.median(np.abs(spans))) / h))
-        return replay(answer, steps.method, equations, begin, since, spans, count)
+        return replay(answer, steps.method, count, equations, begin, since, spans)
 
     return replace(answer, stepping=ends)

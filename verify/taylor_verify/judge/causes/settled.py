@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -105,7 +105,7 @@ class Choice:
         proof = self._left(candidate)
         if proof is None or candidate.is_nothing:
             return None
-        if candidate.family is not None and proof.worst > PAIR and self._polished < _POLISHED:
+        if candidate.count and proof.worst > PAIR and self._polished < _POLISHED:
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
@@ -116,7 +116,7 @@ class Choice:
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""
-        motion = candidate.motion(self.answer)
+        motion = candidate.motion(self.answer, candidate.changes)
         if motion is None:
             return None
         leaves = self.answer.leaves(motion)
@@ -124,21 +124,18 @@ class Choice:
 
     def _refitted(self, candidate: Candidate) -> _Proven | None:
         """Return a candidate whose numbers are fitted once more, on the whole answer."""
-        few, family, numbers = self.answer.thinned(FIT_ROWS), candidate.family, candidate.numbers
-        assert family is not None
-        assert numbers is not None
+        few, family = self.answer.thinned(FIT_ROWS), candidate.family
 
         def rest(numbers: Floats) -> Floats:
-            motion = candidate.of(numbers).motion(few)
+            motion = candidate.motion(few, family.changes(numbers))
             if motion is None:
                 raise ValueError(numbers)
             return np.asarray((few.file.v - motion.v) / few.sizes).ravel()
 
         for shift in _SHIFTS:
             with suppress(ValueError):
-                return self._left(
-                    candidate.of(_settled_numbers(rest, numbers, family.scale, shift))
-                )
+                numbers = _settled_numbers(rest, candidate.numbers, family.scale, shift)
+                return self._left(replace(candidate, numbers=numbers))
         return None
 
     def _cause(self, proven: list[_Proven]) -> Cause | None:
@@ -156,18 +153,19 @@ class Choice:
         first, best = alike[0], self._shortened(alike[0])
         text, changes = self._described(best)
         others = tuple(self._described(each.candidate)[0] for each in alike[1:])
-        return Cause(best.name, best.kind, first.leaves, text, others, changes, best.method)
+        return Cause(best.family.name, best.kind, first.leaves, text, others, changes, best.method)
 
     def _shortened(self, proven: _Proven) -> Candidate:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
         candidate, worst = proven.candidate, max(proven.worst, self._least / ROUNDINGS)
         family, numbers = candidate.family, candidate.numbers
-        if family is None or numbers is None or family.count > FEW:
+        if not 0 < family.count <= FEW:
             return candidate
         large = np.where(np.abs(numbers) > _NO_NUMBER * family.scale, numbers, 0.0)
         for digits in _DIGITS:
             with suppress(Spent, ValueError):
-                short = candidate.of(np.array([float(f"{x:.{digits}g}") for x in large]))
+                shorter = np.array([float(f"{x:.{digits}g}") for x in large])
+                short = replace(candidate, numbers=shorter)
                 left = self._left(short)
                 if left is not None and left.worst <= worst:
                     return short
@@ -187,10 +185,9 @@ class Choice:
         right, changes = self.answer.right, candidate.changes
         if candidate.kind == "body" and candidate.count > 1:
             mass = nearest_factor(right, changes["mass"])
-            words = with_numbers(candidate.name, *entries(right.mass, mass))
+            words = with_numbers(candidate.family.name, *entries(right.mass, mass))
             return words, {"mass": mass}
-        family, numbers = candidate.family, candidate.numbers
-        words = "" if family is None or numbers is None else structure(family, numbers)
+        words = structure(candidate.family, candidate.numbers)
         return ": ".join(filter(None, (words, candidate.text))), changes
 
 

@@ -85,30 +85,16 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
             continue
         for name, between in _KINDS.items():
             v = between(answer, nodes, file.v, rates)
-            q = None if file.q is None else _unit(between(answer, nodes, file.q, turns))
-            motion = Motion(v, q)
-            leaves = _leaves_between(answer, motion, int(nodes[-1]))
-            if leaves and max(leaves.values()) <= _allowed(answer, leaves):
+            q = None if file.q is None else between(answer, nodes, file.q, turns)
+            unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
+            motion = Motion(v, unit)
+            errors = {name: error[: nodes[-1]] for name, error in answer.errors(motion).items()}
+            leaves = answer.parts(errors)
+            allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
+            if max(leaves.values()) <= allowed:
                 words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
                 return Cause(words, "interpolation", leaves)
     return None
-
-
-def _allowed(answer: Answer, leaves: dict[str, float]) -> float:
-    return max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor(list(leaves))))
-
-
-def _leaves_between(answer: Answer, motion: Motion, last: int) -> dict[str, float]:
-    errors = answer.errors(motion)
-    return {
-        name: float(np.max(errors[name][:last])) / answer.worst[name]
-        for name in answer.failed
-        if name in errors
-    }
-
-
-def _unit(q: Floats) -> Floats:
-    return np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
 
 
 def _rates(answer: Answer) -> tuple[Floats, Floats]:

@@ -10,7 +10,6 @@ from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats, flow
 
-_FEWEST: Final = 6
 _ROUNDS: Final = 5
 _MOST_ROWS: Final = 6.0
 _ROUNDINGS: Final = 10.0
@@ -26,7 +25,7 @@ _SCATTER: Final = "times scatter"
 
 def other_times(answer: Answer) -> Cause | None:
     """Return the cause of rows that are exact at other times; the factor of a clock is another question."""
-    if answer.count < _FEWEST or answer.right.reads or answer.right.acting is not None:
+    if answer.right.acting is not None:
         return None
     late, left = _offsets(answer)
     errors = [

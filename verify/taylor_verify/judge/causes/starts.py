@@ -87,12 +87,7 @@ def _from_a_row(answer: Answer, first: int) -> Cause | None:
     motion = whole(part, part.right)
     if motion is None:
         return None
-    errors = part.errors(motion)
-    leaves = {
-        name: float(np.max(errors[name])) / answer.worst[name]
-        for name in answer.failed
-        if name in errors
-    }
+    leaves = answer.parts(part.errors(motion))
     if max(leaves[name] for name in answer.moving) > may_leave(answer, answer.moving):
         return None
     if leaves.get("attitude", 0.0) > CAPS[0]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis, coriolis_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.fit import Family, Fault, Sizes, linear
+from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
 
 _WRONG: Final = (("left out", 0.0), ("with the other sign", -1.0))
@@ -23,60 +23,60 @@ _PER_DEGREE: Final = (
 )
 
 
-def faults_of_terms(right: Equations) -> Iterator[Fault]:
+def faults_of_terms(right: Equations) -> Iterator[Family]:
     """Yield terms left out, of the other sign, or in other axes."""
     products = coriolis_of(right.mass)
     word = "gyroscopic term" if right.size == 3 else "Coriolis terms"
     for name, factor in ((f"no {word}", 0.0), (f"{word} with the other sign", -1.0)):
         extra = right.basis.factors(products=(factor - 1) * products)
-        yield Fault(name, "gyroscopic term", {"extra": extra, "rotor": factor * right.rotor})
+        yield fault(name, "gyroscopic term", {"extra": extra, "rotor": factor * right.rotor})
     if np.any(right.rotor):
         yield from _faults_of_wheels(right)
     if right.has_loads:
         yield from _faults_of_loads(right)
     if right.damping:
         for words, factor in (*_WRONG, *_PER_DEGREE):
-            yield Fault(f"damping {words}", "damping", {"damping": factor * right.damping})
+            yield fault(f"damping {words}", "damping", {"damping": factor * right.damping})
         drag = right.basis.factors(velocities=-float(right.damping) * np.eye(right.size))
-        yield Fault("damping of the velocity", "damping", {"damping": 0.0, "extra": drag})
+        yield fault("damping of the velocity", "damping", {"damping": 0.0, "extra": drag})
     for name, rows in _coriolis_terms(right):
         for words, factor in _OFTEN_WRONG:
             extra = right.basis.factors(products=(factor - 1) * rows)
             title = f"no {name}" if not factor else f"{name} {words}"
-            yield Fault(title, "Coriolis terms", {"extra": extra})
+            yield fault(title, "Coriolis terms", {"extra": extra})
 
 
-def _faults_of_wheels(right: Equations) -> Iterator[Fault]:
+def _faults_of_wheels(right: Equations) -> Iterator[Family]:
     alone = right.basis.factors(products=-coriolis_of(right.mass))
-    yield Fault("gyroscopic term of the wheels alone", "gyroscopic term", {"extra": alone})
+    yield fault("gyroscopic term of the wheels alone", "gyroscopic term", {"extra": alone})
     for words, factor in _WRONG:
-        yield Fault(f"wheels {words}", "wheels", {"rotor": factor * right.rotor})
+        yield fault(f"wheels {words}", "wheels", {"rotor": factor * right.rotor})
     for i, (words, factor) in product(np.flatnonzero(right.rotor), _WRONG):
         rotor = right.rotor * np.where(np.arange(3) == i, factor, 1.0)
-        yield Fault(f"wheel {i + 1} {words}", "wheels", {"rotor": rotor})
+        yield fault(f"wheel {i + 1} {words}", "wheels", {"rotor": rotor})
 
 
-def _faults_of_loads(right: Equations) -> Iterator[Fault]:
+def _faults_of_loads(right: Equations) -> Iterator[Family]:
     n, names = right.size, load_names(right.size)
     weighted, unit = right.basis.factors, np.eye(n)
     noun = "moment" if n == 3 else "loads"
     for words, factor in _OFTEN_WRONG:
-        yield Fault(f"{noun} {words}", "load", {"extra": weighted(loads=(factor - 1) * unit)})
+        yield fault(f"{noun} {words}", "load", {"extra": weighted(loads=(factor - 1) * unit)})
     turned = weighted(loads=-unit, turned_loads=unit)
-    yield Fault(f"{noun} in space axes", "load", {"extra": turned})
+    yield fault(f"{noun} in space axes", "load", {"extra": turned})
     some = [("force", np.r_[1, 1, 1, 0, 0, 0]), ("couple", np.r_[0, 0, 0, 1, 1, 1])] * (n == 6)
     for (name, part), (words, factor) in product([*some, *zip(names, unit, strict=True)], _WRONG):
-        yield Fault(
+        yield fault(
             f"{name} {words}", "load", {"extra": weighted(loads=(factor - 1) * np.diag(part))}
         )
     if n == 3:
         undivided = weighted(loads=right.mass - unit)
-        yield Fault("moment not divided by the inertia", "load", {"extra": undivided})
+        yield fault("moment not divided by the inertia", "load", {"extra": undivided})
     for first, order in product(range(0, n, 3), [*permutations(range(3))][1:]):
         places = np.arange(n)
         places[first : first + 3] = first + np.array(order)
         title = f"components of the {names[first].split()[0]} exchanged"
-        yield Fault(title, "load", {"extra": weighted(loads=unit[places] - unit)})
+        yield fault(title, "load", {"extra": weighted(loads=unit[places] - unit)})
 
 
 def _coriolis_terms(right: Equations) -> Iterator[tuple[str, Floats]]:

@@ -23,7 +23,7 @@ from taylor_verify.judge.causes.changed_texts import (
     rewritten,
     terms,
 )
-from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Fault
+from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import Place, places, with_entry
 from taylor_verify.scenes.loads.loads import Loads
@@ -69,7 +69,7 @@ def numbers(loads: Loads) -> list[Number]:
     return [number for number in every if _is_free(number)][:_MOST]
 
 
-def faults_of_texts(right: Equations) -> Iterator[Fault]:
+def faults_of_texts(right: Equations) -> Iterator[Family]:
     """Yield texts that read something else, hung forces otherwise, and tables of another kind."""
     loads, acting = right.loads, right.acting
     if loads is None or acting is None:
@@ -77,18 +77,18 @@ def faults_of_texts(right: Equations) -> Iterator[Fault]:
     for number in numbers(loads):
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
-            yield Fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+            yield fault(f"{number.name} {_EXCHANGED}", KIND, changes)
         if (missed := _missed(loads, number)) is not None:
             time = right.start + float(missed[0])
-            yield Fault(f"switch at t = {time:.6g} missed", KIND, {"acting": acting.of(missed[1])})
+            yield fault(f"switch at t = {time:.6g} missed", KIND, {"acting": acting.of(missed[1])})
     for name, other in changed_texts(loads):
         if next(other.faults(), None) is None:
-            yield Fault(name, KIND, {"acting": acting.of(other)})
+            yield fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
         for kind in (kind for kind in Kind if kind is not table.kind):
             tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
-            yield Fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
+            yield fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
 
 
 def _missed(loads: Loads, number: Number) -> tuple[Fraction, Loads] | None:

@@ -12,11 +12,11 @@ from fractions import Fraction
 from functools import cache
 from itertools import permutations, product
 from operator import itemgetter
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.conventions.axis_vectors import vectors
+from taylor_verify.judge.conventions.axis_vectors import Vector, vectors
 from taylor_verify.judge.conventions.convention_search import attitudes_at, beginnings
 from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Finding
 from taylor_verify.judge.conventions.meanings import rotations
@@ -42,16 +42,6 @@ _UNITS: Final = {
 _NOISE: Final = 64 * FLOAT64
 # Quaternions that are integrated without restoring their length stay as near to it.
 _UNIT: Final = 0.1
-
-
-class Meaning(Protocol):
-    """A meaning of the numbers of a row, with its departures from the form that they were read by."""
-
-    def words(self, own: str) -> list[str]: ...
-
-    def quaternion(self, numbers: Sequence[Fraction]) -> Sequence[Value]: ...
-
-    def quaternions(self, rows: Floats) -> Floats: ...
 
 
 @dataclass(frozen=True)
@@ -97,6 +87,10 @@ class Angles:
     def _moving(self) -> str:
         """The sequence of the same turns about axes that move along, in the opposite order."""
         return self.sequence[::-1] if self.is_fixed else self.sequence
+
+
+# A meaning of the numbers of a row.
+Meaning = Angles | Vector
 
 
 @cache
@@ -171,15 +165,11 @@ def _explained(
     first, *others = good
     count = len(first.words(file.form))
     alike = [other for other in others if len(other.words(file.form)) == count]
-    noun = _noun(file.form)
+    noun = "the angles"
+    if file.form not in SEQUENCES:
+        noun = f"the columns taken as {FORMS[file.form].words if file.form else 'q0 q1 q2 q3'}"
     words, *more = (f"{noun} {'; '.join(m.words(file.form))}" for m in (first, *alike))
     return Finding("quaternion", words, plain, best, tuple(more)), first
-
-
-def _noun(form: str) -> str:
-    if form in SEQUENCES:
-        return "the angles"
-    return f"the columns taken as {FORMS[form].words if form else 'q0 q1 q2 q3'}"
 
 
 def _apart(matrices: Floats, right: Floats) -> float:

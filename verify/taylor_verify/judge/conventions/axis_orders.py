@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import permutations, product
+from itertools import permutations, product, starmap
 from typing import Any, Final
 
 import numpy as np
@@ -42,11 +42,6 @@ class Axes:
     def moved(self) -> list[int]:
         return [i for i in range(3) if self.order[i] != i or self.signs[i] < 0]
 
-    @property
-    def is_proper(self) -> bool:
-        """Return True for a rotation, False for a reflection."""
-        return bool(np.linalg.det(self.vectors(np.eye(3))) > 0)
-
     def effect(self, active: Collection[int]) -> tuple[tuple[int, int] | None, ...]:
         """Return the part of the permutation that is visible if only ``active`` columns are nonzero."""
         pairs = zip(self.order, self.signs, strict=True)
@@ -54,18 +49,15 @@ class Axes:
 
     def vectors(self, rows: Array) -> Array:
         """Return P v for every row v."""
-        renamed: Array = rows[:, self.order] * np.array(self.signs)
-        return renamed
+        return np.asarray(rows[:, self.order] * np.array(self.signs))
 
     def left(self, matrices: Array) -> Array:
         """Return P R for every matrix R."""
-        renamed: Array = matrices[:, self.order, :] * np.array(self.signs)[:, None]
-        return renamed
+        return np.asarray(matrices[:, self.order, :] * np.array(self.signs)[:, None])
 
     def right(self, matrices: Array) -> Array:
         """Return R P^T for every matrix R."""
-        renamed: Array = matrices[:, :, self.order] * np.array(self.signs)
-        return renamed
+        return np.asarray(matrices[:, :, self.order] * np.array(self.signs))
 
     @cached_property
     def quaternion(self) -> tuple[int, ...]:
@@ -74,15 +66,11 @@ class Axes:
         return tuple(column.tolist())
 
 
-# The 24 rotations of a cube, simplest first.
+_SIGNED: Final = starmap(Axes, product(permutations(range(3)), product((1, -1), repeat=3)))
+# The 24 rotations of a cube, simplest first: a reflection has the determinant -1.
 AXES: Final = tuple(
     sorted(
-        (
-            axes
-            for order in permutations(range(3))
-            for signs in product((1, -1), repeat=3)
-            if (axes := Axes(order, signs)).is_proper
-        ),
+        (axes for axes in _SIGNED if np.linalg.det(axes.vectors(np.eye(3))) > 0),
         key=lambda axes: (len(axes.moved), axes.signs.count(-1)),
     )
 )
@@ -125,8 +113,7 @@ class Frames:
         turned = rotation.product(forward, backward)
         square = sum(e * e for e in self.space.quaternion) * sum(e * e for e in backward)
         length = mp.sqrt(square) if rows.dtype == object else np.sqrt(square)
-        renamed: Array = np.array(turned).T / length
-        return renamed
+        return np.asarray(np.array(turned).T / length)
 
 
 def renamings(body: Collection[int], space: Collection[int], joined: bool) -> Iterator[Frames]:
@@ -155,5 +142,4 @@ def quaternion_columns(matrices: Array) -> Array:
     squares[:, 1:, 1:] = matrices + transposed
     squares[:, range(1, 4), range(1, 4)] += (1 - trace)[:, None]
     largest = np.argmax(np.einsum("nii->ni", np.nan_to_num(squares)), axis=1)
-    quaternions: Array = squares[np.arange(len(squares)), largest]
-    return quaternions
+    return np.asarray(squares[np.arange(len(squares)), largest])

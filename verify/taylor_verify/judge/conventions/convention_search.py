@@ -27,7 +27,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
 from taylor_verify.judge.causes.quick_motion import quick_motion
-from taylor_verify.judge.conventions.axis_orders import Axes, Frames, renamings
+from taylor_verify.judge.conventions.axis_orders import AXES, Axes, Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
     EXPLAINS,
@@ -39,9 +39,8 @@ from taylor_verify.judge.conventions.fits import (
     simplest,
 )
 from taylor_verify.judge.conventions.meanings import readings, rotations
-from taylor_verify.judge.conventions.unrefuted_axes import unrefuted
 from taylor_verify.judge.conventions.worlds import World, worlds
-from taylor_verify.judge.velocities import has_velocities, velocities
+from taylor_verify.judge.velocities import velocities
 from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
@@ -67,6 +66,8 @@ _FEW_ROWS: Final = 12
 # Number of evenly chosen rows that represent a beginning.
 _MOST_ROWS: Final = 24
 _DIGITS: Final = 20
+# The matrices P^T of all renamings, for rows v of which v P^T is P v.
+_RENAMING: Final = np.array([axes.vectors(np.eye(3)) for axes in AXES])
 # For a hypothesis the Taylor route goes at most this many spans of the scene.
 MOST_SPANS: Final = 10
 
@@ -227,7 +228,9 @@ class _Search:
             if reading.in_space:
                 vectors, known = (np.einsum("nij,nj->ni", R, rows) for rows in (vectors, right))
             axes = of_space if reading.in_space or is_placed else of_body
-            axes |= unrefuted(vectors, known, most * size)
+            apart = np.max(np.linalg.norm(vectors @ _RENAMING - known, axis=2), axis=1)
+            # NaN refutes nothing.
+            axes |= {each for each, far in zip(AXES, apart > most * size, strict=True) if not far}
         return of_body, of_space
 
     @cached_property
@@ -243,9 +246,14 @@ class _Search:
 
     def _may_explain(self, world: World) -> bool:
         """Return False for a world that is not possible, or whose motion in float64 explains nothing."""
-        if not self._is_possible(world):
+        try:
+            given, exact = self.solution(world)
+        except NotRepresentable:
             return False
-        given, exact = self.solution(world)
+        span = max(abs(t) for t in self.scene.clock.elapsed)
+        reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
+        if reach > MOST_SPANS * span and (world.scale != 1 or exact.route == "taylor"):
+            return False
         if exact.route != "taylor":
             return True
         first = exact.evaluate([Fraction(0)], _DIGITS)
@@ -259,7 +267,7 @@ class _Search:
 
     def _with_velocities(self, given: Scene, truth: Mapping[str, Any]) -> dict[str, Floats]:
         """Return the motion in doubles, with the velocities of a body in a fluid."""
-        if has_velocities(given.body):
+        if given.body.has_velocities:
             with mp.workdps(_DIGITS):
                 truth = {**truth, **velocities(given.body, truth)}
         return {name: rows.astype(float) for name, rows in truth.items()}
@@ -299,15 +307,6 @@ class _Search:
         alike = [reading for reading, _ in good if reading.cost == cost]
         motion = _motion(group, right)
         return BestReading(alike[0], good[0][1], errors[0], motion, tuple(alike[1:]))
-
-    def _is_possible(self, world: World) -> bool:
-        try:
-            given, exact = self.solution(world)
-        except NotRepresentable:
-            return False
-        span = max(abs(t) for t in self.scene.clock.elapsed)
-        reach = max((abs(t) for t in given.clock.elapsed), default=Fraction(0))
-        return reach <= MOST_SPANS * span or (world.scale == 1 and exact.route != "taylor")
 
 
 # The errors of the groups.

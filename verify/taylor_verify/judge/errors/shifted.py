@@ -251,7 +251,7 @@ class Compared:
         if part in rows:
             factor = float(mp.ldexp(1, units[part]) / scale)
             return factor * rows[part].reshape(len(rows[part]), -1)
-        forms = velocity_forms(self.run.scene.body).forms[part]
+        forms = velocity_forms(self.run.scene.body)[part]
         parts = [
             rows[name] @ (exact_matrix(matrix).T * (mp.ldexp(1, units[name]) / scale)).astype(float)
             for name, matrix in forms.items()

@@ -146,7 +146,7 @@ class Arc:
 
     def through(self, scene: Scene, truth: Motion) -> Any:
         """Add further samples, at the instants of the scene, and return the length so far."""
-        forms = velocity_forms(scene.body).forms["linear_velocity"]
+        forms = velocity_forms(scene.body)["linear_velocity"]
         terms = [(to_mpfr(truth[name]), to_mpfr(exact_matrix(m))) for name, m in forms.items()]
         with precision():
             U = sum(rows @ matrix.T for rows, matrix in terms)

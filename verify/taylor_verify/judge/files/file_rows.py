@@ -16,7 +16,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.meanings import Reading
 from taylor_verify.judge.floor.arithmetic import truth_digits
-from taylor_verify.judge.velocities import has_velocities, momenta
+from taylor_verify.judge.velocities import momenta
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS, MAIN, MOMENTA, VELOCITIES
@@ -89,7 +89,7 @@ class FileRows(ByRows):
     def has_velocities(self) -> bool:
         """True if the impulses are computed from velocities, because the file has no impulses."""
         has = set(self.file.groups)
-        stands_for = has_velocities(self.scene.body) and has.issuperset(VELOCITIES)
+        stands_for = self.scene.body.has_velocities and has.issuperset(VELOCITIES)
         return stands_for and not has & set(MOMENTA[self.scene.model])
 
     def sides(self) -> list[FileRows]:

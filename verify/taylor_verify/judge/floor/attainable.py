@@ -102,7 +102,7 @@ class Floor:
         """
         (scale,) = errors.parts.values()
         squares = (self.unit_roundoff * sizes) ** 2
-        for part, matrix in velocity_forms(self.orbit.scene.body).forms[group].items():
+        for part, matrix in velocity_forms(self.orbit.scene.body)[group].items():
             norm = np.linalg.norm(np.array(matrix, dtype=float), 2)
             alone = replace(errors, parts={part: scale})
             squares = squares + (norm * self.of_state(alone)) ** 2

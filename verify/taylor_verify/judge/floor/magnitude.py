@@ -28,7 +28,6 @@ import numpy as np
 
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.judge.floor.loads import Along
-from taylor_verify.judge.velocities import has_velocities
 from taylor_verify.models.algebra import is_absent
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
@@ -112,7 +111,7 @@ def roundings(given: Scene, path: Path, bits: int, steps: int, velocities: bool 
             unit = float(_unit(problem, block) / path.units[block])
             columns += [rounded[name] * unit for name in _COMPONENTS[block]]
     roundings_at: Floats = np.column_stack(columns)
-    if velocities and has_velocities(given.body):
+    if velocities and given.body.has_velocities:
         by_inertia = _through_velocities(given.body, path)
         roundings_at[:, :6] = np.maximum(roundings_at[:, :6], by_inertia)
     if path.carried.own:

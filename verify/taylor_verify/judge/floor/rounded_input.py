@@ -38,7 +38,7 @@ from taylor_verify.judge.floor.attainable import (
     orbit_of_run,
 )
 from taylor_verify.judge.floor.moves import CHANGE, Moves
-from taylor_verify.judge.velocities import has_velocities, velocities
+from taylor_verify.judge.velocities import velocities
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.motion import Clock, Motion
@@ -167,7 +167,7 @@ class _Gates:
         return without_damping(self._scene, in_mpfr(motion), self._scene.clock.elapsed)
 
     def _velocities_along(self, motion: Motion) -> dict[str, Any]:
-        if not has_velocities(self._scene.body):
+        if not self._scene.body.has_velocities:
             return {}
         rows = velocities(self._scene.body, motion.quantities)
         return {GROUPS[group].quantity: values for group, values in rows.items()}
