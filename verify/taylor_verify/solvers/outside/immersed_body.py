@@ -38,11 +38,17 @@ class SolidPush:
 
     def __init__(self, scene: Any) -> None:
         loads = scene.get("loads", {})
-        self.t, self._sign = 0.0, math.copysign(1.0, floats(scene["time"]["elapsed"])[-1])
+        self._sign = math.copysign(1.0, floats(scene["time"]["elapsed"])[-1])
         self._constant = floats(scene["body"]["force"]) + floats(scene["body"]["couple"])
         self._pieces = list(map(Piece, loads.get("pieces", [])))
         self._current = floats(loads.get("current", [])) or [0.0, 0.0, 0.0]
-        self._attitude: Vector = floats(scene["initial"]["attitude"])
+        self._start: Vector = floats(scene["initial"]["attitude"])
+        self.begin()
+
+    def begin(self) -> None:
+        """Go back to the start."""
+        # A quaternion and its negative are one attitude; loads read the one that goes on from the start.
+        self.t, self._attitude = 0.0, self._start
 
     @property
     def drift(self) -> Vector:
@@ -116,8 +122,8 @@ class ImmersedBody(Body):
         """Return the engine; where anything acts, the time of the loads goes on with each step."""
         if self.push is None:
             return start()
-        push = self.push
-        push.t, done = 0.0, 0
+        push, done = self.push, 0
+        push.begin()
         advance, row = start()
 
         def one_by_one(steps: int) -> None:
