@@ -52,14 +52,14 @@ def _with_seconds(wanted: Request) -> Request:
 def _is_usual(name: str, scene: Scene | None) -> bool:
     """Return True for a name that is read where it stands in a header, and is none of ours."""
     own = {column for state in scene.own_states for column in state.components} if scene else set()
-    is_known = bool(Name(Column(name, ())).readings) or is_fraction(name)
+    is_known = bool(Name.of(name).readings) or is_fraction(name)
     return is_known and not is_ours(name) and name not in own
 
 
 def _elements(names: Sequence[str]) -> list[str]:
     """Return the names of the columns of one matrix, if the first is one whose name says nothing."""
     stem, bracket, _ = names[0].partition("[")
-    means = Name(Column(names[0], ())).is_known
+    means = Name.of(names[0]).is_known
     return [f"{stem}[{k}]" for k in range(len(names))] if bracket and not means else []
 
 

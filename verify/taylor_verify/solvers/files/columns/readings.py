@@ -76,6 +76,11 @@ class Name:
 
     column: Column
 
+    @classmethod
+    def of(cls, text: str) -> Name:
+        """Return a name without a column."""
+        return cls(Column(text, ()))
+
     @cached_property
     def text(self) -> str:
         return self.column.name.strip()
@@ -124,6 +129,11 @@ class Name:
     def is_known(self) -> bool:
         """True for a name that needs no sign of a program beside it."""
         return any(not reading.spelling.signs for reading in self.readings)
+
+    @property
+    def is_time(self) -> bool:
+        """True for a name that a time may have."""
+        return any(reading.spelling.group == "time" for reading in self.readings)
 
     @cached_property
     def readings(self) -> tuple[Reading, ...]:

@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.column_units import DIMENSION, in_brackets
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.formats.column import COLUMNS, Column
+from taylor_verify.solvers.files.formats.column import COLUMNS
 from taylor_verify.solvers.files.formats.epochs import is_epoch
 from taylor_verify.solvers.values import is_number
 
@@ -225,7 +225,7 @@ def _known(names: Sequence[str]) -> int:
 
 @lru_cache(4096)
 def _is_known(name: str) -> bool:
-    return bool(Name(Column(name, ())).readings)
+    return bool(Name.of(name).readings)
 
 
 # Units.
