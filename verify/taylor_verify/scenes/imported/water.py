@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
@@ -62,6 +62,10 @@ class Water:
     def acts(self) -> bool:
         """True if the water changes the body or its motion."""
         return bool(self.hanging or any(self.terms) or any(self.current))
+
+    def without(self, *sentences: str) -> Water:
+        """Return the same with sentences about what is left out."""
+        return replace(self, left_out=(*self.left_out, *sentences))
 
 
 def is_hydrodynamics(plugin: Node) -> bool:
