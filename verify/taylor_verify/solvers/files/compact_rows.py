@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any, Final, overload
+from typing import Any, Final
 
 import gmpy2
 import numpy as np
@@ -33,7 +33,7 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 _NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
-class Rows(Sequence[tuple[Value, ...]]):
+class Rows:
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
     ``finite`` is True for the rows whose numbers are all finite. The number of a row is the factor of its
@@ -58,15 +58,7 @@ class Rows(Sequence[tuple[Value, ...]]):
     def width(self) -> int:
         return len(self._columns)
 
-    @overload
-    def __getitem__(self, place: int) -> tuple[Value, ...]: ...
-
-    @overload
-    def __getitem__(self, place: slice) -> tuple[tuple[Value, ...], ...]: ...
-
-    def __getitem__(self, place: int | slice) -> Any:
-        if isinstance(place, slice):
-            return tuple(self[k] for k in range(self._count)[place])
+    def __getitem__(self, place: int) -> tuple[Value, ...]:
         return next(self.values_at([place]))
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
@@ -78,7 +70,7 @@ class Rows(Sequence[tuple[Value, ...]]):
         return zip(*map(_exact, self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Sequence):
+        if not isinstance(other, Rows | Sequence):
             return NotImplemented
         return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
 
@@ -176,24 +168,23 @@ def _as_mpf(values: Raw, bits: int) -> Array:
 # What is read of a file.
 
 
-def check_numbers(column: Column, file: str, faults: Faults, blank: Flags) -> Flags:
+def check_numbers(column: Column, file: str, faults: Faults, blank: Flags | None) -> Flags:
     """Return True for the entries that are finite numbers; add a fault for text and too large numbers.
 
     Rows that are ``blank`` are passed over.
     """
-    finite = np.ones(len(column.values), dtype=bool)
+    finite = np.ones(len(column.values), dtype=bool) if blank is None else ~blank
     with alike(faults, f"{file}, column {column.name}") as wrong:
         for part in _chunks(len(column.values)):
             values = _some(column.values, part)
             if _is_double(values):
                 sizes = np.abs(np.asarray(values, dtype=np.float64))
-                finite[part.start : part.stop] = np.isfinite(sizes)
+                finite[part.start : part.stop] &= np.isfinite(sizes)
                 suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
             else:
                 suspects = np.full(len(values), not _is_short(values))
-            passed = blank[part.start : part.stop]
-            finite[part.start : part.stop] &= ~passed
-            for k in np.flatnonzero(suspects & ~passed).tolist():
+            suspects &= finite[part.start : part.stop]
+            for k in np.flatnonzero(suspects).tolist():
                 try:
                     finite[part[k]] = _is_finite(values[k])
                 except ValueError as error:
