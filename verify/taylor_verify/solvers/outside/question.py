@@ -20,7 +20,7 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, TextIO
@@ -110,10 +110,9 @@ def answer(solve: Callable[[Question, Settings], Solved]) -> None:
 
 def serve(answered: Callable[[Any, Settings], dict[str, Any]], out: TextIO) -> None:
     """Write what is answered to the question on stdin, or to each of many, a line for each."""
-    if sys.argv[1:] == [MANY]:
-        asked = map(json.loads, sys.stdin)
-    else:
-        asked = iter([{"question": json.load(sys.stdin), "settings": sys.argv[1:]}])
+    asked: Iterable[Any] = map(json.loads, sys.stdin)
+    if sys.argv[1:] != [MANY]:
+        asked = [{"question": json.load(sys.stdin), "settings": sys.argv[1:]}]
     for each in asked:
         try:
             settings = Settings(**dict(map(_setting, each["settings"])))
