@@ -223,17 +223,19 @@ class _Clock:
 
         A clock that nothing but its name says is the scene's where it has any row in the scene.
         """
-        if self._scene is None or not self.runs:
+        has_habit = self._habit is not None and self._habit.unit != "s"
+        is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
+        # The numbers are read last: they are many.
+        if self._scene is None or not (has_habit or is_clock) or not self.runs:
             return False
         clock, factor = self._scene.clock, self._unit.factor
         first, last = (number * factor for number in (self._numbers[0], self._numbers[-1]))
-        if self._habit is not None and self._habit.unit != "s":
+        if has_habit:
             lag = _ROWS_OF_A_LAG * abs(last - first) / (len(self._numbers) - 1)
             beyond = last > self._last + _NEAR * abs(clock.elapsed[-1])
             return bool(beyond and abs(first - clock.start) > lag)
         ends = sorted((clock.start, clock.instants[-1]))
-        is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
-        return is_clock and bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
+        return bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
 
     @cached_property
     def _last(self) -> Fraction:
