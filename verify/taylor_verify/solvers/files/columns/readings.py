@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.column_units import (
@@ -17,10 +17,10 @@ from taylor_verify.solvers.files.columns.column_units import (
     Unit,
     as_suffix,
     in_brackets,
-    letters,
     plain,
 )
 from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.programs import letters
 from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
 from taylor_verify.solvers.files.formats.column import Column
 
@@ -222,18 +222,13 @@ def _is_behind(spelling: Spelling, key: str, path: str) -> bool:
     return is_state and _NO_STATE.isdisjoint(re.split(r"[^a-z]+", path))
 
 
-@cache
-def _known_relative(spelling: Spelling, frame: Frame) -> Spelling:
-    return replace(spelling, frame=frame)
-
-
 def _relative(spelling: Spelling, words: Sequence[str]) -> Spelling:
     """Return a spelling with the frame that words beside it say, where it has none of its own."""
     known = _FRAMES if spelling.group in _VELOCITIES else {**_FRAMES, **_FRAMES_OR_AXES}
     frames = [known[word] for word in words if word in known]
     if not frames or spelling.group == "time" or spelling.frame is not Frame.UNSAID:
         return spelling
-    return _known_relative(spelling, frames[0])
+    return replace(spelling, frame=frames[0])
 
 
 def _tails(name: str) -> Iterator[tuple[str, str]]:
