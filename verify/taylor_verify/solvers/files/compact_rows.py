@@ -30,7 +30,7 @@ _LARGEST: Final = 2**1000
 _SHORT: Final = r"[+-]?[0-9]{1,40}(?:\.[0-9]{0,40})?(?:[eE][+-]?[0-9]{1,2})?"
 _SHORT_TEXTS: Final = re.compile(rf"(?: *{_SHORT} *\n)*")
 _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
-_NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
+NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
 class Rows:
@@ -213,13 +213,14 @@ def written_digits(columns: Iterable[Column]) -> int | None:
             return None
         for part in _chunks(len(values)):
             texts = _some(values, part)
-            if not _is_short(texts) and not all(_is_decimal(text) for text in texts):
+            if not _is_short(texts) and not all(map(is_decimal, texts)):
                 return None
-            digits = _NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
+            digits = NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
             most = max(most, *(len(text.lstrip("0")) for text in digits.split("\n")))
     # Zeros alone are exact however they are written.
     return most or None
 
 
-def _is_decimal(raw: object) -> bool:
+def is_decimal(raw: object) -> bool:
+    """Return True for a text that is a decimal."""
     return isinstance(raw, str) and _DECIMAL.fullmatch(raw.strip()) is not None

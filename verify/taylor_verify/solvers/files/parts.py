@@ -19,7 +19,6 @@ from taylor_verify.solvers.files.compact_rows import Rows, check_numbers, entrie
 from taylor_verify.solvers.files.formats.column import Column, alike
 from taylor_verify.solvers.files.present import Flags, blank_rows, first_of_equal, rows_of_groups
 
-Places = np.ndarray[Any, np.dtype[np.intp]]
 # One row is no trajectory.
 _FEWEST: Final = 2
 
