@@ -71,8 +71,8 @@ class Body:
     question: Question
     attitude: Quaternion
     push: Any = None
-    # What acts looks at the state after each step.
-    looks: ClassVar[bool] = False
+    # What acts has to know the state after each step.
+    reads_rows: ClassVar[bool] = False
 
     @property
     def instants(self) -> Sequence[float]:
@@ -109,7 +109,7 @@ class Body:
             nonlocal done
             for _ in range(steps):
                 advance(1)
-                if self.looks:
+                if self.reads_rows:
                     row()
                 done += 1
                 self.goes_on(done, step)
@@ -158,7 +158,7 @@ class FreeBody(Body):
     inertia: Matrix
     omega: Vector
     turn: Quaternion = IDENTITY
-    looks: ClassVar[bool] = True
+    reads_rows: ClassVar[bool] = True
 
     def moment(self, omega: Vector, attitude: Quaternion, time: float | None = None) -> Vector:
         """Return the moment on the body that is given here, at a state and a time of the engine.
