@@ -109,11 +109,9 @@ def _of_sdf(part: Node, reading: Reading) -> _Pose | None:
     if any(node.attributes.get(key, "").strip() for key in _FRAMES):
         return None
     six = reading.vector(node, node.text, "pose", length=6)
-    return (
-        None
-        if six is None
-        else _Pose(six[:3], _turn(six[3:], is_true(node.attributes.get("degrees"))))
-    )
+    if six is None:
+        return None
+    return _Pose(six[:3], _turn(six[3:], is_true(node.attributes.get("degrees"))))
 
 
 def _turn(angles: Vector, degrees: bool = False) -> Matrix:

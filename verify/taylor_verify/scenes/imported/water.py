@@ -193,9 +193,9 @@ def _square(node: Node, reading: Reading) -> list[list[Fraction]]:
     numbers = reading.vector(node, node.text, node.name, length=length)
     if numbers is None:
         return []
-    rows = (
-        tensors.diagonal(numbers) if length == 6 else [numbers[k : k + 6] for k in range(0, 36, 6)]
-    )
+    rows = [numbers[k : k + 6] for k in range(0, length, 6)]
+    if length == 6:
+        rows = [*tensors.diagonal(numbers)]
     return [
         [_FLIPPED[i] * _FLIPPED[k] * entry for k, entry in enumerate(row)]
         for i, row in enumerate(rows)
