@@ -37,16 +37,11 @@ def usual_names(
         got = f"numbers alone, in {len(names)} column{'s' * (len(names) > 1)}"
         raise refusal("a header line that names the columns", got, place, mend)
     by_text = dict(zip(numbers, names, strict=True)) | {name: name for name in names}
-    asked = [(ours, by_text.get(theirs, theirs)) for ours, theirs in _with_seconds(wanted)]
+    # Where fractions of a second are asked for, the time beside them is in seconds.
+    clock = "sec" if any(is_fraction(ours) for ours, _ in wanted) else "t"
+    asked = [(clock if o == "t" else o, by_text.get(theirs, theirs)) for o, theirs in wanted]
     usual = {theirs: ours for ours, theirs in asked if theirs in names and _is_usual(ours, scene)}
     return usual, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
-
-
-def _with_seconds(wanted: Request) -> Request:
-    """Return the request with the time as seconds where their fractions are asked for beside it."""
-    if not any(is_fraction(ours) for ours, _ in wanted):
-        return wanted
-    return [("sec" if ours == "t" else ours, theirs) for ours, theirs in wanted]
 
 
 def _is_usual(name: str, scene: Scene | None) -> bool:
