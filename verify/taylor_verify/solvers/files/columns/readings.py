@@ -192,13 +192,9 @@ class Name:
 
 
 def _places(name: str, path: str) -> Iterator[tuple[Spelling, int]]:
-    key = letters(name)
+    key, is_possible = letters(name), _is_behind if path.endswith("_") else _is_after
     for spelling, component in PLACES.get(key, ()):
-        if (
-            _is_behind(spelling, key, path)
-            if path.endswith("_")
-            else _is_after(spelling, key, path)
-        ):
+        if is_possible(spelling, key, path):
             yield spelling, component
 
 

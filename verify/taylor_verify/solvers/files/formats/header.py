@@ -170,11 +170,10 @@ def _above(first: Line, lines: Sequence[Line], mark: str) -> Head:
 def _passed(lines: Sequence[Line]) -> Iterator[str]:
     """Yield a sentence about the lines above the header that are no comments."""
     numbers = [line.number for line in lines if not line.is_comment]
-    if numbers:
-        where = (
-            f"line {numbers[0]}" if len(numbers) == 1 else f"lines {numbers[0]} to {numbers[-1]}"
-        )
-        yield f"{where} above the table not read"
+    if len(numbers) == 1:
+        yield f"line {numbers[0]} above the table not read"
+    elif numbers:
+        yield f"lines {numbers[0]} to {numbers[-1]} above the table not read"
 
 
 def _names(line: Line, mark: str, row: Sequence[str]) -> list[str]:
