@@ -67,7 +67,7 @@ class Rows:
 
     def values_at(self, places: Sequence[int]) -> Iterator[tuple[Value, ...]]:
         """Yield some of the rows."""
-        return zip(*map(_exact, self._some(places)), strict=True)
+        return zip(*(map(exact, entries) for entries in self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Rows | Sequence):
@@ -104,10 +104,6 @@ class Rows:
         for column, factor in zip(self._columns, self._factors, strict=True):
             entries = _some(column, places)
             yield entries if factor == 1 else [_scaled(exact(raw), factor) for raw in entries]
-
-
-def _exact(values: Raw) -> Iterator[Value]:
-    return map(exact, values)
 
 
 def _scaled(value: Value, factor: Fraction) -> Value:
@@ -151,7 +147,7 @@ def _is_short(texts: Sequence[Any]) -> bool:
 def _doubles(values: Raw) -> Floats:
     if _is_double(values) or _is_short(values):
         return np.array(values, dtype=np.float64)
-    return np.array([float(value) for value in _exact(values)])
+    return np.array([float(value) for value in map(exact, values)])
 
 
 def _as_mpf(values: Raw, bits: int) -> Array:
@@ -161,7 +157,7 @@ def _as_mpf(values: Raw, bits: int) -> Array:
     if _is_double(values):
         numbers = list(map(mp.mpf, np.asarray(values, dtype=np.float64).tolist()))
     else:
-        numbers = [as_mpf(value, bits) for value in _exact(values)]
+        numbers = [as_mpf(value, bits) for value in map(exact, values)]
     return np.fromiter(numbers, dtype=object, count=len(numbers))
 
 

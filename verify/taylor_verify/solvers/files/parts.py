@@ -138,23 +138,19 @@ class Parts:
         places = {g: [k for k in self._first if rows[k]] for g, rows in present.items()}
         return {group: rows for group, rows in places.items() if rows}
 
-    def _part(self, places: Sequence[int], names: Iterable[str]) -> Part:
+    def _part(self, places: Sequence[int], among: Iterable[str]) -> Part:
         is_whole = len(places) == len(self._finite["t"])
-        columns = {
-            name: self._columns[name] if is_whole else entries_at(self._columns[name], places)
-            for group in names
-            for name in self._groups[group]
-        }
-        groups = {
-            group: self._rows([columns[name] for name in self._groups[group]], group, places)
-            for group in names
-        }
-        return Part(places, groups, written_digits(columns.values()))
-
-    def _rows(self, columns: Sequence[Column], group: str, places: Sequence[int]) -> Rows:
-        names = self._groups[group]
-        finite = np.logical_and.reduce([self._finite[name][places] for name in names])
-        return Rows([c.values for c in columns], finite, [self.taken[n].factor for n in names])
+        groups, columns = dict[str, Rows](), list[Column]()
+        for group in among:
+            names = self._groups[group]
+            some = self._of(group)
+            if not is_whole:
+                some = [entries_at(column, places) for column in some]
+            finite = np.logical_and.reduce([self._finite[name][places] for name in names])
+            factors = [self.taken[name].factor for name in names]
+            groups[group] = Rows([column.values for column in some], finite, factors)
+            columns += some
+        return Part(places, groups, written_digits(columns))
 
 
 def _packed(values: Sequence[Any]) -> Any:
