@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, overload
 
 import gmpy2
 import numpy as np
@@ -33,7 +33,7 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
 NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
-class Rows:
+class Rows(Sequence[tuple[Value, ...]]):
     """Rows of some columns, each number exactly as it was written; equal to any sequence of the same rows.
 
     ``finite`` is True for the rows whose numbers are all finite. The number of a row is the factor of its
@@ -58,7 +58,15 @@ class Rows:
     def width(self) -> int:
         return len(self._columns)
 
-    def __getitem__(self, place: int) -> tuple[Value, ...]:
+    @overload
+    def __getitem__(self, place: int) -> tuple[Value, ...]: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> tuple[tuple[Value, ...], ...]: ...
+
+    def __getitem__(self, place: int | slice) -> Any:
+        if isinstance(place, slice):
+            return tuple(self[k] for k in range(self._count)[place])
         return next(self.values_at([place]))
 
     def __iter__(self) -> Iterator[tuple[Value, ...]]:
@@ -70,7 +78,7 @@ class Rows:
         return zip(*(map(exact, entries) for entries in self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Rows | Sequence):
+        if not isinstance(other, Sequence):
             return NotImplemented
         return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
 
