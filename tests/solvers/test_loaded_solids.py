@@ -13,7 +13,7 @@ import pytest
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.run import run
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.engines.engine import SCRIPTS
 from taylor_verify.solvers.process import protocol
 
@@ -23,6 +23,24 @@ VEHICLES = [
     "loads/vehicle-in-a-current",
     "loads/gz-added-mass",
 ]
+
+# A force that has the sign of the quaternion.
+TURNED = """
+title = "Turned"
+model = "kirchhoff"
+track = ["attitude"]
+[body]
+mass = 1
+inertia = [1, 1, 1]
+force = ["q1", 0, 0]
+[initial]
+linear_velocity = [1, 0, 0]
+angular_velocity = [0, 0, 0]
+attitude = [1, 2, 3, 4]
+[time]
+end = 1
+samples = 3
+"""
 
 
 @pytest.fixture
@@ -59,6 +77,19 @@ def test_the_drift_of_the_fluid_is_added_to_the_centre(solid: Any) -> None:
     body.push.t = 2.0
     row = body.row([0, 0, 0], [0, 0, 0], body.attitude, [1.0, 0.0, 0.0])
     assert row[-3:] == pytest.approx([1.8, 0.6, 0.0], abs=1e-15)
+
+
+def test_a_second_run_begins_with_the_attitude_of_the_scene(sibling: Callable[[str], Any]) -> None:
+    """A quaternion that ended a first run near the negative of the start is not that of a second run."""
+    question = protocol.question(pose(read(TURNED, "turned"), rung("f64")))
+    solid = sibling("immersed_body").pushed_solid(json.loads(json.dumps(question)))
+    last = [-entry for entry in solid.attitude]
+    at_start = solid.wrench([1, 0, 0], [0, 0, 0], solid.attitude, [0, 0, 0])
+    # A turn by a whole circle, in three steps.
+    for attitude in ([-2, 1, 4, -3], last):
+        solid.wrench([1, 0, 0], [0, 0, 0], attitude, [0, 0, 0])
+    solid.accompanied(lambda: (lambda _: None, lambda: []), 0.1)
+    assert solid.wrench([1, 0, 0], [0, 0, 0], solid.attitude, [0, 0, 0]) == at_start
 
 
 @pytest.mark.parametrize("scene", ["loads/vehicle-depth", "kirchhoff/damped", "euler/generic"])

@@ -91,7 +91,7 @@ def test_one_process_answers_all_questions(fake: Made) -> None:
     one = fake(begins="sys.stderr.write(str(os.getpid()) + chr(10)); sys.stderr.flush()", steps=1)
     for scene in ("euler/generic", "kirchhoff/screw"):
         assert one.solve(posed(scene)).outcome is Outcome.FINISHED
-    words = session(peers.command_of(one.engine))._last_words().split()  # type: ignore[arg-type]
+    words = session(peers.command_of(one.engine)).last_words.split()  # type: ignore[arg-type]
     assert len(words) == 2
     assert len(set(words)) == 1
     assert is_alive(words[0])

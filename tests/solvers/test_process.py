@@ -26,6 +26,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.solvers.process import protocol
+from taylor_verify.solvers.process.exact_text import exact_text
 from taylor_verify.solvers.process.process import DEFAULT_LIMIT, LIMIT_VARIABLE, Process, named
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -111,7 +112,7 @@ def matrix(rows: list[list[str]]) -> tuple[tuple[Fraction, ...], ...]:
 @given(st.fractions() | st.floats(allow_nan=False, allow_infinity=False).map(Fraction))
 def test_an_exact_text_is_exact(value: Fraction) -> None:
     """The text of a rational reads back as the same rational, a decimal wherever one is finite."""
-    text = protocol.exact_text(value)
+    text = exact_text(value)
     assert Fraction(text) == value
     assert ("/" in text) == (10**1100 % value.denominator != 0)
 

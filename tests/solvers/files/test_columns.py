@@ -156,6 +156,13 @@ def test_blanks_and_a_mark_at_the_beginning_of_a_name_are_no_part_of_it() -> Non
     assert set(made(["\ufefftime", " wx", "wy ", '"wz"']).groups) == {"omega"}
 
 
+def test_rows_are_a_sequence() -> None:
+    """Whoever reads `file.groups` takes a row, the last one, or some of them."""
+    rows = made("t w1 w2 w3").groups["omega"]
+    assert isinstance(rows, Sequence)
+    assert (rows[0], rows[1:]) == ((10, 20, 30), (rows[-1],))
+
+
 # Files are judged alike.
 
 

@@ -1,13 +1,13 @@
 """Scenes from other people's descriptions of bodies: URDF, SDF and MJCF.
 
-document   XML, without document types and of bounded size
-rotation   rotations in rationals
-reading    numbers of such a file, or faults with their line
+tree         XML, without document types and of bounded size
+attributes   numbers of such a file, or faults with their line
 urdf, sdf, mjcf   the links of a file, and the inertia of one
-link       the inertia of a link: mass, centre, tensor, added mass
-water      what water does to a link: added mass, drag, current, weight and buoyancy
-thrusters, volumes, plugins   thrusters, the volume that floats, and which plugin acts on which link
-written    the text of a scene
+link         the inertia of a link: mass, centre, tensor, added mass
+gazebo       the plugins that act on a link
+water        what water does to a link: added mass, drag, current, weight and buoyancy
+thrusters, volumes   thrusters, and the volume that floats
+scene_text   the text of a scene
 """
 
 from __future__ import annotations

@@ -7,7 +7,6 @@ first (sdformat, sdf/1.10/inertial.sdf).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Final
@@ -18,7 +17,7 @@ from taylor_verify.records.faults import cut, near, shown
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.attributes import Reading, is_true
 from taylor_verify.scenes.imported.link import Candidate, Format, Link
-from taylor_verify.scenes.imported.tree import Node
+from taylor_verify.scenes.imported.tree import Node, scoped
 from taylor_verify.scenes.imported.urdf import COMPONENTS
 from taylor_verify.scenes.motion import IDENTITY, Quaternion
 
@@ -33,16 +32,8 @@ _DEFAULTS: Final = {"ixy": _ZERO, "ixz": _ZERO, "iyz": _ZERO}
 
 def candidates(root: Node) -> list[Candidate]:
     """Return every link of every model, as ``model::link``."""
-    return [candidate for part in (root, *root.named("world")) for candidate in _below(part, "")]
-
-
-def _below(part: Node, scope: str) -> Iterator[Candidate]:
-    for node in part.named("model", "link"):
-        name = scope + node.attributes.get("name", "")
-        if node.name == "model":
-            yield from _below(node, f"{name}::")
-        else:
-            yield Candidate(name, node.child("inertial"))
+    links = (item for item in scoped(root) if item.node.name == "link")
+    return [Candidate(item.name, item.node.child("inertial")) for item in links]
 
 
 def link(root: Node, name: str, inertial: Node, reading: Reading) -> Link | None:

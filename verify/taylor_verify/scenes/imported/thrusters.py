@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.rotation import rotation_matrix
@@ -13,11 +13,8 @@ from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
 from taylor_verify.scenes import turns
 from taylor_verify.scenes.imported.attributes import Reading, is_true
 from taylor_verify.scenes.imported.link import Link
-from taylor_verify.scenes.imported.tree import Node
+from taylor_verify.scenes.imported.tree import Node, Scoped
 from taylor_verify.scenes.imported.water import Water, term
-
-if TYPE_CHECKING:
-    from taylor_verify.scenes.imported.gazebo import Scoped
 
 _DIGITS: Final = 12
 _FRAMES: Final = ("relative_to", "frame", "rotation_format")
@@ -46,7 +43,7 @@ def with_thruster(
             f"the thruster of line {item.node.line} is left out: write its thrust as text in `force` and "
             "`couple`"
         )
-        return replace(water, left_out=(*water.left_out, sentence))
+        return water.without(sentence)
     place, axis = line
     thrust = f"thrust{len(water.thrusts) + 1}"
     six = (*axis, *tensors.cross(place, axis))
@@ -77,7 +74,8 @@ def _line(
         text = (node.attributes.get("xyz") if node else None) or "1 0 0"
     else:
         ends = [f"{scope}{_linked(joint, 'child')}", link.name]
-        links = [i.node for name in ends for i in everything if _name(i) == name]
+        named = [(i.name, i.node) for i in everything if i.node.name == "link"]
+        links = [node for end in ends for name, node in named if name == end]
         poses = [_of_sdf(part, reading) for part in (*links, joint)]
         pose = _between(*poses) if len(poses) == 3 else None
         text = (_text(node, "xyz") if node else "") or "0 0 1"
@@ -87,10 +85,6 @@ def _line(
     turned = tensors.apply(pose.turn, axis)
     length = Fraction(float(tensors.dot(axis, axis)) ** 0.5)
     return _rounded(pose.place), _rounded(tensors.scaled(1 / length, turned))
-
-
-def _name(item: Scoped) -> str:
-    return item.scope + item.node.attributes.get("name", "") if item.node.name == "link" else ""
 
 
 def _rounded(vector: Vector) -> Vector:
@@ -115,11 +109,9 @@ def _of_sdf(part: Node, reading: Reading) -> _Pose | None:
     if any(node.attributes.get(key, "").strip() for key in _FRAMES):
         return None
     six = reading.vector(node, node.text, "pose", length=6)
-    return (
-        None
-        if six is None
-        else _Pose(six[:3], _turn(six[3:], is_true(node.attributes.get("degrees"))))
-    )
+    if six is None:
+        return None
+    return _Pose(six[:3], _turn(six[3:], is_true(node.attributes.get("degrees"))))
 
 
 def _turn(angles: Vector, degrees: bool = False) -> Matrix:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.markup import Markup
@@ -45,12 +45,34 @@ class Node:
         return next(iter(self.named(name)), None)
 
 
+class Scoped(NamedTuple):
+    """A node of a model, with the names of the models that it is in."""
+
+    scope: str
+    node: Node
+
+    @property
+    def name(self) -> str:
+        """The name of the node behind those of its models."""
+        return self.scope + self.node.attributes.get("name", "")
+
+
+def scoped(part: Node, scope: str = "") -> Iterator[Scoped]:
+    """Yield every link, joint and plugin with the models around it, and the gravity of a world."""
+    for node in part.children:
+        item = Scoped(scope, node)
+        if node.name in ("model", "world", "gazebo"):
+            yield from scoped(node, f"{item.name}::" if node.name == "model" else scope)
+        elif node.name in ("link", "joint", "plugin", "gravity"):
+            yield item
+
+
 def read_document(path: Path) -> Node:
     """Return the root element.
 
     Raises Refused for a text that is no XML, has a document type, or is too large or too deep.
     """
-    tree = _Tree(path, MOST_ELEMENTS)
+    tree = _Tree(path)
     with regular_file(path, "a readable URDF, SDF or MJCF file", MOST_BYTES) as file:
         tree.read(file)
     # A document without an element is no XML.
@@ -60,8 +82,8 @@ def read_document(path: Path) -> Node:
 class _Tree(Markup):
     """Builder of nodes; ``open`` are the open nodes, below a node that holds the root."""
 
-    def __init__(self, path: Path, elements: Limit) -> None:
-        super().__init__(path, elements)
+    def __init__(self, path: Path) -> None:
+        super().__init__(path, MOST_ELEMENTS)
         self.open = [Node("", {}, 0)]
 
     def begin(self, name: str, attributes: Mapping[str, str]) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Final
 
@@ -62,6 +62,10 @@ class Water:
     def acts(self) -> bool:
         """True if the water changes the body or its motion."""
         return bool(self.hanging or any(self.terms) or any(self.current))
+
+    def without(self, *sentences: str) -> Water:
+        """Return the same with sentences about what is left out."""
+        return replace(self, left_out=(*self.left_out, *sentences))
 
 
 def is_hydrodynamics(plugin: Node) -> bool:
@@ -189,9 +193,9 @@ def _square(node: Node, reading: Reading) -> list[list[Fraction]]:
     numbers = reading.vector(node, node.text, node.name, length=length)
     if numbers is None:
         return []
-    rows = (
-        tensors.diagonal(numbers) if length == 6 else [numbers[k : k + 6] for k in range(0, 36, 6)]
-    )
+    rows = [numbers[k : k + 6] for k in range(0, length, 6)]
+    if length == 6:
+        rows = [*tensors.diagonal(numbers)]
     return [
         [_FLIPPED[i] * _FLIPPED[k] * entry for k, entry in enumerate(row)]
         for i, row in enumerate(rows)

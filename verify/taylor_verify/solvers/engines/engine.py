@@ -127,13 +127,13 @@ def prepare(name: str, tell: Tell = _log.warning) -> None:
         raise NotMade(answer)
 
 
-def command_of(solver: Outside, tell: Tell = _log.warning) -> list[str] | Lack:
+def command_of(solver: Outside) -> list[str] | Lack:
     """Return the words that start the script of an engine that stays, or the reason why there are none."""
-    command = _command(solver, tell)
+    command = _command(solver)
     return command if isinstance(command, Lack) else [*command, "serve"]
 
 
-def _command(solver: Outside, tell: Tell) -> list[str] | Lack:
+def _command(solver: Outside, tell: Tell = _log.warning) -> list[str] | Lack:
     if solver.block not in _commands:
         script = solver.engine.script
         try:
@@ -187,7 +187,7 @@ class Outside(Solver):
             return refused(reason)
         if reason := self.unavailable(problem.rung):
             return not_started(reason)
-        command = _command(self, _log.warning)
+        command = _command(self)
         if isinstance(command, Lack):
             return not_started(command)
         # Engines write logs into their working folder, so they get a temporary one.
@@ -209,7 +209,7 @@ def solve_together(asked: Sequence[tuple[Outside, Problem]]) -> list[Trajectory]
     separate processes. So a failure belongs to one question, and is the same as without the others.
     """
     first, _ = asked[0]
-    command = _command(first, _log.warning)
+    command = _command(first)
     answers: list[Trajectory | None] = [None] * len(asked)
     if len(asked) > 1 and not isinstance(command, Lack):
         questions = [(solver.words, problem) for solver, problem in asked]

@@ -8,21 +8,16 @@ from __future__ import annotations
 
 import atexit
 import json
-import selectors
-import socket
 import subprocess
-import tempfile
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from time import monotonic
 from typing import Any, Final
 
-from taylor_verify.solvers.process.conversation import supervised
+from taylor_verify.solvers.process.conversation import Talk, supervised
 from taylor_verify.solvers.trajectory import Outcome
 
-_CHUNK: Final = 2**16
-# Seconds for the supervisor to end what is left.
-_PATIENCE: Final = 10.0
+# Bytes of an answer: a million states take less.
+_LONGEST: Final = 2**30
 _LAST_WORDS: Final = 300
 
 _open: dict[tuple[str, ...], Session] = {}
@@ -41,17 +36,19 @@ class Session:
 
     def __init__(self, command: Sequence[str]) -> None:
         self.places: dict[str, int] = {}
-        self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the program runs)
-        self._rest = b""
-        self._process, self._link = supervised(command, self._stderr)
+        self._talk = Talk(*supervised(command, subprocess.PIPE))
 
     def ask(self, request: Mapping[str, Any], limit: float) -> dict[str, Any]:
         """Return the answer to a request within ``limit`` seconds; Broken where there is none."""
-        assert self._process.stdin
-        with suppress(BrokenPipeError):
-            self._process.stdin.write(json.dumps(request).encode() + b"\n")
+        self._talk.unsaid = memoryview(json.dumps(request).encode() + b"\n")
+        outcome, _ = self._talk.listen(monotonic() + limit, _LONGEST, mark=b"\n")
+        line, end, rest = self._talk.answer.partition(b"\n")
+        if not end:
+            is_late = outcome is Outcome.TIMED_OUT
+            raise Broken(outcome if is_late else Outcome.CRASHED, self.last_words)
+        self._talk.answer = rest
         try:
-            answer = json.loads(self._line(monotonic() + limit))
+            answer = json.loads(line)
         except ValueError as error:
             raise Broken(Outcome.MISANSWERED, f"expected a line of JSON, got {error}") from error
         if not isinstance(answer, dict):
@@ -60,33 +57,12 @@ class Session:
 
     def close(self) -> None:
         """End the program and wait for its end."""
-        with suppress(OSError):
-            self._link.shutdown(socket.SHUT_WR)
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(_PATIENCE)
-        self._process.kill()
-        self._process.wait()
-        for stream in (self._process.stdin, self._process.stdout, self._link, self._stderr):
-            if stream is not None:
-                stream.close()
+        self._talk.end()
 
-    def _line(self, deadline: float) -> bytes:
-        """Return the next line of the program."""
-        assert self._process.stdout
-        with selectors.DefaultSelector() as waiting:
-            waiting.register(self._process.stdout, selectors.EVENT_READ)
-            while b"\n" not in self._rest:
-                if not waiting.select(max(0.0, deadline - monotonic())):
-                    raise Broken(Outcome.TIMED_OUT, self._last_words())
-                if not (read := self._process.stdout.read(_CHUNK)):
-                    raise Broken(Outcome.CRASHED, self._last_words())
-                self._rest += read
-        line, _, self._rest = self._rest.partition(b"\n")
-        return line
-
-    def _last_words(self) -> str:
-        self._stderr.seek(0)
-        words = self._stderr.read().decode(errors="replace").split()
+    @property
+    def last_words(self) -> str:
+        """The end of what the program has written to stderr."""
+        words = self._talk.stderr.decode(errors="replace").split()
         return "".join(c for c in " ".join(words) if c.isprintable())[-_LAST_WORDS:]
 
 

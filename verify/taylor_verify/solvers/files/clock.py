@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import nan
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 
@@ -46,37 +46,29 @@ _OF_A_CLOCK: Final = re.compile("stamp|gps|tow|unix|epoch|utc|boot|weekseconds|t
 _ROWS_OF_A_LAG: Final = 10
 
 
-class Times(NamedTuple):
-    """The columns of a file, what is asked of them with the time in it, and sentences about the time."""
-
-    columns: list[Column]
-    wanted: Request
-    notes: tuple[str, ...]
-
-
 def with_times(
     columns: Sequence[Column], wanted: Request, scene: Scene | None, place: str, faults: Faults
-) -> Times:
-    """Return the columns with times that count from the scene's start, and ask for the one that fits."""
-    sums = list(_sums_of_seconds(columns, place, faults))
-    notes = [each.note for each in sums]
-    read = [next((s.column for s in sums if s.whole is each), each) for each in columns]
-    names = Candidates([Name(column) for column in read], {}, {})
-    read = [c for c in read if not any(c is each.fractions for each in sums)]
+) -> tuple[list[Column], Request, tuple[str, ...]]:
+    """Return the columns with times that count from the scene's start, and ask for the one that fits.
+
+    Sentences about the time follow.
+    """
+    read, sums, notes = _with_sums(columns, place, faults)
+    names = Candidates([Name(column) for column in columns], {}, {})
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
-    clocks = _clocks(read, asked, scene, names, [each.column for each in sums])
+    clocks = _clocks(read, asked, scene, names, sums)
     chosen = _fitting(clocks)
     if chosen is None:
-        return Times(read, wanted, tuple(notes))
+        return read, wanted, tuple(notes)
     others = [clock for clock in clocks if clock is not chosen]
     if others:
         named = ", ".join(f"`{cut(other.column.name)}`" for other in others)
         notes.append(f"`{cut(chosen.column.name)}` fits the scene's times better than {named}")
     column, note = chosen.counted(place, faults)
     read = [column if each is chosen.column else each for each in read]
-    if others or sums or column is not chosen.column or not _is_called_a_time(Name(column)):
+    if others or sums or column is not chosen.column or not Name(column).is_time:
         wanted = [*(pair for pair in wanted if pair[0] not in _OURS), ("t", column.name)]
-    return Times(read, wanted, (*notes, *note))
+    return read, wanted, (*notes, *note)
 
 
 def _clocks(
@@ -90,7 +82,7 @@ def _clocks(
     if asked:
         times = [column for column in columns if column.name.strip() in asked]
     else:
-        times = [column for column in columns if _is_called_a_time(Name(column))]
+        times = [column for column in columns if Name(column).is_time]
         times = times or [c for c in columns if len(c.values) and _is_calendar(c.values[0])]
     return [
         _Clock(column, scene, _of_program(column, names), any(column is each for each in sums))
@@ -107,11 +99,7 @@ def _of_program(column: Column, names: Candidates) -> Spelling | None:
 
 def is_fraction(name: str) -> bool:
     """Return True for a name that says parts of a second: ``nanosec``."""
-    return Name(Column(name, ())).key in _FRACTIONS
-
-
-def _is_called_a_time(name: Name) -> bool:
-    return any(reading.spelling.group == "time" for reading in name.readings)
+    return Name.of(name).key in _FRACTIONS
 
 
 def _is_calendar(value: object) -> bool:
@@ -123,28 +111,23 @@ def _is_calendar(value: object) -> bool:
 # Seconds beside their fractions.
 
 
-class _Sum(NamedTuple):
-    """A column of whole seconds, that of their fractions, and the column of their sums."""
-
-    whole: Column
-    fractions: Column
-    column: Column
-
-    @property
-    def note(self) -> str:
-        return f"`{cut(self.fractions.name)}` is added to `{cut(self.whole.name)}`"
-
-
-def _sums_of_seconds(columns: Sequence[Column], place: str, faults: Faults) -> Iterator[_Sum]:
-    """Yield the sums of whole seconds and of fractions that have a column of their own."""
+def _with_sums(
+    columns: Sequence[Column], place: str, faults: Faults
+) -> tuple[list[Column], list[Column], list[str]]:
+    """Return the columns with fractions of a second added to the seconds, the sums, and notes on these."""
     by_key = {Name(column).key: column for column in columns}
+    read, sums, notes = list(columns), list[Column](), list[str]()
     for key, fractions in by_key.items():
-        end = next((end for end in _FRACTIONS if key.endswith(end)), None)
-        stem = key.removesuffix(end or "")
+        end = next((end for end in _FRACTIONS if key.endswith(end)), "")
+        stem = key.removesuffix(end)
         whole = next((by_key[stem + s] for s in _SECONDS if end and stem + s in by_key), None)
-        if whole is not None and end is not None:
-            values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
-            yield _Sum(whole, fractions, whole._replace(values=values))
+        if whole is None:
+            continue
+        values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
+        sums.append(whole._replace(values=values))
+        read = [sums[-1] if each is whole else each for each in read if each is not fractions]
+        notes.append(f"`{cut(fractions.name)}` is added to `{cut(whole.name)}`")
+    return read, sums, notes
 
 
 def _sums(
@@ -240,17 +223,19 @@ class _Clock:
 
         A clock that nothing but its name says is the scene's where it has any row in the scene.
         """
-        if self._scene is None or not self.runs:
+        has_habit = self._habit is not None and self._habit.unit != "s"
+        is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
+        # The numbers are read last: they are many.
+        if self._scene is None or not (has_habit or is_clock) or not self.runs:
             return False
         clock, factor = self._scene.clock, self._unit.factor
         first, last = (number * factor for number in (self._numbers[0], self._numbers[-1]))
-        if self._habit is not None and self._habit.unit != "s":
+        if has_habit:
             lag = _ROWS_OF_A_LAG * abs(last - first) / (len(self._numbers) - 1)
             beyond = last > self._last + _NEAR * abs(clock.elapsed[-1])
             return bool(beyond and abs(first - clock.start) > lag)
         ends = sorted((clock.start, clock.instants[-1]))
-        is_clock = self._is_sum or _OF_A_CLOCK.search(Name(self.column).whole_key) is not None
-        return is_clock and bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
+        return bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
 
     @cached_property
     def _last(self) -> Fraction:

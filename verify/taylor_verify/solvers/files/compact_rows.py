@@ -30,7 +30,7 @@ _LARGEST: Final = 2**1000
 _SHORT: Final = r"[+-]?[0-9]{1,40}(?:\.[0-9]{0,40})?(?:[eE][+-]?[0-9]{1,2})?"
 _SHORT_TEXTS: Final = re.compile(rf"(?: *{_SHORT} *\n)*")
 _DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
-_NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
+NO_DIGITS: Final = re.compile(r"[eE][+-]?[0-9]+|[+. -]")
 
 
 class Rows(Sequence[tuple[Value, ...]]):
@@ -75,7 +75,7 @@ class Rows(Sequence[tuple[Value, ...]]):
 
     def values_at(self, places: Sequence[int]) -> Iterator[tuple[Value, ...]]:
         """Yield some of the rows."""
-        return zip(*map(_exact, self._some(places)), strict=True)
+        return zip(*(map(exact, entries) for entries in self._some(places)), strict=True)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Sequence):
@@ -112,10 +112,6 @@ class Rows(Sequence[tuple[Value, ...]]):
         for column, factor in zip(self._columns, self._factors, strict=True):
             entries = _some(column, places)
             yield entries if factor == 1 else [_scaled(exact(raw), factor) for raw in entries]
-
-
-def _exact(values: Raw) -> Iterator[Value]:
-    return map(exact, values)
 
 
 def _scaled(value: Value, factor: Fraction) -> Value:
@@ -159,7 +155,7 @@ def _is_short(texts: Sequence[Any]) -> bool:
 def _doubles(values: Raw) -> Floats:
     if _is_double(values) or _is_short(values):
         return np.array(values, dtype=np.float64)
-    return np.array([float(value) for value in _exact(values)])
+    return np.array([float(value) for value in map(exact, values)])
 
 
 def _as_mpf(values: Raw, bits: int) -> Array:
@@ -169,31 +165,30 @@ def _as_mpf(values: Raw, bits: int) -> Array:
     if _is_double(values):
         numbers = list(map(mp.mpf, np.asarray(values, dtype=np.float64).tolist()))
     else:
-        numbers = [as_mpf(value, bits) for value in _exact(values)]
+        numbers = [as_mpf(value, bits) for value in map(exact, values)]
     return np.fromiter(numbers, dtype=object, count=len(numbers))
 
 
 # What is read of a file.
 
 
-def check_numbers(column: Column, file: str, faults: Faults, blank: Flags) -> Flags:
+def check_numbers(column: Column, file: str, faults: Faults, blank: Flags | None) -> Flags:
     """Return True for the entries that are finite numbers; add a fault for text and too large numbers.
 
     Rows that are ``blank`` are passed over.
     """
-    finite = np.ones(len(column.values), dtype=bool)
+    finite = np.ones(len(column.values), dtype=bool) if blank is None else ~blank
     with alike(faults, f"{file}, column {column.name}") as wrong:
         for part in _chunks(len(column.values)):
             values = _some(column.values, part)
             if _is_double(values):
                 sizes = np.abs(np.asarray(values, dtype=np.float64))
-                finite[part.start : part.stop] = np.isfinite(sizes)
+                finite[part.start : part.stop] &= np.isfinite(sizes)
                 suspects = np.isfinite(sizes) & (sizes >= _LARGEST)
             else:
                 suspects = np.full(len(values), not _is_short(values))
-            passed = blank[part.start : part.stop]
-            finite[part.start : part.stop] &= ~passed
-            for k in np.flatnonzero(suspects & ~passed).tolist():
+            suspects &= finite[part.start : part.stop]
+            for k in np.flatnonzero(suspects).tolist():
                 try:
                     finite[part[k]] = _is_finite(values[k])
                 except ValueError as error:
@@ -222,13 +217,14 @@ def written_digits(columns: Iterable[Column]) -> int | None:
             return None
         for part in _chunks(len(values)):
             texts = _some(values, part)
-            if not _is_short(texts) and not all(_is_decimal(text) for text in texts):
+            if not _is_short(texts) and not all(map(is_decimal, texts)):
                 return None
-            digits = _NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
+            digits = NO_DIGITS.sub("", "\n".join(text.strip() for text in texts))
             most = max(most, *(len(text.lstrip("0")) for text in digits.split("\n")))
     # Zeros alone are exact however they are written.
     return most or None
 
 
-def _is_decimal(raw: object) -> bool:
+def is_decimal(raw: object) -> bool:
+    """Return True for a text that is a decimal."""
     return isinstance(raw, str) and _DECIMAL.fullmatch(raw.strip()) is not None

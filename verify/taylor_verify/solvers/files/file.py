@@ -142,9 +142,9 @@ def from_columns(
     names, asked = usual_names(list(by_name.values()), wanted, scene, place)
     renamed = [c._replace(name=names.get(name, name)) for name, c in by_name.items()]
     every, planar = with_zeros(renamed, scene)
-    clock = with_times(every, asked, scene, place, faults)
-    own, asked = own_columns(scene), clock.wanted
-    beside, left, asked = apart(clock.columns, asked, own, place, faults)
+    every, asked, timed = with_times(every, asked, scene, place, faults)
+    own = own_columns(scene)
+    beside, left, asked = apart(every, asked, own, place, faults)
     selection = select(left, asked, place, faults)
     own = whole(beside, own, place, faults)
     taken = {column.name: column for column in (*selection.columns, *beside)}
@@ -165,5 +165,5 @@ def from_columns(
     if faults.lines:
         raise Refused(faults.lines)
     first, *others = files
-    sentences = (*notes, *planar, *clock.notes, *selection.notes, *parts.notes, *agreed)
+    sentences = (*notes, *planar, *timed, *selection.notes, *parts.notes, *agreed)
     return replace(first, notes=sentences, apart=tuple(others))

@@ -37,29 +37,24 @@ def usual_names(
         got = f"numbers alone, in {len(names)} column{'s' * (len(names) > 1)}"
         raise refusal("a header line that names the columns", got, place, mend)
     by_text = dict(zip(numbers, names, strict=True)) | {name: name for name in names}
-    asked = [(ours, by_text.get(theirs, theirs)) for ours, theirs in _with_seconds(wanted)]
+    # Where fractions of a second are asked for, the time beside them is in seconds.
+    clock = "sec" if any(is_fraction(ours) for ours, _ in wanted) else "t"
+    asked = [(clock if o == "t" else o, by_text.get(theirs, theirs)) for o, theirs in wanted]
     usual = {theirs: ours for ours, theirs in asked if theirs in names and _is_usual(ours, scene)}
     return usual, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
-
-
-def _with_seconds(wanted: Request) -> Request:
-    """Return the request with the time as seconds where their fractions are asked for beside it."""
-    if not any(is_fraction(ours) for ours, _ in wanted):
-        return wanted
-    return [("sec" if ours == "t" else ours, theirs) for ours, theirs in wanted]
 
 
 def _is_usual(name: str, scene: Scene | None) -> bool:
     """Return True for a name that is read where it stands in a header, and is none of ours."""
     own = {column for state in scene.own_states for column in state.components} if scene else set()
-    is_known = bool(Name(Column(name, ())).readings) or is_fraction(name)
+    is_known = bool(Name.of(name).readings) or is_fraction(name)
     return is_known and not is_ours(name) and name not in own
 
 
 def _elements(names: Sequence[str]) -> list[str]:
     """Return the names of the columns of one matrix, if the first is one whose name says nothing."""
     stem, bracket, _ = names[0].partition("[")
-    means = Name(Column(names[0], ())).is_known
+    means = Name.of(names[0]).is_known
     return [f"{stem}[{k}]" for k in range(len(names))] if bracket and not means else []
 
 

@@ -17,16 +17,8 @@ from taylor_verify.solvers.files.columns.names import GROUPS
 from taylor_verify.solvers.files.columns.selection import Taken
 from taylor_verify.solvers.files.compact_rows import Rows, check_numbers, entries_at, written_digits
 from taylor_verify.solvers.files.formats.column import Column, alike
-from taylor_verify.solvers.files.present import (
-    Flags,
-    blank_rows,
-    first_of_equal,
-    repeated_note,
-    rows_note,
-    rows_of_groups,
-)
+from taylor_verify.solvers.files.present import Flags, blank_rows, first_of_equal, rows_of_groups
 
-Places = np.ndarray[Any, np.dtype[np.intp]]
 # One row is no trajectory.
 _FEWEST: Final = 2
 
@@ -83,19 +75,17 @@ class Parts:
         every = [column.values for column in self._columns.values()]
         self._first = first_of_equal(times, every)
         if repeated := len(times) - len(self._first):
-            self.notes.append(repeated_note(repeated))
+            rows = "1 row that repeats" if repeated == 1 else f"{repeated} rows that repeat"
+            self.notes.append(f"{rows} the row before, time and numbers, left out")
         factor = self.taken["t"].factor
         return tuple(times) if factor == 1 else tuple(time * factor for time in times)
 
     def _checked(self, place: str, faults: Faults) -> dict[str, Flags]:
         """Return True for the entries of each column that are finite numbers."""
-        none = {name: np.zeros(len(c.values), dtype=bool) for name, c in self._columns.items()}
         self._blank = {g: blank_rows(self._of(g)) for g in self._groups if not faults.lines}
-        blank = dict(none)
-        for group, rows in self._blank.items():
-            blank |= dict.fromkeys(self._groups[group], rows)
+        blank = {name: rows for group, rows in self._blank.items() for name in self._groups[group]}
         return {
-            name: check_numbers(column, place, faults, blank[name])
+            name: check_numbers(column, place, faults, blank.get(name))
             for name, column in self._columns.items()
         }
 
@@ -140,28 +130,27 @@ class Parts:
         }
         present = rows_of_groups({g: self._of(g) for g in self._groups}, self._blank, finite)
         for group, rows in present.items():
-            if note := rows_note(self._groups[group], int(rows.sum()), count):
-                self.notes.append(note)
+            named, has = cut(" ".join(self._groups[group])), int(rows.sum())
+            if not has:
+                self.notes.append(f"{named} not read: no row has numbers")
+            elif has < count:
+                self.notes.append(f"{named} have {has} of the {count} rows")
         places = {g: [k for k in self._first if rows[k]] for g, rows in present.items()}
         return {group: rows for group, rows in places.items() if rows}
 
-    def _part(self, places: Sequence[int], names: Iterable[str]) -> Part:
+    def _part(self, places: Sequence[int], among: Iterable[str]) -> Part:
         is_whole = len(places) == len(self._finite["t"])
-        columns = {
-            name: self._columns[name] if is_whole else entries_at(self._columns[name], places)
-            for group in names
-            for name in self._groups[group]
-        }
-        groups = {
-            group: self._rows([columns[name] for name in self._groups[group]], group, places)
-            for group in names
-        }
-        return Part(places, groups, written_digits(columns.values()))
-
-    def _rows(self, columns: Sequence[Column], group: str, places: Sequence[int]) -> Rows:
-        names = self._groups[group]
-        finite = np.logical_and.reduce([self._finite[name][places] for name in names])
-        return Rows([c.values for c in columns], finite, [self.taken[n].factor for n in names])
+        groups, columns = dict[str, Rows](), list[Column]()
+        for group in among:
+            names = self._groups[group]
+            some = self._of(group)
+            if not is_whole:
+                some = [entries_at(column, places) for column in some]
+            finite = np.logical_and.reduce([self._finite[name][places] for name in names])
+            factors = [self.taken[name].factor for name in names]
+            groups[group] = Rows([column.values for column in some], finite, factors)
+            columns += some
+        return Part(places, groups, written_digits(columns))
 
 
 def _packed(values: Sequence[Any]) -> Any:

@@ -22,7 +22,9 @@ def with_zeros(
     columns: Sequence[Column], scene: Scene | None
 ) -> tuple[list[Column], tuple[str, ...]]:
     """Return the columns with those that are zero in a planar motion behind them, and a note on these."""
-    by_name = {_bare(column.name): column for column in columns}
+    # A name may have a unit behind it, in brackets.
+    bare = (column.name.partition("[")[0].partition("(")[0].strip() for column in columns)
+    by_name = dict(zip(bare, columns, strict=True))
     named = by_name.keys()
     is_planar = named >= set(_VELOCITIES) and named.isdisjoint(_ZEROS[0][1])
     if scene is None or scene.model != "kirchhoff" or not is_planar:
@@ -37,8 +39,3 @@ def _added(there: Collection[str]) -> Iterator[str]:
     for names, zeros in _ZEROS:
         if set(there).issuperset(names) and set(there).isdisjoint(zeros):
             yield from zeros
-
-
-def _bare(name: str) -> str:
-    """Return the name without a unit in brackets."""
-    return name.partition("[")[0].partition("(")[0].strip()

@@ -14,7 +14,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.records.faults import cut
 from taylor_verify.solvers.files.formats.column import Column
 from taylor_verify.solvers.values import Value, exact
 
@@ -57,12 +56,6 @@ def _number(raw: Any) -> object:
     except ValueError:
         return raw
     return value if isinstance(value, Fraction) else str(value)
-
-
-def repeated_note(count: int) -> str:
-    """Return the sentence on rows that are left out because they repeat the row before."""
-    rows = "1 row that repeats" if count == 1 else f"{count} rows that repeat"
-    return f"{rows} the row before, time and numbers, left out"
 
 
 def rows_of_groups(
@@ -123,11 +116,3 @@ def _stands_alone(finite: Flags) -> bool:
 def _is_nan(raw: Any) -> bool:
     value = exact(raw)
     return value != value
-
-
-def rows_note(names: Sequence[str], has: int, count: int) -> str:
-    """Return a sentence on a group that does not have all rows of the file; empty for any other."""
-    columns = cut(" ".join(names))
-    if not has:
-        return f"{columns} not read: no row has numbers"
-    return f"{columns} have {has} of the {count} rows" if has < count else ""

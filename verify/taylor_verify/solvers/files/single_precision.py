@@ -11,7 +11,6 @@ fractions of powers of two are numbers of any precision, and count nothing.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from math import floor, log10
@@ -19,10 +18,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.solvers.files.compact_rows import NO_DIGITS, Floats, is_decimal
 from taylor_verify.solvers.files.formats.column import CHUNK
 from taylor_verify.solvers.values import exact
 
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 Written = tuple[Sequence[Any] | Floats, Floats]
 """The entries of a column as they are written, and the doubles nearest to them."""
 
@@ -30,8 +29,6 @@ Written = tuple[Sequence[Any] | Floats, Floats]
 _ENOUGH: Final = 6.0
 # Numbers as narrow as this are small integers and simple fractions in any precision.
 _TELLING_BITS: Final = 18
-_DECIMAL: Final = re.compile(r"[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?")
-_NO_DIGITS: Final = re.compile(r"[eE].*|[+.-]")
 
 
 def are_single_precision(columns: Iterable[Written]) -> bool:
@@ -82,10 +79,9 @@ def _evidence(entries: Sequence[Any] | Floats, values: Floats) -> Iterator[tuple
 
 def _digits(entry: Any) -> str:
     """Return the significant digits of a number as it is written."""
-    return _NO_DIGITS.sub("", _decimal(entry)).lstrip("0")
+    return NO_DIGITS.sub("", _decimal(entry)).lstrip("0")
 
 
 def _decimal(entry: Any) -> str:
     """Return a decimal as it is written, or the shortest decimal of a binary number."""
-    text = entry.strip() if isinstance(entry, str) else ""
-    return text if _DECIMAL.fullmatch(text) else repr(float(exact(entry)))
+    return entry.strip() if is_decimal(entry) else repr(float(exact(entry)))

@@ -23,23 +23,7 @@ STEP_COLUMNS: Final = ("dt", "h", "step_size", "stepsize", "time_step", "timeste
 _NUMBER: Final = (
     r"(?P<number>(?:[0-9]{1,20}(?:[.p][0-9]{1,40})?|\.[0-9]{1,40})(?:e[+-]?[0-9]{1,2})?)"
 )
-_WORD: Final = r"(?P<word>dt|h|step|step[ _-]?size|time[ _-]?step)"
-
-
-def _stated(word: str, between: str) -> re.Pattern[str]:
-    """Return the pattern of a word and its number: run_h0.01, dt=0.01; neither ch0.1 nor dt10ms."""
-    text = rf"(?<![A-Za-z]){word}{between}{_NUMBER}(?![0-9A-Za-z])"
-    return re.compile(text, re.IGNORECASE)
-
-
-def _as_key(word: str) -> re.Pattern[str]:
-    """Return the pattern of a key of JSON with its number."""
-    return re.compile(rf'"{word}"\s*:\s*"?{_NUMBER}"?\s*[,}}]', re.IGNORECASE)
-
-
-_IN_NAME: Final = _stated(_WORD, "[=_-]?")
-_IN_COMMENT: Final = _stated(_WORD, r"\s*[=:]\s*")
-_IN_JSON: Final = _as_key(_WORD)
+_STEP: Final = r"dt|h|step|step[ _-]?size|time[ _-]?step"
 # Comments that say the step stand at the top.
 _HEAD_BYTES: Final = 2**14
 # Rows are equally spaced if their spacing differs by no more than printed times make it.
@@ -72,16 +56,12 @@ def step_inside(path: Path, columns: Iterable[Column]) -> FileStep | None:
     for name, values in columns:
         if name.lower() in STEP_COLUMNS and (value := _only_value(values)) is not None:
             return FileStep(value, Source.FILE)
-    return _only(_stated_in_head(path, _IN_COMMENT, _IN_JSON), Source.FILE)
+    return _in_head(path, _STEP)
 
 
 def step_in_name(name: str) -> FileStep | None:
     """Return the step that the name of a file states, or that of its folder, as in ``run_h0.01.csv``."""
-    path = Path(name)
-    for part in (path.stem, path.parent.name):
-        if step := _only(_IN_NAME.finditer(part), Source.NAME):
-            return step
-    return None
+    return _in_name(Path(name), _STEP)
 
 
 def knob_of(name: str, knob: str) -> FileStep | None:
@@ -89,13 +69,8 @@ def knob_of(name: str, knob: str) -> FileStep | None:
 
     A name is one such as ``run_rtol1e-6.csv``.
     """
-    word = rf"(?P<word>{re.escape(knob)})"
-    path = parted(name)[0]
-    for part in (path.stem, path.parent.name):
-        if step := _only(_stated(word, "[=_-]?").finditer(part), Source.NAME):
-            return step
-    comment, key = _stated(word, r"\s*[=:]\s*"), _as_key(word)
-    return _only(_stated_in_head(path, comment, key), Source.FILE)
+    path, word = parted(name)[0], re.escape(knob)
+    return _in_name(path, word) or _in_head(path, word)
 
 
 def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
@@ -107,20 +82,31 @@ def step_of_rows(times: Sequence[Fraction]) -> FileStep | None:
     return FileStep(float(abs(mean)), Source.ROWS) if even else None
 
 
-def _stated_in_head(
-    path: Path, comment: re.Pattern[str], key: re.Pattern[str]
-) -> Iterator[re.Match[str]]:
+def _in_name(path: Path, word: str) -> FileStep | None:
+    for part in (path.stem, path.parent.name):
+        if step := _only(_stated(word, "[=_-]?", part), Source.NAME):
+            return step
+    return None
+
+
+def _in_head(path: Path, word: str) -> FileStep | None:
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".tsv", ".txt", ".json"):
-        return
+        return None
     with regular_file(path, "a trajectory file", BYTES) as file:
         head = file.read(_HEAD_BYTES).decode("utf-8", errors="replace")
     if suffix == ".json":
-        yield from key.finditer(head)
-        return
-    for line in head.splitlines():
-        if line.lstrip().startswith("#"):
-            yield from comment.finditer(line)
+        key = rf'"(?P<word>{word})"\s*:\s*"?{_NUMBER}"?\s*[,}}]'
+        return _only(re.finditer(key, head, re.IGNORECASE), Source.FILE)
+    comments = (line for line in head.splitlines() if line.lstrip().startswith("#"))
+    stated = (match for line in comments for match in _stated(word, r"\s*[=:]\s*", line))
+    return _only(stated, Source.FILE)
+
+
+def _stated(word: str, between: str, text: str) -> Iterator[re.Match[str]]:
+    """Return where a word and its number stand: run_h0.01, dt=0.01; neither ch0.1 nor dt10ms."""
+    stated = rf"(?<![A-Za-z])(?P<word>{word}){between}{_NUMBER}(?![0-9A-Za-z])"
+    return re.finditer(stated, text, re.IGNORECASE)
 
 
 def _only(stated: Iterable[re.Match[str]], source: Source) -> FileStep | None:

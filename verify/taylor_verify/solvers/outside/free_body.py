@@ -27,7 +27,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 from acting import Acting
 from axes import (
@@ -61,11 +61,18 @@ Engine = tuple[Callable[[int], Any], Callable[[], Row]]
 _NAMES = ("w1", "w2", "w3", "q0", "q1", "q2", "q3")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Body:
-    """The base of all bodies for engines: the question that asks for the motion."""
+    """The base of all bodies for engines: the question that asks for the motion.
+
+    ``push`` is what acts on the body, if anything does: it can `begin` and `move_to` a time.
+    """
 
     question: Question
+    attitude: Quaternion
+    push: Any = None
+    # What acts has to know the state after each step.
+    reads_rows: ClassVar[bool] = False
 
     @property
     def instants(self) -> Sequence[float]:
@@ -79,13 +86,35 @@ class Body:
 
     @property
     def is_pushed(self) -> bool:
-        """True if anything acts on the body."""
-        return False
+        """True if anything acts on the body besides its own inertia, and that of a fluid."""
+        return self.push is not None
+
+    def begin(self) -> None:
+        """Go back to the start with what acts."""
+        self.push.begin()
+
+    def goes_on(self, steps: int, step: float) -> None:
+        """Go on with what acts, after so many steps of the engine."""
+        self.push.move_to(self.question.sign * steps * step)
 
     def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
-        """Return the engine that ``start`` builds, with what goes on beside it."""
-        del step
-        return start()
+        """Return the engine that ``start`` builds; where anything acts, that goes on after each step."""
+        if not self.is_pushed:
+            return start()
+        self.begin()
+        advance, row = start()
+        done = 0
+
+        def one_by_one(steps: int) -> None:
+            nonlocal done
+            for _ in range(steps):
+                advance(1)
+                if self.reads_rows:
+                    row()
+                done += 1
+                self.goes_on(done, step)
+
+        return one_by_one, row
 
     def steps(self, step: float) -> list[int]:
         """Return the number of steps to each instant; raises Unsuited if one is no multiple."""
@@ -113,33 +142,29 @@ class Push:
         self.state = self._start
         self.acting = Acting(self._scene, lambda: self.state)
 
+    def move_to(self, t: float) -> None:
+        """Go on to a time; the state there was read."""
+        self.acting.move_to(t)
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, kw_only=True)
 class FreeBody(Body):
     """Inertia, omega in body axes and attitude (unit, scalar first, body to space), as doubles.
 
     A motion backwards in time is the motion forwards with omega reversed, and is given as that one.
     ``turn`` leads from the axes given here to those of the question: they differ in principal axes.
-    ``push`` is what acts on the body, if anything does.
     """
 
     inertia: Matrix
     omega: Vector
-    attitude: Quaternion
     turn: Quaternion = IDENTITY
-    push: Push | None = None
-
-    @property
-    def is_pushed(self) -> bool:
-        """True if anything acts on the body."""
-        return self.push is not None
+    reads_rows: ClassVar[bool] = True
 
     def moment(self, omega: Vector, attitude: Quaternion, time: float | None = None) -> Vector:
         """Return the moment on the body that is given here, at a state and a time of the engine.
 
         All are in body axes; without a time it is that of the last step.
         """
-        assert self.push is not None
         acting, state = self.push.acting, self._state(omega, unit(attitude))
         moment = acting.moment(acting.t if time is None else self.question.sign * time, state)
         return moment if self.turn == IDENTITY else to_body(self.turn, moment)
@@ -147,34 +172,6 @@ class FreeBody(Body):
     def moment_in_space(self, omega: Vector, attitude: Quaternion) -> Vector:
         """Return the same in space axes, of omega in space axes, at the time of the last step."""
         return to_space(attitude, self.moment(to_body(attitude, omega), attitude))
-
-    def begin(self) -> None:
-        """Go back to the start with what acts."""
-        assert self.push is not None
-        self.push.begin()
-
-    def goes_on(self, steps: int, step: float) -> None:
-        """Go on with what acts, after so many steps of the engine; its row was read."""
-        assert self.push is not None
-        self.push.acting.move_to(self.question.sign * steps * step)
-
-    def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
-        """Return the engine; where anything acts, that goes on after each step."""
-        if self.push is None:
-            return start()
-        self.begin()
-        advance, row = start()
-        done = 0
-
-        def one_by_one(steps: int) -> None:
-            nonlocal done
-            for _ in range(steps):
-                advance(1)
-                row()
-                done += 1
-                self.goes_on(done, step)
-
-        return one_by_one, row
 
     @property
     def moments(self) -> Vector:

@@ -12,13 +12,12 @@ the fluid: its velocities are those through the water, and a row adds the drift 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from acting import Piece, continued, inputs
 from axes import Matrix, Quaternion, Vector, to_body, to_space
-from free_body import Body, Engine, pushed_body
+from free_body import Body, pushed_body
 from question import Row, Unsuited, floats, read, unit
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -38,11 +37,21 @@ class SolidPush:
 
     def __init__(self, scene: Any) -> None:
         loads = scene.get("loads", {})
-        self.t, self._sign = 0.0, math.copysign(1.0, floats(scene["time"]["elapsed"])[-1])
+        self._sign = math.copysign(1.0, floats(scene["time"]["elapsed"])[-1])
         self._constant = floats(scene["body"]["force"]) + floats(scene["body"]["couple"])
         self._pieces = list(map(Piece, loads.get("pieces", [])))
         self._current = floats(loads.get("current", [])) or [0.0, 0.0, 0.0]
-        self._attitude: Vector = floats(scene["initial"]["attitude"])
+        self._start: Vector = floats(scene["initial"]["attitude"])
+        self.begin()
+
+    def begin(self) -> None:
+        """Go back to the start."""
+        # A quaternion and its negative are one attitude; loads read the one that goes on from the start.
+        self.t, self._attitude = 0.0, self._start
+
+    def move_to(self, t: float) -> None:
+        """Go on to a time."""
+        self.t = t
 
     @property
     def drift(self) -> Vector:
@@ -70,7 +79,7 @@ class SolidPush:
         return self._pieces[-1]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ImmersedBody(Body):
     """Mass matrix (linear before angular), velocities in body axes, attitude and centre, as doubles.
 
@@ -83,15 +92,8 @@ class ImmersedBody(Body):
     energy: Matrix
     velocity: Vector
     omega: Vector
-    attitude: Quaternion
     centre: Vector = ORIGIN
     ellipsoid: Ellipsoid | None = None
-    push: SolidPush | None = None
-
-    @property
-    def is_pushed(self) -> bool:
-        """True if anything acts on the solid but the fluid's inertia."""
-        return self.push is not None
 
     def wrench(
         self,
@@ -105,29 +107,11 @@ class ImmersedBody(Body):
 
         Without a time it is that of the last step.
         """
-        assert self.push is not None
         sign, push = self.question.sign, self.push
         t = push.t if time is None else sign * time
         moving = [sign * float(v) for v in (*velocity, *omega)]
         place = [float(c) + d for c, d in zip(centre, push.drift, strict=True)]
         return push.wrench(t, moving, unit(attitude), place)
-
-    def accompanied(self, start: Callable[[], Engine], step: float) -> Engine:
-        """Return the engine; where anything acts, the time of the loads goes on with each step."""
-        if self.push is None:
-            return start()
-        push = self.push
-        push.t, done = 0.0, 0
-        advance, row = start()
-
-        def one_by_one(steps: int) -> None:
-            nonlocal done
-            for _ in range(steps):
-                advance(1)
-                done += 1
-                push.t = self.question.sign * done * step
-
-        return one_by_one, row
 
     def rates(self, velocity: Vector, omega: Vector, wrench: Vector) -> Vector:
         """Return the rates of the impulses in body axes under force and couple: Kirchhoff's equations."""
@@ -158,7 +142,7 @@ class ImmersedBody(Body):
             sign * sum(m * v for m, v in zip(row, moving, strict=True)) for row in self.mass
         ]
         place = [float(entry) for entry in centre]
-        if self.push is not None:
+        if self.is_pushed:
             place = [entry + d for entry, d in zip(place, self.push.drift, strict=True)]
         row = [*impulses, *map(float, attitude), *place]
         return row[: len(self.question.columns)]

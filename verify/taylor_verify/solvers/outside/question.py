@@ -20,7 +20,7 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any, TextIO
@@ -89,10 +89,6 @@ class Unsuited(SystemExit):
     The caller is told so, and the run is not a failure.
     """
 
-    def document(self) -> dict[str, Any]:
-        """Return the answer that says so."""
-        return {"unsuited": str(self.code)}
-
 
 def answer(solve: Callable[[Question, Settings], Solved]) -> None:
     """Read the question on stdin, solve it as the arguments say, write the answer on stdout.
@@ -113,28 +109,17 @@ def answer(solve: Callable[[Question, Settings], Solved]) -> None:
 
 
 def serve(answered: Callable[[Any, Settings], dict[str, Any]], out: TextIO) -> None:
-    """Write what is answered to the question on stdin, or to each of many."""
-    if sys.argv[1:] == [MANY]:
-        for line in sys.stdin:
-            asked = json.loads(line)
-            _serve(answered, asked["question"], asked["settings"], out)
-            out.write("\n")
-            out.flush()
-    else:
-        _serve(answered, json.load(sys.stdin), sys.argv[1:], out)
-
-
-def _serve(
-    answered: Callable[[Any, Settings], dict[str, Any]],
-    scene: Any,
-    settings: Sequence[str],
-    out: TextIO,
-) -> None:
-    try:
-        written = answered(scene, Settings(**dict(map(_setting, settings))))
-    except Unsuited as reason:
-        written = reason.document()
-    json.dump(written, out)
+    """Write what is answered to the question on stdin, or to each of many, a line for each."""
+    asked: Iterable[Any] = map(json.loads, sys.stdin)
+    if sys.argv[1:] != [MANY]:
+        asked = [{"question": json.load(sys.stdin), "settings": sys.argv[1:]}]
+    for each in asked:
+        try:
+            settings = Settings(**dict(map(_setting, each["settings"])))
+            written = answered(each["question"], settings)
+        except Unsuited as reason:
+            written = {"unsuited": str(reason.code)}
+        print(json.dumps(written), file=out, flush=True)
 
 
 def _setting(argument: str) -> tuple[str, str | float]:

@@ -51,6 +51,7 @@ class Ended:
     left: str = ""
 
     def detail(self) -> str:
+        """Return what happened, what is left, and the last lines on stderr."""
         last_lines = _last_lines(self.stderr)
         parts = (self.what, self.left, last_lines and f"stderr: {last_lines}")
         return "; ".join(part for part in parts if part)
@@ -75,7 +76,8 @@ def converse(
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         return Ended(Outcome.NOT_STARTED, f"{command[0]}: {reason}")
-    talk = _Talk(process, link, asked)
+    talk = Talk(process, link)
+    talk.unsaid = memoryview(asked)
     try:
         outcome, what = talk.listen(monotonic() + limit, longest)
     finally:
@@ -153,16 +155,22 @@ class _Report(NamedTuple):
         return cls("", program, int(status), float(seconds), left, is_certain)
 
 
-class _Talk:
-    """The pipes of a running program and the link to its supervisor, all watched together."""
+class Talk:
+    """The pipes of a running program and the link to its supervisor, all watched together.
 
-    def __init__(self, process: subprocess.Popen[bytes], link: socket.socket, asked: bytes) -> None:
+    ``unsaid`` is what the program has yet to be told, and ``answer`` what it has said.
+    """
+
+    def __init__(self, process: subprocess.Popen[bytes], link: socket.socket) -> None:
         self.process, self.link = process, link
-        self.unsaid = memoryview(asked)
+        self.unsaid = memoryview(b"")
         self.answer, self.stderr, self.report = bytearray(), bytearray(), bytearray()
 
-    def listen(self, deadline: float, longest: int) -> tuple[Outcome, str]:
-        """Exchange question and answer until the program ends, time is up, or the answer is too long."""
+    def listen(self, deadline: float, longest: int, mark: bytes = b"") -> tuple[Outcome, str]:
+        """Exchange question and answer until the program ends, time is up, or the answer is too long.
+
+        With a ``mark`` the answer is whole where it has that, and the program may be asked again.
+        """
         has_ended = False
         with selectors.DefaultSelector() as waiting:
             self._register(waiting)
@@ -178,12 +186,12 @@ class _Talk:
                     waiting.unregister(pipe)
                     if pipe is self.link:
                         has_ended = True
-                    else:
+                    elif not (mark and key.data is None):
                         pipe.close()
                 del self.stderr[:-_KEPT_OF_STDERR]
                 if len(self.answer) > longest:
                     return Outcome.MISANSWERED, f"more than {longest} bytes on standard output"
-                if not ready and has_ended:
+                if (not ready and has_ended) or (mark and mark in self.answer):
                     break
         return Outcome.FINISHED, ""
 

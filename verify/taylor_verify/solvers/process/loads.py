@@ -14,25 +14,29 @@ from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.problem import Problem
-from taylor_verify.numbers.precision import Rung, hexadecimal
+from taylor_verify.numbers.precision import Rung
 from taylor_verify.scenes.loads.loads import VECTORS, Entry, Loads, Piece
 from taylor_verify.scenes.loads.states import Held, State
 from taylor_verify.scenes.loads.steps import Step
-from taylor_verify.solvers.process.exact_text import exact_text
+from taylor_verify.solvers.process.exact_text import exact_number, exact_text
 
 
 def written_loads(problem: Problem) -> dict[str, Any]:
     """Return the texts of a problem's loads, the names that they read, and the steps of each piece."""
     loads = problem.given.body.loads
     assert loads is not None
-    bits = Rung(problem.rung.name, problem.rung.bits)
+    rung = problem.rung
     return {
         "text": {name: [_text(entry) for entry in entries] for name, entries in loads.vectors},
         "define": {name: _text(entry) for name, entry in loads.definitions},
         "space": {name: [_text(entry) for entry in entries] for name, entries in loads.space},
-        **({"current": [_number(v, bits) for v in loads.current]} if any(loads.current) else {}),
+        **(
+            {"current": [exact_number(v, rung) for v in loads.current]}
+            if any(loads.current)
+            else {}
+        ),
         "inputs": sorted(loads.inputs),
-        "pieces": [_piece(piece, loads, bits) for piece in _pieces(loads)],
+        "pieces": [_piece(piece, loads, rung) for piece in _pieces(loads)],
     }
 
 
@@ -44,10 +48,10 @@ def states(problem: Problem) -> dict[str, Any]:
     loads = problem.given.body.loads
     if loads is None or not loads.states:
         return {}
-    bits = Rung(problem.rung.name, problem.rung.bits)
-    listed = [entry for state in loads.states for entry in _components(state, bits)]
+    rung = problem.rung
+    listed = [entry for state in loads.states for entry in _components(state, rung)]
     instants = [
-        [_number(instant.time, bits), [loads.held_values[place] for place in instant.places]]
+        [exact_number(instant.time, rung), [loads.held_values[place] for place in instant.places]]
         for instant in problem.takings
     ]
     return {"states": listed, **({"instants": instants} if instants else {})}
@@ -55,16 +59,12 @@ def states(problem: Problem) -> dict[str, Any]:
 
 def _components(state: State, rung: Rung) -> Iterator[dict[str, Any]]:
     for k, (name, entry) in enumerate(zip(state.components, state.entries, strict=True)):
-        start = None if state.start is None else _number(state.start[k], rung)
+        start = None if state.start is None else exact_number(state.start[k], rung)
         if isinstance(state, Held):
             times = {"every": exact_text(state.every), "offset": exact_text(state.offset)}
             yield {"name": name, "start": start, **times, "value": _text(entry)}
         else:
             yield {"name": name, "start": start, "rate": _text(entry)}
-
-
-def _number(value: Fraction, rung: Rung) -> dict[str, str]:
-    return {"text": exact_text(value), "hex": hexadecimal(rung.round(value))}
 
 
 def _pieces(loads: Loads) -> Iterator[Piece]:
@@ -97,7 +97,7 @@ def _step(step: Step, rung: Rung) -> list[Any]:
     if step.operation == "input":
         listed.append(step.name)
     if step.number is not None:
-        listed += [exact_text(step.number), hexadecimal(rung.round(step.number))]
+        listed += exact_number(step.number, rung).values()
     return listed
 
 

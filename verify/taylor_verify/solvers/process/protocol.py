@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -25,10 +25,10 @@ from typing import Any, Final
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
-from taylor_verify.numbers.precision import Rung, double_text, hexadecimal
+from taylor_verify.numbers.precision import double_text
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.named_numbers import Value
-from taylor_verify.solvers.process.exact_text import exact_text
+from taylor_verify.solvers.process.exact_text import exact_number
 from taylor_verify.solvers.process.loads import states, written_loads
 from taylor_verify.solvers.values import exact, named_once
 
@@ -116,16 +116,8 @@ def _data(problem: Problem) -> dict[str, Any]:
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
     numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
-    # Rounded to the rung's bits, whatever the exponent: the scene's own units may be far from one.
-    bits = Rung(rung.name, rung.bits)
     return {
-        table: {
-            key: {
-                "text": _mapped(exact_text, value),
-                "hex": _mapped(lambda number: hexadecimal(bits.round(number)), value),
-            }
-            for key, value in entries.items()
-        }
+        table: {key: exact_number(value, rung) for key, value in entries.items()}
         for table, entries in numbers.items()
     }
 
@@ -134,12 +126,6 @@ def _merged(parts: Mapping[str, Value], derived: Mapping[str, Value]) -> dict[st
     """Return the parts, and behind the first of them what follows from it."""
     first = next(iter(parts))
     return {first: parts[first], **derived, **parts}
-
-
-def _mapped(write: Callable[[Fraction], str], value: Any) -> Any:
-    if isinstance(value, Fraction):
-        return write(value)
-    return [_mapped(write, entry) for entry in value]
 
 
 # The answer.

@@ -18,7 +18,6 @@ from taylor_verify.solvers.files.columns.column_units import Unit, in_brackets
 from taylor_verify.solvers.files.columns.forms import FORMS, SEQUENCES
 from taylor_verify.solvers.files.columns.names import COMPONENTS, GROUPS, KNOWN
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.formats.column import Column
 
 # Pairs of a name of ours and a name of the file's.
 Request = Sequence[tuple[str, str]]
@@ -148,7 +147,7 @@ def _of_stem(
     group: str, theirs: str, names: Sequence[Name], at: str, faults: Faults
 ) -> list[tuple[str, str]]:
     """Return the columns of a whole group, whose names begin with one word."""
-    stem = _key(theirs)
+    stem = Name.of(theirs).key
     by_key = {name.key: name.text for name in names}
     sets = [
         [by_key[stem + c] for c in components]
@@ -165,13 +164,9 @@ def _of_stem(
     return []
 
 
-def _key(text: str) -> str:
-    return Name(Column(text, ())).key
-
-
 def _near(text: str, names: Sequence[Name]) -> str:
     """Return a phrase on the names of the file that are most like this one."""
     by_key = {name.key or name.text: name.text for name in names}
-    close = difflib.get_close_matches(_key(text), by_key, n=_MOST_NEAR, cutoff=0.5)
+    close = difflib.get_close_matches(Name.of(text).key, by_key, n=_MOST_NEAR, cutoff=0.5)
     shown = ", ".join(f"`{cut(by_key[key])}`" for key in close or list(by_key)[:8])
     return f"near it: {shown}" if close else f"it has {shown}"

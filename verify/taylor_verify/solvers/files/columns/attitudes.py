@@ -14,6 +14,7 @@ import numpy as np
 
 from taylor_verify.models.algebra import apply, transpose
 from taylor_verify.models.frame import rotation
+from taylor_verify.numbers.rotation import conjugate
 from taylor_verify.records.faults import Faults
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import evenly
@@ -93,7 +94,7 @@ def _descriptions(choice: Choice, rows: Rows) -> Iterator[_Description]:
         yield _Description(choice, rows, "first")
         yield _Description(choice, MadeRows([rows], _scalar_first, 4), "last")
     elif choice.spelling.turn is Turn.TO_BODY:
-        make = _transposed if choice.group == "attitude" else _conjugate
+        make = _transposed if choice.group == "attitude" else conjugate
         yield _Description(choice, MadeRows([rows], make, rows.width))
     else:
         yield _Description(choice, rows)
@@ -149,10 +150,6 @@ def _apart(left: Floats, right: Floats) -> float:
 
 def _scalar_first(row: Numbers) -> Numbers:
     return (row[3], *row[:3])
-
-
-def _conjugate(row: Numbers) -> Numbers:
-    return (row[0], *(-part for part in row[1:]))
 
 
 def _transposed(row: Numbers) -> Numbers:

@@ -83,12 +83,10 @@ class Choice:
     @property
     def _remark(self) -> str:
         """The remark on the names; the scalar of a quaternion stands where the manual says so."""
-        is_of_manual = self.group == "quaternion" and (
-            self.spelling.whose or self.rank is Rank.ASKED
-        )
-        return (
-            f"{shown_names(self.names[:1])} is the scalar" if is_of_manual else self.spelling.remark
-        )
+        is_of_manual = self.spelling.whose or self.rank is Rank.ASKED
+        if self.group == "quaternion" and is_of_manual:
+            return f"{shown_names(self.names[:1])} is the scalar"
+        return self.spelling.remark
 
 
 def shown_names(names: Sequence[Name]) -> str:
@@ -182,11 +180,10 @@ class Candidates:
             if len(hits) > 1:
                 doubt = doubt or f"{shown_names([name for name, _ in hits])} are alike"
             names.append(hits[0][0])
+            units.append(hits[0][1])
             # The clock of a file has its unit in its name.
-            stated = (
-                in_brackets(spelling.unit, spelling.group) if spelling.group != "time" else None
-            )
-            units.append(stated if stated and hits[0][1] is OWN else hits[0][1])
+            if hits[0][1] is OWN and spelling.group != "time":
+                units[-1] = in_brackets(spelling.unit, spelling.group) or OWN
         is_own = all(name.is_ours for name in names) and spelling.keys == ours
         if not is_own and self.numbered_beside(spelling.keys):
             return None

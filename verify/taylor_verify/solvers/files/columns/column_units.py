@@ -20,7 +20,7 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.records.quantities import GROUPS
 from taylor_verify.scenes.stand_in import STAND_IN_BITS
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.programs import entries_of
+from taylor_verify.solvers.files.columns.programs import entries_of, letters
 
 
 @dataclass(frozen=True)
@@ -72,11 +72,6 @@ def plain(text: str) -> str:
 
 def _key(text: str) -> str:
     return re.sub(r"\s+", "", plain(text))
-
-
-def letters(text: str) -> str:
-    """Return the small letters and the digits of a text."""
-    return re.sub(r"[^a-z0-9]", "", text)
 
 
 _IN_BRACKETS: Final[Mapping[str, Mapping[str, Unit]]] = {

@@ -14,7 +14,6 @@ from typing import Final
 from taylor_verify.solvers.files.columns.spelling import Frame, Spelling, Turn
 
 _OF_PROGRAMS: Final = ("program", "group", "names", "beside", "unit", "frame", "turn", "source")
-_USUAL: Final = ("group", "names", "frame", "turn")
 
 
 def entries() -> Iterator[dict[str, str]]:
@@ -24,7 +23,7 @@ def entries() -> Iterator[dict[str, str]]:
 
 def usual() -> Iterator[dict[str, str]]:
     """Yield the entries of usual names, each stem by itself."""
-    for entry in entries_of("usual.txt", _USUAL):
+    for entry in entries_of("usual.txt", ("group", "names", "frame", "turn")):
         names = entry["names"]
         for each in names.split() if "*" in names else [names]:
             yield entry | {"names": each}
@@ -43,11 +42,11 @@ def spellings_of(entry: Mapping[str, str], remark: str = "") -> Iterator[Spellin
     for names in _written_out(entry["names"].split(), entry["group"]):
         yield Spelling(
             group=entry["group"],
-            keys=tuple(map(_letters, names)),
+            keys=tuple(map(letters, names)),
             remark="" if entry["turn"] else remark,
             whose=entry.get("program", ""),
             is_behind=names[0].startswith("_"),
-            signs=tuple(tuple(map(_letters, signs)) for signs in together),
+            signs=tuple(tuple(map(letters, signs)) for signs in together),
             unit=entry.get("unit", ""),
             frame=Frame[entry["frame"].upper() or "UNSAID"],
             turn=Turn(entry["turn"]),
@@ -66,5 +65,6 @@ def _written_out(names: Sequence[str], group: str) -> Iterator[Sequence[str]]:
         ]
 
 
-def _letters(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.lower())
+def letters(text: str) -> str:
+    """Return the letters and the digits of a text, the letters small."""
+    return re.sub(r"[^a-z0-9]", "", text.lower())

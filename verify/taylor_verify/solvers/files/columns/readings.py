@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.column_units import (
@@ -17,10 +17,10 @@ from taylor_verify.solvers.files.columns.column_units import (
     Unit,
     as_suffix,
     in_brackets,
-    letters,
     plain,
 )
 from taylor_verify.solvers.files.columns.names import GROUP_OF, PLACES
+from taylor_verify.solvers.files.columns.programs import letters
 from taylor_verify.solvers.files.columns.spelling import Frame, Spelling
 from taylor_verify.solvers.files.formats.column import Column
 
@@ -76,6 +76,11 @@ class Name:
 
     column: Column
 
+    @classmethod
+    def of(cls, text: str) -> Name:
+        """Return a name without a column."""
+        return cls(Column(text, ()))
+
     @cached_property
     def text(self) -> str:
         return self.column.name.strip()
@@ -124,6 +129,11 @@ class Name:
     def is_known(self) -> bool:
         """True for a name that needs no sign of a program beside it."""
         return any(not reading.spelling.signs for reading in self.readings)
+
+    @property
+    def is_time(self) -> bool:
+        """True for a name that a time may have."""
+        return any(reading.spelling.group == "time" for reading in self.readings)
 
     @cached_property
     def readings(self) -> tuple[Reading, ...]:
@@ -182,13 +192,9 @@ class Name:
 
 
 def _places(name: str, path: str) -> Iterator[tuple[Spelling, int]]:
-    key = letters(name)
+    key, is_possible = letters(name), _is_behind if path.endswith("_") else _is_after
     for spelling, component in PLACES.get(key, ()):
-        if (
-            _is_behind(spelling, key, path)
-            if path.endswith("_")
-            else _is_after(spelling, key, path)
-        ):
+        if is_possible(spelling, key, path):
             yield spelling, component
 
 
@@ -212,18 +218,13 @@ def _is_behind(spelling: Spelling, key: str, path: str) -> bool:
     return is_state and _NO_STATE.isdisjoint(re.split(r"[^a-z]+", path))
 
 
-@cache
-def _known_relative(spelling: Spelling, frame: Frame) -> Spelling:
-    return replace(spelling, frame=frame)
-
-
 def _relative(spelling: Spelling, words: Sequence[str]) -> Spelling:
     """Return a spelling with the frame that words beside it say, where it has none of its own."""
     known = _FRAMES if spelling.group in _VELOCITIES else {**_FRAMES, **_FRAMES_OR_AXES}
     frames = [known[word] for word in words if word in known]
     if not frames or spelling.group == "time" or spelling.frame is not Frame.UNSAID:
         return spelling
-    return _known_relative(spelling, frames[0])
+    return replace(spelling, frame=frames[0])
 
 
 def _tails(name: str) -> Iterator[tuple[str, str]]:

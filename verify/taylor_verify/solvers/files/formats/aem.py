@@ -16,8 +16,9 @@ from math import nan
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.models.algebra import apply, dot, transpose
-from taylor_verify.models.frame import attitude_rate, rotation
+from taylor_verify.models.algebra import apply, transpose
+from taylor_verify.models.frame import rotation
+from taylor_verify.numbers.rotation import conjugate, product
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.column_units import DEGREE
 from taylor_verify.solvers.files.columns.forms import FORMS
@@ -274,15 +275,15 @@ def _columns(rows: Sequence[Row]) -> list[Column]:
 
 
 def _of_quaternion(q: Row, derivative: Row, reverse: bool) -> Row:
-    """Return w of q' = q (0, w) / 2, body to space: q' is linear in w, with columns |q|/2 long."""
+    """Return w of q' = q (0, w) / 2, body to space."""
     signs = (1, *[-1 if reverse else 1] * 3)
     ours, dots = (
         [sign * row[i] for sign, i in zip(signs, _SCALAR_FIRST, strict=True)]
         for row in (q, derivative)
     )
     square = sum(entry * entry for entry in q)
-    columns = (attitude_rate(ours, unit) for unit in _UNIT_VECTORS)
-    return [4 * dot(column, dots) / square if square else nan for column in columns]
+    turning = product(conjugate(ours), dots)[1:]
+    return [2 * part / square if square else nan for part in turning]
 
 
 def _of_angles(axes: str, angles: Row, rates: Row) -> Row:

@@ -40,7 +40,7 @@ class Array(NamedTuple):
 
     @property
     def is_time(self) -> bool:
-        readings = Name(Column(self.name.rpartition(".")[2], ())).readings
+        readings = Name.of(self.name.rpartition(".")[2]).readings
         return any(reading.spelling.group == "time" and not reading.path for reading in readings)
 
     @property
@@ -85,7 +85,7 @@ def _of_signals(arrays: list[Array], place: object) -> list[Array]:
     Their times are read once, if they are equal.
     """
     structs = [a.name.removesuffix(_SIGNALS) for a in arrays if a.name.endswith(_SIGNALS)]
-    if len(structs) == 1 and not Name(Column(f"{structs[0]}[0]", ())).readings:
+    if len(structs) == 1 and not Name.of(f"{structs[0]}[0]").readings:
         return arrays
     names = {f"{name}.time" for name in structs}
     clocks = [array for array in arrays if array.name in names and array.kind in _NUMBERS]
@@ -173,7 +173,7 @@ def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
     for array in read:
         width = prod(array.shape) // max(rows, 1)
         names = [f"{array.name}[{k}]" for k in range(width)]
-        if len(array.shape) == 2 and 1 < width and not Name(Column(names[0], ())).is_known:
+        if len(array.shape) == 2 and 1 < width and not Name.of(names[0]).is_known:
             example = ",".join(f"w{k}={name}" for k, name in enumerate(names[:2], start=1))
             shown = ", ".join(names[:_MOST_OF_MATRIX])
             more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""

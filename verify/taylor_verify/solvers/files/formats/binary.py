@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 import zipfile
 import zlib
+from collections.abc import Callable
+from functools import partial
 from io import BytesIO
 from itertools import islice
 from math import prod
@@ -66,28 +68,16 @@ class _Header(NamedTuple):
     length: int
     stored: int
 
+    def array(self, data: Callable[[], bytes]) -> Array:
+        """Return the array whose header this is; its ``data`` is not read yet."""
+        kind, size = self.dtype.kind, self.dtype.itemsize
+        return Array(self.name, self.shape, kind, size, lambda: self.values(data()))
+
     def values(self, data: bytes) -> np.ndarray[Any, Any]:
         if len(data) != self.length + self.stored:
             raise ValueError(f"{self.name} ends early")
         values: np.ndarray[Any, Any] = np.frombuffer(data, self.dtype, offset=self.length)
         return values.reshape(self.shape, order=self.order)
-
-
-class _Member(NamedTuple):
-    """An array of an archive that is not read yet."""
-
-    info: zipfile.ZipInfo
-    header: _Header
-
-    def array(self, archive: zipfile.ZipFile) -> Array:
-        header = self.header
-        return Array(
-            header.name,
-            header.shape,
-            header.dtype.kind,
-            header.dtype.itemsize,
-            lambda: header.values(archive.read(self.info)),
-        )
 
 
 def read(file: Content, path: Path, part: str) -> Table:
@@ -98,17 +88,11 @@ def read(file: Content, path: Path, part: str) -> Table:
     with unbroken("an NPZ archive", path, _BROKEN):
         _check_entries(file, path)
         with zipfile.ZipFile(file.binary) as archive:
-            members = [_member(archive, info, path) for info in archive.infolist()]
-            _check([member.header for member in members], path)
-            return table([member.array(archive) for member in members], "", path)
-
-
-def _checked_method(info: zipfile.ZipInfo, path: Path) -> zipfile.ZipInfo:
-    """Refuse other methods than those of NumPy: zipfile unpacks them whole, whatever a member claims."""
-    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        place = f"{path}, member {cut(info.filename)}"
-        raise refusal("a member that is stored or deflated", f"method {info.compress_type}", place)
-    return info
+            members = archive.infolist()
+            headers = [_header_of(archive, info, path) for info in members]
+            _check(headers, path)
+            data = (partial(archive.read, info) for info in members)
+            return table(map(_Header.array, headers, data), "", path)
 
 
 def _check_entries(file: Content, path: Path) -> None:
@@ -119,11 +103,17 @@ def _check_entries(file: Content, path: Path) -> None:
         raise COLUMNS.refusal("more", path)
 
 
-def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Member:
-    """Return a member with what its header says of it."""
-    with archive.open(_checked_method(info, path)) as stream:
+def _header_of(archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path) -> _Header:
+    """Return the header of a member; refuse a method that NumPy does not use.
+
+    zipfile unpacks those whole, whatever a member claims.
+    """
+    if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        place = f"{path}, member {cut(info.filename)}"
+        raise refusal("a member that is stored or deflated", f"method {info.compress_type}", place)
+    with archive.open(info) as stream:
         start = stream.read(_LONGEST_HEADER)
-    return _Member(info, _header(start, info.filename.removesuffix(".npy"), info.file_size, path))
+    return _header(start, info.filename.removesuffix(".npy"), info.file_size, path)
 
 
 def _header(start: bytes, name: str, size: int, path: Path) -> _Header:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from io import TextIOWrapper
 from pathlib import Path
 from typing import BinaryIO, Final, final
@@ -78,7 +78,8 @@ class Content:
         """
         self._text.seek(0)
         try:
-            for number, line in enumerate(self._limited(longest), start=1):
+            limited = iter(partial(self._text.readline, longest.most + 1), "")
+            for number, line in enumerate(limited, start=1):
                 if len(line) > longest.most:
                     raise longest.refusal("more", f"{self.path}, line {number}")
                 if "\0" in line:
@@ -88,10 +89,6 @@ class Content:
                 yield line
         except UnicodeDecodeError:
             raise no_utf8(self.beginning(2), self.path) from None
-
-    def _limited(self, longest: Limit) -> Iterator[str]:
-        while line := self._text.readline(longest.most + 1):
-            yield line
 
     @cached_property
     def _text(self) -> TextIOWrapper:

@@ -31,6 +31,7 @@ from taylor_verify.solvers.files.formats.header import (
     head,
     is_comment,
     is_rule,
+    rows,
 )
 
 _ROWS_AT_ONCE: Final = 1000
@@ -40,8 +41,8 @@ _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
 def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; # and % begin a comment line. The rows are counted before any is kept."""
     refuse_part(part, path)
-    rows = (text for text in file.lines() if text.strip() and not is_comment(text))
-    for count, _ in enumerate(rows):
+    texts = (text for text in file.lines() if text.strip() and not is_comment(text))
+    for count, _ in enumerate(texts):
         if count > ROWS.most:
             raise ROWS.refusal("more", path)
     return table(file, path, first=1)
@@ -88,7 +89,7 @@ class _Rows:
         self._file, self._top, self.number = file, top, 0
 
     def __iter__(self) -> Iterator[list[str]]:
-        return self._top.rows(self._texts())
+        return rows(self._texts(), self._top.mark)
 
     def _texts(self) -> Iterator[str]:
         for line in _lines(self._file, self._top.first):
@@ -99,13 +100,13 @@ class _Rows:
 
 def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]]:
     """Return the names of the columns, a number where there is none, and the texts of each."""
-    rows = _Rows(file, top)
-    width = len(top.names) or len(next(iter(rows)))
+    lines = _Rows(file, top)
+    width = len(top.names) or len(next(iter(lines)))
     faults, count, parts = Faults(), 0, list[Any]()
     with alike(faults, f"{path}, more lines") as ragged:
 
         def sound() -> Iterator[list[str]]:
-            for row in rows:
+            for row in lines:
                 if not any(row) or not any(map(str.strip, row)):
                     # Spreadsheets end in rows of nothing.
                     continue
@@ -115,7 +116,7 @@ def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]
                     yield row
                 else:
                     of = "in the header" if top.names else "in the first row"
-                    place = f"{path}, line {rows.number}"
+                    place = f"{path}, line {lines.number}"
                     ragged(f"{width} values as {of}", str(len(row)), place)
 
         whole = sound()

@@ -115,7 +115,7 @@ def _fill(values: list[Any], name: str, of_rows: Sequence[Shape], shapes: Iterab
 
 @lru_cache
 def _is_time(name: str) -> bool:
-    return any(reading.spelling.group == "time" for reading in Name(Column(name, ())).readings)
+    return Name.of(name).is_time
 
 
 @lru_cache(4096)

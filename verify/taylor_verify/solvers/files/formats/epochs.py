@@ -17,7 +17,7 @@ from typing import Final
 _DAY: Final = 86400
 _OF_DAY: Final = r"(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:[.,]\d{0,40})?)"
 _EPOCH: Final = re.compile(rf"(?P<date>\d{{4}}-(?:\d{{2}}-\d{{2}}|\d{{3}}))T{_OF_DAY}Z?", re.ASCII)
-_ZONE: Final = r"\s*(?:Z|UTC|(?P<offset>[+-]\d{2}:?\d{2}))?"
+_ZONE: Final = r"\s*(?:Z|UTC|(?P<sign>[+-])(?P<hours>\d{2}):?(?P<minutes>\d{2}))?"
 _DATE: Final = r"\d{4}[-/](?:\d{1,2}[-/]\d{1,2}|\d{3})|\d{1,2} [A-Za-z]{3} \d{4}"
 _IN_A_LOG: Final = re.compile(rf"(?:(?P<date>{_DATE})(?:T|\s+))?{_OF_DAY}{_ZONE}", re.ASCII)
 _MONTHS: Final = "jan feb mar apr may jun jul aug sep oct nov dec"
@@ -60,14 +60,9 @@ def seconds_in_log(text: str) -> Fraction:
     match = _IN_A_LOG.fullmatch(text.strip())
     if match is None:
         raise ValueError("a time like 2024-01-31T12:00:00.5Z, as in the first row")
-    sign, hours, minutes = (match["offset"] or "+0000")[0], *_two(match["offset"])
-    ahead = (hours * 60 + minutes) * 60
-    return _seconds(match, is_utc=match["date"] is not None) - (-ahead if sign == "-" else ahead)
-
-
-def _two(offset: str | None) -> tuple[int, int]:
-    digits = (offset or "+0000")[1:].replace(":", "")
-    return int(digits[:2]), int(digits[2:])
+    ahead = int(match["hours"] or 0) * 3600 + int(match["minutes"] or 0) * 60
+    since = _seconds(match, is_utc=match["date"] is not None)
+    return since + ahead if match["sign"] == "-" else since - ahead
 
 
 def _seconds(match: re.Match[str], is_utc: bool) -> Fraction:

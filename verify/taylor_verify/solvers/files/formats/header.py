@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.column_units import DIMENSION, in_brackets
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.formats.column import COLUMNS, Column
+from taylor_verify.solvers.files.formats.column import COLUMNS
 from taylor_verify.solvers.files.formats.epochs import is_epoch
 from taylor_verify.solvers.values import is_number
 
@@ -66,12 +66,9 @@ class Head:
     first: int
     notes: tuple[str, ...] = ()
 
-    def rows(self, lines: Iterable[str]) -> Iterator[list[str]]:
-        """Yield the cells of each line."""
-        return _rows(lines, self.mark)
 
-
-def _rows(lines: Iterable[str], mark: str) -> Iterator[list[str]]:
+def rows(lines: Iterable[str], mark: str) -> Iterator[list[str]]:
+    """Yield the cells of each line."""
     if mark == _BLANKS:
         return (_apart_by_blanks(line) for line in lines)
     if mark == "|":
@@ -86,7 +83,7 @@ def _apart_by_blanks(line: str) -> list[str]:
 
 
 def _cells(text: str, mark: str) -> list[str]:
-    return [cell.strip() for cell in next(iter(_rows([text.rstrip("\r\n")], mark)), [])]
+    return [cell.strip() for cell in next(iter(rows([text.rstrip("\r\n")], mark)), [])]
 
 
 def is_value(cell: str) -> bool:
@@ -106,20 +103,20 @@ def is_comment(text: str) -> bool:
 
 def head(lines: Sequence[Line], marks: Sequence[str] = MARKS) -> Head | None:
     """Return the head of a table whose first lines these are; None where there is no line at all."""
-    rows = [line for line in lines if not line.is_comment and not is_rule(line.text)]
-    if not rows:
+    shown = [line for line in lines if not line.is_comment and not is_rule(line.text)]
+    if not shown:
         return None
-    first = _first_of_numbers(rows, marks)
+    first = _first_of_numbers(shown, marks)
     if first is None:
         # Nothing but the first line can be the header; faults are found below it.
-        mark = next((mark for mark in marks if mark in rows[0].text), _BLANKS)
-        return Head(tuple(_cells(rows[0].text, mark)), mark, rows[0].number + 1)
+        mark = next((mark for mark in marks if mark in shown[0].text), _BLANKS)
+        return Head(tuple(_cells(shown[0].text, mark)), mark, shown[0].number + 1)
     return _above(first, lines, _mark(first.text, marks) or _BLANKS)
 
 
-def _first_of_numbers(rows: Sequence[Line], marks: Sequence[str]) -> Line | None:
+def _first_of_numbers(lines: Sequence[Line], marks: Sequence[str]) -> Line | None:
     """Return the first line of numbers that the line below resembles."""
-    for line, below in pairwise((*rows, None)):
+    for line, below in pairwise((*lines, None)):
         if line is None or (mark := _mark(line.text, marks)) is None:
             continue
         width = len(_cells(line.text, mark))
@@ -145,30 +142,23 @@ def _share(cells: Sequence[str]) -> float:
 # The header.
 
 
-class _Names(NamedTuple):
-    """A line that may be the header: its names, and how many of them are known."""
-
-    line: Line
-    cells: list[str]
-    known: int
-
-
 def _above(first: Line, lines: Sequence[Line], mark: str) -> Head:
     row = _cells(first.text, mark)
     above = [line for line in lines if line.number < first.number and not is_rule(line.text)]
-    candidates = [names for line in above if (names := _names(line, mark, row))]
+    candidates = [(line, names) for line in above if (names := _names(line, mark, row))]
     if not candidates and (plain := [line for line in above if not line.is_comment]):
         # As many names as there are, so that lines of another length are the fault.
         return Head(tuple(_cells(plain[-1].text, mark)), mark, plain[-1].number + 1)
     if not candidates:
         return Head((), mark, first.number)
     # Of lines alike the first that is no comment, or the comment that is nearest to the numbers.
-    lines_alike = [c for c in candidates if c.known == max(one.known for one in candidates)]
-    chosen = next((c for c in lines_alike if not c.line.is_comment), lines_alike[-1])
-    notes = [*_passed([line for line in above if line.number < chosen.line.number])]
-    if chosen.line.is_comment:
-        notes.append(f"the columns are named in line {chosen.line.number}, a comment")
-    cells, begin = chosen.cells, chosen.line.number + 1
+    best = max(_known(names) for _, names in candidates)
+    alike = [(line, names) for line, names in candidates if _known(names) == best]
+    chosen, cells = next((c for c in alike if not c[0].is_comment), alike[-1])
+    notes = [*_passed([line for line in above if line.number < chosen.number])]
+    if chosen.is_comment:
+        notes.append(f"the columns are named in line {chosen.number}, a comment")
+    begin = chosen.number + 1
     below = [line for line in above if line.number >= begin]
     if units := next((u for line in below[:1] if (u := _units(line, mark, len(cells)))), None):
         cells = [_with_unit(*pair) for pair in zip(cells, units, strict=True)]
@@ -180,23 +170,19 @@ def _above(first: Line, lines: Sequence[Line], mark: str) -> Head:
 def _passed(lines: Sequence[Line]) -> Iterator[str]:
     """Yield a sentence about the lines above the header that are no comments."""
     numbers = [line.number for line in lines if not line.is_comment]
-    if numbers:
-        where = (
-            f"line {numbers[0]}" if len(numbers) == 1 else f"lines {numbers[0]} to {numbers[-1]}"
-        )
-        yield f"{where} above the table not read"
+    if len(numbers) == 1:
+        yield f"line {numbers[0]} above the table not read"
+    elif numbers:
+        yield f"lines {numbers[0]} to {numbers[-1]} above the table not read"
 
 
-def _names(line: Line, mark: str, row: Sequence[str]) -> _Names | None:
-    """Return the names in a line, if there are as many as cells in a row of numbers."""
+def _names(line: Line, mark: str, row: Sequence[str]) -> list[str]:
+    """Return the names in a line, if there are as many as cells in a row of numbers; else none."""
     readings = [_fitting(cells, row) for cells in _ways(line.bare, mark)]
     named = [cells for cells in readings if cells and not any(map(is_value, cells))]
     if line.is_comment:
         named = [cells for cells in named if len(set(cells)) == len(cells)]
-    if not named:
-        return None
-    cells = max(named, key=_known)
-    return _Names(line, cells, _known(cells))
+    return max(named, key=_known, default=[])
 
 
 def _ways(text: str, mark: str) -> Iterator[list[str]]:
@@ -225,7 +211,7 @@ def _known(names: Sequence[str]) -> int:
 
 @lru_cache(4096)
 def _is_known(name: str) -> bool:
-    return bool(Name(Column(name, ())).readings)
+    return bool(Name.of(name).readings)
 
 
 # Units.

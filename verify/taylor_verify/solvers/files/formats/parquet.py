@@ -10,6 +10,10 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+import pyarrow as pa
+import pyarrow.compute as pc
+from pyarrow import parquet, types
+
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.formats.column import (
     BYTES,
@@ -28,15 +32,18 @@ from taylor_verify.solvers.files.formats.missing_library import unbroken
 _WIDEST: Final = 64
 _ROWS_AT_ONCE: Final = 256
 _TEXT_BYTES: Final = 2**24
+_LISTS: Final = (types.is_list, types.is_large_list, types.is_fixed_size_list)
+_NUMBERS: Final = (
+    *(types.is_integer, types.is_floating, types.is_decimal, types.is_boolean),
+    types.is_timestamp,
+)
+_BROKEN: Final = (pa.ArrowException, OSError, ValueError)
 
 
 def read(file: Content, path: Path, part: str) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
     refuse_part(part, path)
-    from pyarrow import ArrowException, parquet
-
-    broken = (ArrowException, OSError, ValueError)
-    with unbroken("a Parquet file", path, broken), bounded_memory(path):
+    with unbroken("a Parquet file", path, _BROKEN), bounded_memory(path):
         footer = parquet.ParquetFile(file.binary)
         names, texts, left = _checked(footer, path)
         long = _long_texts(footer, texts)
@@ -55,8 +62,6 @@ def read(file: Content, path: Path, part: str) -> Table:
 
 def _in_parts(reader: Any, names: Sequence[str], path: Path) -> Any:
     """Return the table; one with lists is read in parts, because nothing says how long its lists are."""
-    import pyarrow as pa
-
     parts, count = [], 0
     has_lists = any(_is_list(field.type) for field in reader.schema_arrow)
     options = {"columns": names, "use_threads": False}
@@ -72,27 +77,17 @@ def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
 
     The file is refused if it is too large.
     """
-    import pyarrow as pa
-
     metadata = footer.metadata
     check_size(metadata.num_columns, metadata.num_rows, path)
     groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
     BYTES.check(sum(group.total_byte_size for group in groups), path)
-    is_a = pa.types
-    numbers = (
-        is_a.is_integer,
-        is_a.is_floating,
-        is_a.is_decimal,
-        is_a.is_boolean,
-        is_a.is_timestamp,
-    )
     names, texts, left = list[str](), list[str](), list[str]()
     for field in _flat(footer.schema_arrow.empty_table()).schema:
-        has_inner = _is_list(field.type) or is_a.is_dictionary(field.type)
+        has_inner = _is_list(field.type) or types.is_dictionary(field.type)
         kind = field.type.value_type if has_inner else field.type
-        if is_a.is_string(kind) or is_a.is_large_string(kind):
+        if types.is_string(kind) or types.is_large_string(kind):
             texts.append(field.name)
-        elif not any(is_such(kind) for is_such in numbers):
+        elif not any(is_such(kind) for is_such in _NUMBERS):
             left.append(field.name)
             continue
         names.append(field.name)
@@ -100,12 +95,7 @@ def _checked(footer: Any, path: Path) -> tuple[list[str], list[str], list[str]]:
 
 
 def _is_list(kind: Any) -> bool:
-    import pyarrow as pa
-
-    return any(
-        is_such(kind)
-        for is_such in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
-    )
+    return any(is_such(kind) for is_such in _LISTS)
 
 
 def _long_texts(footer: Any, texts: Sequence[str]) -> Sequence[str]:
@@ -122,11 +112,9 @@ def _long_texts(footer: Any, texts: Sequence[str]) -> Sequence[str]:
 
 def _values(column: Any) -> Any:
     """Return the entries: binary numbers as NumPy has them, and each text of a dictionary once."""
-    import pyarrow as pa
-
-    if pa.types.is_dictionary(column.type):
+    if types.is_dictionary(column.type):
         return [entry for chunk in column.chunks for entry in _texts(chunk)]
-    is_binary = pa.types.is_integer(column.type) or pa.types.is_float64(column.type)
+    is_binary = types.is_integer(column.type) or types.is_float64(column.type)
     return column.to_numpy() if is_binary and not column.null_count else column.to_pylist()
 
 
@@ -137,18 +125,13 @@ def _texts(chunk: Any) -> Iterator[Any]:
 
 def _flat(table: Any) -> Any:
     """Return a table with a column for each field of a struct, named with a dot between."""
-    import pyarrow as pa
-
-    while any(pa.types.is_struct(field.type) for field in table.schema):
+    while any(types.is_struct(field.type) for field in table.schema):
         table = table.flatten()
     return table
 
 
 def _without_lists(table: Any, path: Path) -> Any:
     """Return a table with a column for each place in a list, numbered from 0."""
-    import pyarrow as pa
-    import pyarrow.compute as pc
-
     columns: dict[str, Any] = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         if not _is_list(column.type):
@@ -166,11 +149,8 @@ def _without_lists(table: Any, path: Path) -> Any:
 
 def _seconds(table: Any) -> Any:
     """Return a table whose times of a calendar are text."""
-    import pyarrow as pa
-    import pyarrow.compute as pc
-
     for i, field in enumerate(table.schema):
-        if pa.types.is_timestamp(field.type):
+        if types.is_timestamp(field.type):
             texts = pc.strftime(table.column(i), format="%Y-%m-%dT%H:%M:%SZ")
             table = table.set_column(i, field.name, texts)
     return table
@@ -178,8 +158,6 @@ def _seconds(table: Any) -> Any:
 
 def _check_texts(table: Any, names: Collection[str], path: Path) -> None:
     """Look at each text once, where the file holds it once: a row may repeat a long one."""
-    import pyarrow.compute as pc
-
     for i, name in enumerate(table.column_names):
         for chunk in table.column(i).chunks if name in names else ():
             longest = pc.max(pc.utf8_length(chunk.dictionary)).as_py() or 0

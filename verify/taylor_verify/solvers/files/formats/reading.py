@@ -81,10 +81,11 @@ def read_table(file: str | os.PathLike[str]) -> Table:
     no regular file of bounded size, and for a fault of its format.
     """
     path, part = parted(os.fspath(file))
-    if reader := plugged().get(path.suffix.lower()) if path.suffix not in FORMATS else None:
-        return _read_by(reader, path)
+    reader = None if path.suffix in FORMATS else plugged().get(path.suffix.lower())
     with needed(path):
-        if rosbag.is_folder(path):
+        if reader:
+            table = _read_by(reader, path)
+        elif rosbag.is_folder(path):
             table = rosbag.read_folder(path, part)
         else:
             with regular_file(path, "a trajectory file", BYTES) as opened:
@@ -110,7 +111,6 @@ def _read_by(reader: Plugin, path: Path) -> Table:
     except Exception as error:  # other people's code
         got = f"{type(error).__name__}: {error}"
         raise refusal(f"a file that {reader.package} reads", got, path) from error
-    ROWS.check(max((len(column.values) for column in columns), default=0), path)
     return Table(columns, (f"read by {reader.name} {reader.origin}",))
 
 
