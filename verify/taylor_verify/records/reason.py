@@ -36,7 +36,6 @@ class Cause(StrEnum):
     MISSING_PACKAGE = "missing package"
     TOO_FAR = "too far"
     INCOMPLETE = "incomplete"
-    STATED = "stated"
 
 
 class Carried(StrEnum):
