@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from statistics import median
-from time import thread_time
+from time import perf_counter, thread_time
 from typing import Final, NamedTuple
 
 from taylor_verify.models.problem import Problem, pose
@@ -23,17 +23,8 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.setting import Name, setting
 from taylor_verify.tradeoff.solves import WHAT_IS_TIMED
-from taylor_verify.tradeoff.timing import (
-    CONFIDENCE,
-    FORMULA,
-    LEAST_SECONDS,
-    Clock,
-    calls_to_time,
-    clock_resolution,
-    coverage,
-    in_rounds,
-    place,
-)
+from taylor_verify.tradeoff.timing import LEAST_SECONDS, Clock, calls_to_time, in_rounds
+from taylor_verify_reports.studies.tradeoff.medians import CONFIDENCE, FORMULA, coverage, place
 from taylor_verify_reports.studies.tradeoff.trades import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
@@ -136,6 +127,18 @@ def _summed(
         inner=median(inner) if len(inner) == len(rounds) else None,
         setup=first.compile_seconds,
     )
+
+
+def clock_resolution() -> float:
+    """Return the smallest observed step of the clock, in seconds."""
+
+    def step() -> float:
+        began = perf_counter()
+        while (now := perf_counter()) == began:
+            pass
+        return now - began
+
+    return min(step() for _ in range(100))
 
 
 def method(processes: int, rounds: int, seed: int) -> TimingMethod:
