@@ -26,11 +26,12 @@ from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, requ
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.streams import say
 from taylor_verify.records.replacement import replace_files
+from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.tradeoff.document import label
-from taylor_verify.tradeoff.recommendation import OutOfReach, check_target, recommended
+from taylor_verify.tradeoff.recommendation import OutOfReach, recommended
 from taylor_verify.tradeoff.setting import (
     RUNGS,
     Setting,
@@ -120,13 +121,11 @@ def _target(text: str | None) -> float | None:
     if text is None:
         return None
     try:
-        target = float(read_number(text, "--target"))
-        check_target(target)
+        return positive(float(read_number(text, "--target")), "--target")
     except (WrongCall, OverflowError, ValueError) as error:
         raise WrongCall(
             f"expected a positive error, such as 1e-9, got {text!r} @ --target"
         ) from error
-    return target
 
 
 # The text.

@@ -46,7 +46,7 @@ _MACHINE = ("processor", "command")
 _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
 
 # The seconds and the machine of each run.
-_Timed = Mapping[tuple[str, ...], tuple[float | None, Mapping[str, Any]]]
+_Timed = Mapping[tuple[str, str, str, str], tuple[float | None, Mapping[str, Any]]]
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
 # A row is for programs, and a large file has thousands of them.
