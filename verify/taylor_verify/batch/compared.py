@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
-from taylor_verify.batch.comparison import Comparison, Earlier, earlier_document, read_baseline
+from taylor_verify.batch.comparison import Comparison, Earlier
+from taylor_verify.batch.earlier_file import of_document, read_baseline
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import brief
 
@@ -43,7 +44,7 @@ def earlier(baseline: str | PathLike[str] | Mapping[str, Any] | None, gate: str)
             raise ValueError("expected a baseline with the gate baseline, got none @ baseline")
         return None
     if isinstance(baseline, Mapping):
-        return earlier_document(baseline)
+        return of_document(baseline)
     if not isinstance(baseline, str | PathLike):
         got = brief(baseline)
         raise ValueError(f"expected the path of a baseline or its document, got {got} @ baseline")

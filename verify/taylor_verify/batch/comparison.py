@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from taylor_verify.batch import earlier_file
 from taylor_verify.batch.differences import (
     Difference,
     Differences,
@@ -124,24 +121,6 @@ class Earlier:
         report = compare(before, results.verdicts)
         compared = report.compared, report.departures, (), (), before, self._notes
         return Comparison(*compared, doubted=bool(self.edited), source=self.source)
-
-
-def read_baseline(file: str | PathLike[str]) -> Earlier:
-    """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
-
-    Raises records.faults.Refused for a file that cannot be read, and ValueError for one that holds
-    something else.
-    """
-    return Earlier(fspath(file), *earlier_file.load(fspath(file)))
-
-
-def earlier_document(document: Mapping[str, Any]) -> Earlier:
-    """Return the rows of the document of `run --json`. Raises ValueError for any other."""
-    try:
-        content = json.dumps(document).encode()
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"expected a JSON document, got {error} @ baseline") from None
-    return Earlier("the baseline", *earlier_file.of_document(content, "baseline"))
 
 
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:

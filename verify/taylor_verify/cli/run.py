@@ -10,10 +10,11 @@ from typing import Final
 
 from taylor_verify.batch.chosen_scenes import select
 from taylor_verify.batch.comparison import Earlier
+from taylor_verify.batch.earlier_file import read_report
 from taylor_verify.batch.expectations import Agreement
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.lock import Occupied
-from taylor_verify.batch.report import ReportNotWritten, read_report
+from taylor_verify.batch.report import ReportNotWritten
 from taylor_verify.cli.answer import PASS, WRONG_CALL, Answer, WrongCall, graver, wrong_calls
 from taylor_verify.cli.ci import Outputs, concluded, outputs
 from taylor_verify.cli.console import PIPED_WIDTH, Cell, Page, bold, print_table
