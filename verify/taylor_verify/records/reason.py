@@ -113,20 +113,16 @@ class RoundoffFloor:
         matrix = (
             "the orbit's transition matrix" if self.carried is Carried.ORBIT else "the gradient"
         )
-        root, count = "sqrt(N)", f"sqrt({self.steps})"
+        root, count, repeated = "sqrt(N)", f"sqrt({self.steps})", ""
         if self.alike > 1:
             root, count = "sqrt(N m)", f"sqrt({self.steps} x {self.alike})"
+            repeated = _REPEATED.format(self.alike)
         return (
             f"attainable = u {root} x growth = {u} x {count} x {_figure(self.growth, 3)} = {value}"
         ), (
             "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
-            f"of its rate in magnitude, carried by {matrix}{self._additions()}"
+            f"of its rate in magnitude, carried by {matrix}{_INERTIA * self.velocities}{repeated}"
         )
-
-    def _additions(self) -> str:
-        """Return the clauses on what else is in the floor."""
-        repeated = _REPEATED.format(self.alike) if self.alike > 1 else ""
-        return f"{_INERTIA * self.velocities}{repeated}"
 
 
 # Floors that are not made of steps, or are made of other floors.
