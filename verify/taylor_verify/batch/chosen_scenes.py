@@ -80,7 +80,8 @@ def select(
     rungs = None if rungs is None else _several(rungs, "rungs")
     asked = rungs if rungs is not None else LADDER if scenes is None else ("f64",)
     on = tuple(dict.fromkeys(rung_named(rung).name for rung in asked))
-    words = [_word(scene) for scene in (names() if scenes is None else scenes)]
+    named_scenes = names() if scenes is None else scenes
+    words = [fspath(scene) if isinstance(scene, PathLike) else scene for scene in named_scenes]
     without = left_out([word for word in words if isinstance(word, str)], on)
     chosen = [one for word in words for one in (named(word) if isinstance(word, str) else [word])]
     return Selection(read_all(chosen), on, without, is_standard_set=scenes is None)
@@ -117,7 +118,3 @@ def _several(asked: Any, what: str) -> Sequence[Any]:
     if isinstance(asked, bytes) or not isinstance(asked, Iterable):
         raise ValueError(f"expected {what} or the name of one, got {brief(asked)} @ {what}")
     return [*asked]
-
-
-def _word(scene: Scene | str | PathLike[str]) -> Scene | str:
-    return fspath(scene) if isinstance(scene, PathLike) else scene

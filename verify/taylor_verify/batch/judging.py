@@ -64,7 +64,9 @@ def judge_all(
             progress(ended, len(jobs), job)
 
     report(None)
-    if len(jobs) == 1 and executor is None and not _may_end_the_process(jobs[0]):
+    # With the `os._exit(0)` of a function by its name this process would seem to pass.
+    is_named = any(isinstance(j.solver, str) and j.solver.startswith(PYTHON) for j in jobs)
+    if len(jobs) == 1 and executor is None and not is_named:
         judgements = run_job(jobs[0])
         report(jobs[0])
         return judgements
@@ -98,11 +100,6 @@ def judge_all(
             store.forget()
     rest = iter(made)
     return [each for known in stored for each in (next(rest) if known is None else known)]
-
-
-def _may_end_the_process(job: Job) -> bool:
-    """Return True for a function by its name: with its `os._exit(0)` this process would seem to pass."""
-    return isinstance(job.solver, str) and job.solver.startswith(PYTHON)
 
 
 def run_job(job: Job) -> list[Judgement]:

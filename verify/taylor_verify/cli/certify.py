@@ -28,21 +28,15 @@ def answer(options: argparse.Namespace) -> Answer:
                 scene, options.file, tolerance, interpolation=options.interpolation
             )
     messages = [certificate.because] if certificate.because else []
+    status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL
     text = partial(_text, options.file, certificate)
-    return Answer(_status(certificate), document(certificate), text, messages)
-
-
-def _status(certificate: Certificate) -> int:
-    if certificate.passed:
-        return PASS
-    return UNDECIDED if certificate.is_undecided else FAIL
+    return Answer(status, document(certificate), text, messages)
 
 
 def _text(file: str, certificate: Certificate) -> str:
     page = Page()
     page.line(bold(file), f" against {certificate.scene}")
-    for line in certificate_lines(certificate):
-        page.line(line)
+    page.lines(certificate_lines(certificate))
     return page.text()
 
 

@@ -67,6 +67,11 @@ class Page:
         lines = [one_line(part) if isinstance(part, str) else part for part in parts]
         self.console.print(Text.assemble(*lines), soft_wrap=not sys.stdout.isatty())
 
+    def lines(self, texts: Iterable[str]) -> None:
+        """Print each text in one line."""
+        for text in texts:
+            self.line(text)
+
     def indented(self, label: str, *texts: str) -> None:
         """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
         for text in texts:

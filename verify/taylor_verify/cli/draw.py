@@ -24,7 +24,6 @@ from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import ENDINGS as STILLS
 from taylor_verify.plotting.picture import Picture, content
-from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -88,12 +87,9 @@ def _pictures(
         )
     judged = {file.name: judge(file) for file in files}
     if judged and (not names or ERRORS in names):
-        drawings[ERRORS] = file_errors.picture(document, _records(judged))
+        records = {name: each.record for name, each in judged.items() if each.record}
+        drawings[ERRORS] = file_errors.picture(document, records)
     return {**drawings, **dict(_loads(document, names, judged))}
-
-
-def _records(judged: Mapping[str, FileJudgement]) -> dict[str, Record]:
-    return {name: each.record for name, each in judged.items() if each.record}
 
 
 def _loads(

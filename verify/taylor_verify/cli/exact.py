@@ -55,8 +55,7 @@ def _of_events(options: argparse.Namespace) -> Answer:
 def _text_of_events(content: Mapping[str, Any]) -> str:
     page, (first, *rest) = Page(), event_lines(content)
     page.line(bold(content["scene"]), f": {first}")
-    for line in rest:
-        page.line(line)
+    page.lines(rest)
     return page.text()
 
 

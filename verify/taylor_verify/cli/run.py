@@ -38,6 +38,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.run_many import run_many
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.words.account import cause_line, note_line
+from taylor_verify.words.cells import in_roundoffs, over_attainable
 from taylor_verify.words.opening import opening
 
 # Up to so many runs, their sentences come before the lines of the overview.
@@ -223,7 +224,7 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
-    state = max((v for v in compared if is_state(v.quantity)), key=_ratio)
+    state = max((v for v in compared if is_state(v.quantity)), key=over_attainable)
     drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
     return (
         status,
@@ -231,7 +232,7 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
         f"{_units(state):.3g}",
         f"{state.at:.6g}",
         *((drift.quantity, f"{_units(drift):.3g}") if drift else ("", "")),
-        f"{max(map(_ratio, compared)):.2g}",
+        f"{max(map(over_attainable, compared)):.2g}",
         str(state.steps or ""),
         f"{state.seconds:.3f}" if state.seconds is not None else "",
     )
@@ -239,13 +240,5 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
 
 def _units(verdict: Verdict) -> float:
     """Return the largest error in units of roundoff; NaN counts as larger than any."""
-    return _finite(verdict.max) / verdict.roundoff if verdict.roundoff else inf
-
-
-def _ratio(verdict: Verdict) -> float:
-    """Return the largest error over attainable; NaN counts as larger than any."""
-    return _finite(verdict.ratio)
-
-
-def _finite(number: float | None) -> float:
-    return inf if number is None or isnan(number) else number
+    units = in_roundoffs(verdict, verdict.max)
+    return inf if units is None or isnan(units) else units
