@@ -11,7 +11,7 @@ import numpy as np
 from taylor_verify.draw.axis_path import momentum_of
 from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import Look
-from taylor_verify.draw.surface import Curve, Surface, figure
+from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
 
@@ -39,7 +39,7 @@ def surface(document: Document) -> Surface:
         course=first,
         letter=letter,
         name=f"direction of {letter} in the body",
-        curves=tuple(Curve(rows, _SECOND, f"direction of {name}") for name, rows in others),
+        curves=tuple(Part(rows, _SECOND, f"direction of {name}") for name, rows in others),
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import partial
-from math import isfinite
 from os import PathLike
 from typing import Any
 
@@ -28,6 +27,7 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
@@ -172,11 +172,7 @@ def _orbit(scene: Scene) -> Mapping[str, Any]:
 
 def _element(element: Element) -> dict[str, str]:
     words = {name: getattr(element, name) for name in ("unit", "meaning", "source")}
-    return {"name": element.name, "value": _written(element.value), **words}
-
-
-def _written(value: Any) -> str:
-    return str(mp.nstr(value, _DIGITS))
+    return {"name": element.name, "value": str(mp.nstr(element.value, _DIGITS)), **words}
 
 
 def _condition(
@@ -189,13 +185,13 @@ def _condition(
     if carried is None:
         return None
     worst, pace = carried.worst, carried.pace
-    per_period = None if pace is None or period is None else _finite(pace * period)
+    per_period = None if pace is None or period is None else finite(pace * period)
     sentences = list(_condition_sentences(carried, rung, per_period))
     return {
         "from": carried.times[0],
-        "worst": _finite(carried.factors[worst]),
+        "worst": finite(carried.factors[worst]),
         "worst_at": carried.times[worst],
-        "end": _finite(carried.factors[-1]),
+        "end": finite(carried.factors[-1]),
         "end_at": carried.times[-1],
         "per_period": per_period,
         "sentence": " ".join(sentences),
@@ -221,10 +217,6 @@ def _condition_sentences(carried: Carrying, rung: Rung, per_period: float | None
     yield (
         f"On {rung.name} one rounding, u = {u:.2g}, has then become {becomes:.2g} at worst{lost}."
     )
-
-
-def _finite(factor: float) -> float | None:
-    return factor if isfinite(factor) else None
 
 
 def _gate(verdict: Verdict) -> dict[str, Any]:
