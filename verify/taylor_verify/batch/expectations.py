@@ -118,15 +118,11 @@ def compare_with_expectations(
             expected[row] = wanted
             got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
-                mismatches.append(_mismatch(row, wanted, got))
+                # To the better or to the worse, it is a failure.
+                why = f" ({wanted.why})" if wanted.why else ""
+                words = f"{wanted.verdict}{why}", got
+                mismatches.append(Difference(*row, "", *words, TAYLOR, "", Direction.CHANGED))
     return Agreement(verdicts, expected, tuple(mismatches))
-
-
-def _mismatch(row: Row, wanted: Expectation, got: str) -> Difference:
-    """Return a row that came otherwise; to the better or to the worse, it is a failure."""
-    why = f" ({wanted.why})" if wanted.why else ""
-    expected = f"{wanted.verdict}{why}"
-    return Difference(*row, "", expected, got, TAYLOR, "", Direction.CHANGED)
 
 
 def _row(verdict: Verdict) -> Row:

@@ -17,12 +17,12 @@ import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, complete, read
 from taylor_verify.records.record import Record
 from taylor_verify.records.regular_file import bounded_bytes
@@ -278,12 +278,7 @@ def _encoded(value: Any, encoder: json.JSONEncoder) -> str:
 
 # Reading.
 
-
-def _stored_bytes(file: Path) -> bytes:
-    try:
-        return bounded_bytes(file, "a stored document", DOCUMENT)
-    except Refused as refused:
-        raise ValueError(str(refused)) from None
+_stored_bytes = partial(bounded_bytes, expected="a stored document", most=DOCUMENT)
 
 
 def read_document(file: Path) -> dict[str, Any]:
