@@ -164,8 +164,7 @@ def _analytic(orbit: Elements) -> list[Document]:
 
 def span(scene: Scene) -> Fraction:
     """Return the time from the start to the farthest instant; below zero where time runs backward."""
-    start = scene.clock.start
-    return max((instant - start for instant in scene.clock.instants), key=abs)
+    return max(scene.clock.elapsed, key=abs)
 
 
 def _length(scene: Scene, orbit: Elements) -> Fraction:
