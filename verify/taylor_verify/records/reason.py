@@ -19,7 +19,6 @@ from typing import Final
 
 # At most this many of the rows that do not share a shift are named.
 _MOST_NAMED: Final = 3
-_AS_A_SHIFT: Final = "as a shift of time"
 
 
 class Cause(StrEnum):
@@ -292,12 +291,8 @@ class Reason:
     def parts(self) -> list[str]:
         """Return the sentences one by one: conclusions, the arithmetic of the bound, the shift."""
         remarks = (remark.text for remark in self.remarks)
-        return [*remarks, *self._terms(), *filter(None, [self.meaning])]
-
-    @property
-    def meaning(self) -> str:
-        """The shift of time behind the error; empty where the reason has none."""
-        return f"{_AS_A_SHIFT}: {self.shift.sentence()}" if self.shift else ""
+        shift = [f"as a shift of time: {self.shift.sentence()}"] if self.shift else []
+        return [*remarks, *self._terms(), *shift]
 
     def with_remark(self, cause: Cause, text: str) -> Reason:
         """Return this reason with a conclusion in front of those that it has."""

@@ -170,10 +170,11 @@ def _figure(document: Mapping[str, Any], key: str) -> Figure:
     # The times of taylor on all rungs are near each other. Other panels can be compared.
     shared = _limits_x(s for own in panels.values() for s in own if own[-1].kind != TAYLOR)
     front = [(row[key], row["error"]) for row in front_of(document, key)]
+    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
     for axes, (heading, own) in zip(places, panels.items(), strict=True):
         limits = _limits_x(own) if own[-1].kind == TAYLOR else shared
         axes.set(xscale="log", yscale="log", xlim=limits)
-        axes.set(xlabel=_work_named(document, key), ylabel=_error_named(document))
+        axes.set(xlabel=_work_named(document, key), ylabel=f"largest error ({unit})")
         axes.set_title(heading, pad=4)
         _draw(axes, own, floors, front)
     return figure
@@ -189,11 +190,6 @@ def _work_named(document: Mapping[str, Any], key: str) -> str:
     # A published time is a median of many, which the page explains.
     best = f", best of {document['timing']['repeats']}" if "timing" in document else ""
     return f"time of a solve{best} (s)"
-
-
-def _error_named(document: Mapping[str, Any]) -> str:
-    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
-    return f"largest error ({unit})"
 
 
 def _draw(
