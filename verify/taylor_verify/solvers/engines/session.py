@@ -37,10 +37,9 @@ class Broken(Exception):
 
 
 class Session:
-    """A running program; ``places`` is a memory for its callers, as long as it runs."""
+    """A running program."""
 
     def __init__(self, command: Sequence[str]) -> None:
-        self.places: dict[str, int] = {}
         self._stderr = tempfile.TemporaryFile()  # noqa: SIM115 (open as long as the program runs)
         self._rest = b""
         self._process, self._link = supervised(command, self._stderr)
