@@ -87,7 +87,7 @@ def _pictures(
         )
     judged = {file.name: judge(file) for file in files}
     if judged and (not names or ERRORS in names):
-        records = {name: each.record for name, each in judged.items() if each.record}
+        records = {name: each.record.document() for name, each in judged.items() if each.record}
         drawings[ERRORS] = file_errors.picture(document, records)
     return {**drawings, **dict(_loads(document, names, judged))}
 
