@@ -62,6 +62,10 @@ class Timed:
         return max(self.seconds) / self.best if self.best else None
 
 
+# The seconds of a solve, and their part in a compiled integrator. Whole answers would fill the memory.
+_Seconds = tuple[float, float | None]
+
+
 def timed(
     problems: Mapping[Setting, Problem | str], repeats: int, seed: int, patience: float = PATIENCE
 ) -> list[Timed]:
@@ -80,10 +84,6 @@ def timed(
     ]
     in_rounds(turns, repeats, seed)
     return [_with_seconds(each, later.get(each.setting)) for each in firsts]
-
-
-# The seconds of a solve, and their part in a compiled integrator. Whole answers would fill the memory.
-_Seconds = tuple[float, float | None]
 
 
 def _solve_again(

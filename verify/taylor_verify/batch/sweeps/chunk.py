@@ -68,7 +68,7 @@ def judge(chunk: Chunk) -> Judged:
 
 
 def explain(chunk: Chunk) -> tuple[int, tuple[str, ...]]:
-    """Solve and judge the one scene of a chunk again for likely causes, by its number."""
+    """Return the number of the one scene of a chunk, and the likely causes of its failures in words."""
     (question,) = chunk.questions.questions(chunk.first, chunk.stop)
     assert isinstance(question.scene, Scene)
     try:
