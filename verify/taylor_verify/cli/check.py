@@ -27,8 +27,7 @@ from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import (
     FilesJudgement,
     checked_steps,
-    files_judgement,
-    judge_each,
+    judge_files,
     repeated,
 )
 from taylor_verify.numbers.precision import rung
@@ -66,8 +65,7 @@ def answer(options: argparse.Namespace) -> Answer:
         one = _judged(options, scene, files[0])
         text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
         return concluded(asked, one, exit_status(one.verdicts), one.document(), text)
-    each = judge_each(files, partial(_judged, options, scene))
-    several = files_judgement(each, steps, options.knob or "")
+    several = judge_files(files, steps, partial(_judged, options, scene), options.knob or "")
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
     return concluded(asked, several, status, several.document(), text)

@@ -1,7 +1,7 @@
 """Times in rounds: everything that is timed has its turn in each round, in a random order.
 
 A disturbance of the machine does not always hit the same turn, and a ratio is formed within its round, when
-the machine was equally warm, busy and fast. Short calls are repeated until the clock resolves them.
+the machine was equally warm, busy and fast.
 """
 
 from __future__ import annotations
@@ -10,18 +10,13 @@ import gc
 import random
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from math import ceil, inf
+from math import inf
 from time import perf_counter
 from typing import Final, TypeVar
 
 Answer = TypeVar("Answer")
-# A function that returns seconds.
-Clock = Callable[[], float]
 
-# The least duration of a measurement: an interrupt does not matter then, nor what the clock costs.
-LEAST_SECONDS: Final = 1e-2
 _FEWEST_ROUNDS: Final = 2
-_MOST_CALLS: Final = 1000
 
 
 def in_rounds(
@@ -58,8 +53,3 @@ def _without_garbage_collection() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
-
-
-def calls_to_time(seconds: float, least: float = LEAST_SECONDS) -> int:
-    """Return the number of calls of so many ``seconds`` that last ``least`` seconds together."""
-    return min(_MOST_CALLS, max(1, ceil(least / seconds))) if seconds > 0 else _MOST_CALLS

@@ -127,9 +127,9 @@ def prepare(name: str, tell: Tell = _log.warning) -> None:
         raise NotMade(answer)
 
 
-def command_of(solver: Outside, tell: Tell = _log.warning) -> list[str] | Lack:
+def command_of(solver: Outside) -> list[str] | Lack:
     """Return the words that start the script of an engine that stays, or the reason why there are none."""
-    command = _command(solver, tell)
+    command = _command(solver, _log.warning)
     return command if isinstance(command, Lack) else [*command, "serve"]
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import ceil
 from statistics import median
 from time import perf_counter, thread_time
 from typing import Final, NamedTuple
@@ -23,12 +24,17 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.setting import Name, setting
 from taylor_verify.tradeoff.solves import WHAT_IS_TIMED
-from taylor_verify.tradeoff.timing import LEAST_SECONDS, Clock, calls_to_time, in_rounds
+from taylor_verify.tradeoff.timing import in_rounds
 from taylor_verify_reports.studies.tradeoff.medians import CONFIDENCE, FORMULA, coverage, place
 from taylor_verify_reports.studies.tradeoff.trades import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
+# A function that returns seconds.
+Clock = Callable[[], float]
+# The least duration of a measurement: an interrupt does not matter then, nor what the clock costs.
+LEAST_SECONDS: Final = 1e-2
+_MOST_CALLS: Final = 1000
 # The least duration of a measurement, in units of the clock's resolution: the clock errs by 1 % at most.
 _TIMES_RESOLUTION: Final = 100
 # A setting that takes more seconds is solved only once in each process.
@@ -127,6 +133,11 @@ def _summed(
         inner=median(inner) if len(inner) == len(rounds) else None,
         setup=first.compile_seconds,
     )
+
+
+def calls_to_time(seconds: float, least: float = LEAST_SECONDS) -> int:
+    """Return the number of calls of so many ``seconds`` that last ``least`` seconds together."""
+    return min(_MOST_CALLS, max(1, ceil(least / seconds))) if seconds > 0 else _MOST_CALLS
 
 
 def clock_resolution() -> float:
