@@ -75,6 +75,26 @@ class Comparison(Passing):
             raise NotPassed("\n".join(lines) or "no row was compared")
 
 
+@dataclass(frozen=True, repr=False)
+class ComparedJudgement(Judgement):
+    """A Judgement, and its ``comparison`` with a baseline: it passes where both do.
+
+    A comparison that ``decides`` is asked alone.
+    """
+
+    comparison: Comparison
+
+    @property
+    def passed(self) -> bool:
+        """True if the comparison passed and, unless it decides alone, the judgement too."""
+        return self.comparison.passed and (self.comparison.decides or super().passed)
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, with the lines of the comparison or else of the judgement, unless it passed."""
+        self.comparison.raise_for_failure()
+        super().raise_for_failure()
+
+
 @dataclass(frozen=True)
 class Earlier:
     """The verdicts of an earlier run, read from ``source`` before a new run begins.
