@@ -140,7 +140,6 @@ def _faults(
 ) -> Iterator[str]:
     """Yield a sentence for each argument of a wrong kind."""
     from numbers import Integral
-    from os import PathLike
 
     from taylor_verify.records.faults import brief
     from taylor_verify.solvers.solver import Solver

@@ -10,6 +10,9 @@ from typing import Any
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.faults import Refused, brief
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 
@@ -71,8 +74,6 @@ def select(
     ValueError
         For a name that is no rung, and for what is neither scenes nor rungs.
     """
-    from taylor_verify.numbers.precision import rung as rung_named
-    from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
 
@@ -89,7 +90,6 @@ def select(
 
 def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     """Read scenes, each once. Raises Refused with the faults of all that cannot be read."""
-    from taylor_verify.records.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
     asked = [*scenes]
@@ -110,9 +110,6 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
 
 def _several(asked: Any, what: str) -> Sequence[Any]:
     """Return what was asked for as a sequence: a text is one name, and no row of letters."""
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.records.faults import brief
-
     if isinstance(asked, str | PathLike | Scene | Rung):
         return [asked]
     if isinstance(asked, bytes) or not isinstance(asked, Iterable):

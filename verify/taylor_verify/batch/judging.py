@@ -11,6 +11,7 @@ from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.finished_jobs import unfinished
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.work import run_all
+from taylor_verify.records.faults import Refused
 from taylor_verify.solvers.registry import PYTHON
 
 if TYPE_CHECKING:
@@ -105,7 +106,6 @@ def judge_all(
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
     from taylor_verify.chain import judge_scene
-    from taylor_verify.records.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
     with failing(job.name, Refused):

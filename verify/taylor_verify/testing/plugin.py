@@ -27,7 +27,7 @@ Every pytest session of the environment loads this plugin. So only this module a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, final
 
@@ -155,8 +155,6 @@ def _judgement(
 ) -> tuple[Judgement, BaseException | None]:
     """Return the judgement, and the exception that a callable raised, whose traceback pytest then shows."""
     __tracebackhide__ = True
-    from dataclasses import replace
-
     from taylor_verify.chain import judge_scene
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
