@@ -90,8 +90,8 @@ def figure(drawn: Surface, words: str) -> Figure:
     for mark in (*drawn.marks, *drawn.ends):
         over.mark(mark.points, mark.look)
     entries: list[Entry] = [({"color": scale()(0.6), "linewidth": _WIDTH}, drawn.name)]
-    looks = {each.name: each.look for each in (*drawn.curves, *drawn.ends, *drawn.marks)}
-    entries += [(look, name) for name, look in looks.items()]
+    styles = {each.name: each.look for each in (*drawn.curves, *drawn.ends, *drawn.marks)}
+    entries += [(look, name) for name, look in styles.items()]
     stage.legend(entries, f"Faint: on the far side. {words}", _LEGEND)
     stage.time_bar(drawn.times, _TIME)
     return stage.figure
