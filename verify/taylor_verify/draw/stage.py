@@ -121,10 +121,10 @@ class Stage:
             look = {"color": colour, "linewidth": width, "gid": "path"}
             self.line(piece, zorder + k / _STRETCHES, look)
 
-    def mark(self, point: Numbers, look: Look, **other: Any) -> None:
+    def mark(self, point: Numbers, look: Look) -> None:
         """Draw a mark above all lines."""
         alpha = 1.0 if self.faces(point)[0] else _FAINT_MARK
-        self.axes.plot(*self.view.project(point).T, alpha=alpha, zorder=6, **look, **other)
+        self.axes.plot(*self.view.project(point).T, alpha=alpha, zorder=6, **look)
 
     def name_axes(self, semi_axes: Sequence[float], names: Sequence[str]) -> None:
         """Draw the axes where they leave the surface, each with its name."""
