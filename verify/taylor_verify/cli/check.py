@@ -193,7 +193,10 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
     page.line()
     _print_files(page, judged)
     for one in judged.files:
-        _print_peculiar(page, one, common)
+        if lines := [line for line in _peculiar(one) if line not in common]:
+            page.line()
+            page.line(bold(one.file.name))
+            page.indented("  ", *lines)
     page.line()
     page.line(f"{counts(judged.verdicts)}; `check` of one file alone says the reasons")
     return page.text()
@@ -211,14 +214,6 @@ def _print_files(page: Page, judged: FilesJudgement) -> None:
         begin = [one.file.name, f"{step.value:g}" if step else "", str(len(one.file.times))]
         rows.append([*begin, *(figure(errors.get(name)) for name in states), counts(one.verdicts)])
     print_table(page.console, headings, rows, keys=1)
-
-
-def _print_peculiar(page: Page, one: FileJudgement, common: Sequence[str]) -> None:
-    lines = [line for line in _peculiar(one) if line not in common]
-    if lines:
-        page.line()
-        page.line(bold(one.file.name))
-        page.indented("  ", *lines)
 
 
 def _peculiar(one: FileJudgement) -> Iterator[str]:

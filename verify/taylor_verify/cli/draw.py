@@ -45,7 +45,10 @@ def answer(options: argparse.Namespace) -> Answer:
     if options.animate and (names or files):
         raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
-        document = _document(scene, options.animate)
+        with wrong_calls(f" @ {scene.name}", Unsettled):
+            document = motion(scene)
+            # A short motion is animated over a longer time.
+            document = lengthened(scene, document) if options.animate else document
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
@@ -62,13 +65,6 @@ def _animate(motion: Mapping[str, Any], place: Path) -> dict[str, str]:
         (path,) = replace_files(place.parent, {place.name: page(motion)})
     named = {"title": motion["title"], "shows": motion["alt"]}
     return {"file": str(path), "picture": "animation", **named}
-
-
-def _document(scene: Scene, is_animated: bool) -> dict[str, Any]:
-    """Return the motion to be drawn, a short one longer to be animated. Raises WrongCall without it."""
-    with wrong_calls(f" @ {scene.name}", Unsettled):
-        document = motion(scene)
-        return lengthened(scene, document) if is_animated else document
 
 
 def _pictures(

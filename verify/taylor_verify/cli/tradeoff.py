@@ -62,7 +62,10 @@ def answer(options: argparse.Namespace) -> Answer:
     rungs = known_rungs(options.rung or RUNGS)
     asked = _asked(options, rungs)
     if options.outside:
-        _make_environments()
+        # Before anything is timed: a download is no part of a solve, which says so where there is none.
+        for name in toleranced():
+            with suppress(NotMade):
+                prepare(name, say)
     documents: list[dict[str, Any]] = []
     missed: list[str] = []
     with alone_in(place), cold_caches():
@@ -105,16 +108,6 @@ def _asked(
         named = chosen(options.solver, rungs) if options.solver else ()
         others = outside(rungs) if options.outside else ()
     return lambda scene: (*(named or settings(scene, rungs)), *others)
-
-
-def _make_environments() -> None:
-    """Make the environments of engines before anything is timed: a download is no part of a solve.
-
-    The solve in one that cannot be made says so.
-    """
-    for name in toleranced():
-        with suppress(NotMade):
-            prepare(name, say)
 
 
 def _target(text: str | None) -> float | None:

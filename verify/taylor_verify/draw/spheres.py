@@ -44,20 +44,17 @@ def surface(document: Document) -> Surface:
 
 
 def _directions(document: Document) -> dict[str, Numbers]:
-    directions = {}
+    course, directions = document["course"], {}
+    vectors = {letter: np.array(course[name]) for letter, name in _NAMES.items() if name in course}
+    if document["body"] is not None:
+        vectors = {"H": momentum_of(document)[0]}
     # Where wheels cancel the momentum of the body, only the rounding of the digits is left.
     wheels = float(np.linalg.norm(document["rotor"] or [0.0]))
-    for letter, rows in _vectors(document).items():
+    for letter, rows in vectors.items():
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         if sizes.min() > _ZERO * max(sizes.max(), wheels):
             directions[letter] = rows / sizes
     return directions
-
-
-def _vectors(document: Document) -> dict[str, Numbers]:
-    if document["body"] is not None:
-        return {"H": momentum_of(document)[0]}
-    return {letter: np.array(document["course"][name]) for letter, name in _NAMES.items()}
 
 
 def picture(document: Document) -> Picture:
