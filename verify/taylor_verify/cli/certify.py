@@ -9,7 +9,7 @@ from typing import Any
 from taylor_verify.certify import certify
 from taylor_verify.certify.certificate import Certificate
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
-from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.console import titled
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.records.json_text import complete
@@ -29,15 +29,9 @@ def answer(options: argparse.Namespace) -> Answer:
             )
     messages = [certificate.because] if certificate.because else []
     status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL
-    text = partial(_text, options.file, certificate)
+    lines = certificate_lines(certificate)
+    text = partial(titled, options.file, f" against {certificate.scene}", lines)
     return Answer(status, document(certificate), text, messages)
-
-
-def _text(file: str, certificate: Certificate) -> str:
-    page = Page()
-    page.line(bold(file), f" against {certificate.scene}")
-    page.lines(certificate_lines(certificate))
-    return page.text()
 
 
 def document(certificate: Certificate) -> dict[str, Any]:

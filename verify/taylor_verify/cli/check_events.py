@@ -7,11 +7,10 @@ from functools import partial
 
 from taylor_verify.check import check
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
-from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.console import titled
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.exact.solution import Unsettled
-from taylor_verify.judge.events import EventsJudgement
 from taylor_verify.words.account import event_lines
 
 
@@ -29,11 +28,6 @@ def answer(options: argparse.Namespace) -> Answer:
         content = {"scene": scene.name, "event": options.event, "because": because}
         return Answer(UNDECIDED, content, str, [because])
     status = PASS if judged.passed else FAIL if judged.is_wrong else UNDECIDED
-    return Answer(status, judged.document(), partial(_text, judged))
-
-
-def _text(judged: EventsJudgement) -> str:
-    page = Page()
-    page.line(bold(judged.true.text), judged.heading.removeprefix(judged.true.text))
-    page.lines(event_lines(judged.document()))
-    return page.text()
+    content, event = judged.document(), judged.true.text
+    text = partial(titled, event, judged.heading.removeprefix(event), event_lines(content))
+    return Answer(status, content, text)

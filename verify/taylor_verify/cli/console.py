@@ -67,11 +67,6 @@ class Page:
         lines = [one_line(part) if isinstance(part, str) else part for part in parts]
         self.console.print(Text.assemble(*lines), soft_wrap=not sys.stdout.isatty())
 
-    def lines(self, texts: Iterable[str]) -> None:
-        """Print each text in one line."""
-        for text in texts:
-            self.line(text)
-
     def indented(self, label: str, *texts: str) -> None:
         """Print texts behind the label of the first; on a terminal a long one goes on below itself."""
         for text in texts:
@@ -84,6 +79,15 @@ class Page:
     def text(self) -> str:
         """Return everything printed."""
         return self.console.end_capture().rstrip("\n")
+
+
+def titled(title: str, rest: str, lines: Iterable[str]) -> str:
+    """Return a text that begins with a title in bold and the rest of its line; other lines follow."""
+    page = Page()
+    page.line(bold(title), rest)
+    for line in lines:
+        page.line(line)
+    return page.text()
 
 
 def print_table(

@@ -150,7 +150,10 @@ def _text(results: Judgements, explained: bool, status: int | None) -> str:
     why = agreement.unjudged
     if not why or len({verdict.because for verdict in verdicts}) > 1:
         _print_rows(page, results, explained)
-    total = f"{counts(verdicts)}{_as_expected(agreement)}"
+    met, mismatches = agreement.document().met, len(agreement.mismatches)
+    total = counts(verdicts)
+    total += f"; {met} of them as expected" if met else ""
+    total += f"; {mismatches} not as expected" if mismatches else ""
     print_end(page, agreement.unexpected, total, status, explained)
     if why:
         page.line(f"nothing was judged: {why}")
@@ -207,16 +210,6 @@ def _print_rows(page: Page, results: Judgements, explained: bool) -> None:
 def _expected(verdict: Verdict, agreement: Agreement) -> str:
     expected = agreement.met(verdict)
     return "" if expected is None else expected.why
-
-
-def _as_expected(agreement: Agreement) -> str:
-    """Return how many of the rows that are no pass are what the extremes are expected to answer."""
-    met, mismatches = agreement.document().met, len(agreement.mismatches)
-    words_and_counts = {
-        f"{met} of them as expected": met,
-        f"{mismatches} not as expected": mismatches,
-    }
-    return "".join(f"; {words}" for words, count in words_and_counts.items() if count)
 
 
 def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
