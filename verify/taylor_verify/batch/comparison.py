@@ -11,10 +11,10 @@ from taylor_verify.batch.differences import (
     Differences,
     Direction,
     compare,
-    finite,
 )
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.passing import NotPassed, Passing
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
@@ -200,7 +200,7 @@ def _unjudged(
         if status != 1:
             words = "a row that shows something", f"{verdict.verdict} ({verdict.because})"
             yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
-        elif finite(verdict, "max") is None:
+        elif finite(verdict.max) is None:
             words = "a finite error", "no finite number"
             yield Difference.of(verdict, Direction.WORSE, *words, "max")
         elif _row(verdict) not in known:
