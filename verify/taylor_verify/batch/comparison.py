@@ -6,12 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.batch.differences import (
-    Difference,
-    Differences,
-    Direction,
-    compare,
-)
+from taylor_verify.batch.differences import Difference, Differences, Direction, compare
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.json_text import finite

@@ -24,12 +24,7 @@ from taylor_verify.cli.sentences import (
 )
 from taylor_verify.cli.standard_input import scene_and_files
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
-from taylor_verify.judge.series.files import (
-    FilesJudgement,
-    checked_steps,
-    judge_files,
-    repeated,
-)
+from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR, states_among
 from taylor_verify.records.showing import counts

@@ -12,14 +12,7 @@ from typing import Any, Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import (
-    PASS,
-    UNDECIDED,
-    WRONG_CALL,
-    Answer,
-    WrongCall,
-    wrong_calls,
-)
+from taylor_verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import alone_in, not_written, writable
 from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
@@ -32,14 +25,7 @@ from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.tradeoff.document import label
 from taylor_verify.tradeoff.recommendation import OutOfReach, recommended
-from taylor_verify.tradeoff.setting import (
-    RUNGS,
-    Setting,
-    chosen,
-    outside,
-    settings,
-    toleranced,
-)
+from taylor_verify.tradeoff.setting import RUNGS, Setting, chosen, outside, settings, toleranced
 from taylor_verify.tradeoff.solves import cold_caches
 from taylor_verify.tradeoff.trade_off import trade_off
 

@@ -5,13 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-from taylor_verify.records.runs import (
-    Run,
-    conserved_quantities,
-    gravest,
-    quantities_of_scene,
-    runs,
-)
+from taylor_verify.records.runs import Run, conserved_quantities, gravest, quantities_of_scene, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import NOTHING, judged, peak, verdict_table, worst_ratio
