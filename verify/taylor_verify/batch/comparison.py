@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from taylor_verify.batch.differences import Difference, Differences, Direction, compare
+from taylor_verify.batch.differences import Difference, Differences, Direction, compare, row_of
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
 from taylor_verify.records.json_text import finite
@@ -185,12 +185,12 @@ def _unjudged(
     A failed row without a finite error is worse than any, even if the baseline has no finite error either.
     A row that shows nothing is not compared: it is undecided, vacuous or refused, or it fails and is new.
     """
-    known = {_row(verdict) for verdict in before}
+    known = {row_of(verdict) for verdict in before}
     decisive = (Direction.WORSE, Direction.OTHER_QUESTION)
-    places = {_row(difference) for difference in named if difference.direction in decisive}
+    places = {row_of(difference) for difference in named if difference.direction in decisive}
     for verdict in now:
         status = exit_status([verdict])
-        if status == 0 or _row(verdict) in places:
+        if status == 0 or row_of(verdict) in places:
             continue
         if status != 1:
             words = "a row that shows something", f"{verdict.verdict} ({verdict.because})"
@@ -198,13 +198,9 @@ def _unjudged(
         elif finite(verdict.max) is None:
             words = "a finite error", "no finite number"
             yield Difference.of(verdict, Direction.WORSE, *words, "max")
-        elif _row(verdict) not in known:
+        elif row_of(verdict) not in known:
             words = "a row of the baseline", "a new one that fails"
             yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
-
-
-def _row(of: Verdict | Difference) -> tuple[str, str, str]:
-    return of.scene, of.rung, of.quantity
 
 
 def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:

@@ -100,8 +100,9 @@ class Difference:
         cls, verdict: Verdict, direction: Direction, expected: str, got: str, what: str = ""
     ) -> Difference:
         """Return the difference of a row, or of its number ``what``."""
-        row = verdict.scene, verdict.rung, verdict.quantity
-        return cls(*row, what, expected, got, verdict.solver, verdict.setting, direction)
+        return cls(
+            *row_of(verdict), what, expected, got, verdict.solver, verdict.setting, direction
+        )
 
     def __str__(self) -> str:
         place = " ".join(part for part in (self.scene, self.rung, self.quantity, self.what) if part)
@@ -277,6 +278,11 @@ def _attainable(old: Verdict, new: Verdict) -> float:
     before, now = (finite(row.attainable) or 0.0 for row in (old, new))
     steps = old.steps / new.steps if 0 < old.steps < new.steps else 1.0
     return max(before, math.sqrt(steps) * now)
+
+
+def row_of(each: Verdict | Difference) -> tuple[str, str, str]:
+    """Return scene, rung and quantity."""
+    return each.scene, each.rung, each.quantity
 
 
 def format_number(value: float | None) -> str:

@@ -23,7 +23,7 @@ from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.tradeoff.document import label
+from taylor_verify.tradeoff.document import label_of
 from taylor_verify.tradeoff.recommendation import OutOfReach, recommended
 from taylor_verify.tradeoff.setting import RUNGS, Setting, chosen, outside, settings, toleranced
 from taylor_verify.tradeoff.solves import cold_caches
@@ -126,7 +126,7 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
         page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            words = f"  {_label(row)}: {row['because']}"
+            words = f"  {label_of(row)}: {row['because']}"
             page.line(bold(row["standing"], "red"), words)
     page.line(
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
@@ -149,17 +149,13 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     page.line()
 
 
-def _label(row: Mapping[str, Any]) -> str:
-    return label(row["solver"], row["setting"], row["rung"])
-
-
 def _print_points(page: Page, trade: Mapping[str, Any]) -> None:
     rows = [row for row in trade["points"] if row["standing"] != _NOT_RUN]
     quantities = list(dict.fromkeys(name for row in rows for name in row["max"]))
     errors = [heading for name in quantities for heading in (f">{name}", ">final")]
     cells = []
     for row in rows:
-        mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
+        mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         sizes = [row[part].get(name) for name in quantities for part in ("max", "final")]
         sizes = [_short(value) for value in (*sizes, row["drift"])]
         times = [_short(row[key]) for key in _TIMES]

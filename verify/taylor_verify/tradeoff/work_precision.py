@@ -21,7 +21,7 @@ from taylor_verify.plotting.sheet import Entry, name_lines, sheet
 from taylor_verify.plotting.style import INK, QUIET, TAYLOR, heading_of, kind_of, look_of, place
 from taylor_verify.plotting.wording import plain, stem_of
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import label
+from taylor_verify.tradeoff.document import label_of
 from taylor_verify.tradeoff.pareto import pareto
 
 if TYPE_CHECKING:
@@ -145,16 +145,12 @@ def _picture(document: Mapping[str, Any], key: str) -> Picture:
     first, best = front[0], front[-1]
     alt = (
         f"Largest error against {work} on {document['scene']}, both logarithmic, for {names}. "
-        f"The least {work} of a sound setting has {_label(first)} with an error of "
-        f"{plain(first['error'])}; the most accurate is {_label(best)} with {plain(best['error'])} at "
+        f"The least {work} of a sound setting has {label_of(first)} with an error of "
+        f"{plain(first['error'])}; the most accurate is {label_of(best)} with {plain(best['error'])} at "
         f"{best[key] / first[key]:.2g} times that {work}. {len(front)} settings are beaten by none."
     )
     title = f"Error against {work}: {document['scene']}"
     return Picture(stem_of(document, work), title, alt, partial(_figure, document, key))
-
-
-def _label(row: Row) -> str:
-    return label(row["solver"], row["setting"], row["rung"])
 
 
 def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
