@@ -12,7 +12,8 @@ import pytest
 
 import taylor_verify
 from taylor_verify.batch.chosen_scenes import select
-from taylor_verify.batch.comparison import read_baseline, shown_verdicts
+from taylor_verify.batch.comparison import shown_verdicts
+from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import (
     remarks,

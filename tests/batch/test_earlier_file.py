@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 from builders.verdicts import row
 
-from taylor_verify.batch.comparison import read_baseline
 from taylor_verify.batch.differences import compare
-from taylor_verify.batch.earlier_file import load
+from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.status import Status
@@ -25,15 +24,17 @@ def test_both_documents_are_read(tmp_path: Path) -> None:
     """verdicts.json of --out, and the document of --json, give the rows that were written."""
     made = [row(), row(quantity="T"), row(quantity="H2", verdict=Status.FAIL, max=math.nan)]
     write(tmp_path, made, [])
-    report, (stored, is_edited) = load_report(tmp_path), load(tmp_path / "data" / "verdicts.json")
-    assert is_edited is False
-    assert (compare(report, stored).compared, compare(report, stored).all) == (3, ())
+    report, stored = load_report(tmp_path), read_baseline(tmp_path / "data" / "verdicts.json")
+    assert stored.edited is False
+    same = compare(report, stored.verdicts)
+    assert (same.compared, same.all) == (3, ())
     file = tmp_path / "printed.json"
     document = {"verdicts": [{**v.row(), "of_later_versions": 1} for v in made], "summary": {}}
     file.write_text(json.dumps(document), encoding="utf-8")
-    printed, is_edited = load(file)
-    assert is_edited is None
-    assert (compare(printed, made).compared, compare(printed, made).all) == (3, ())
+    printed = read_baseline(file)
+    assert printed.edited is None
+    same = compare(printed.verdicts, made)
+    assert (same.compared, same.all) == (3, ())
 
 
 @pytest.mark.parametrize(
@@ -66,7 +67,7 @@ def test_a_row_that_is_none_is_refused_by_its_place(
     file = tmp_path / "spoiled.json"
     file.write_text(json.dumps({"verdicts": rows}), encoding="utf-8")
     with pytest.raises(ValueError, match="expected") as refused:
-        load(file)
+        read_baseline(file)
     assert message in str(refused.value)
     assert str(file) in str(refused.value)
 
@@ -82,7 +83,7 @@ def test_a_printed_document_has_the_sum_of_its_content(tmp_path: Path) -> None:
     texts = {json.dumps(summed): False, respelt: False}
     for text, is_edited in (texts | dict.fromkeys(map(json.dumps, others), True)).items():
         file.write_text(text, encoding="utf-8")
-        assert load(file)[1] is is_edited
+        assert read_baseline(file).edited is is_edited
 
 
 def test_nothing_passes_by_an_edited_baseline(tmp_path: Path) -> None:

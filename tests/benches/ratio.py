@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, Literal, Protocol, final
 
-from taylor_verify.tradeoff.timing import LEAST_SECONDS, Clock, calls_to_time
+from taylor_verify_reports.studies.tradeoff.rounds import LEAST_SECONDS, Clock, calls_to_time
 
 # Ratios of one code differ by so much: another order of the code in memory is enough.
 RESOLUTION: Final = 0.02

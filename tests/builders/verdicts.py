@@ -30,7 +30,7 @@ def row(errors: float = 0.5, **changed: Any) -> Verdict:
         "at": 7.0,
         "unit": "max|omega|",
         "bound": 10 * ATTAINABLE,
-        "reason": stated(Cause.STATED, "10 x attainable; a reason"),
+        "reason": stated(Cause.NOT_POSED, "10 x attainable; a reason"),
         "attainable": ATTAINABLE,
         "ratio": errors,
         "ratio_at": 7.0,
@@ -49,7 +49,7 @@ def far_off(status: Status = Status.PASS, **changed: Any) -> Verdict:
         "mean": 2e-12,
         "final": 1e-12,
         "bound": 2e-13,
-        "reason": stated(Cause.STATED, "10 x attainable; one rounding a step"),
+        "reason": stated(Cause.NOT_POSED, "10 x attainable; one rounding a step"),
         "attainable": 2e-14,
         "ratio": 165.0,
         "ratio_at": 6.5,
@@ -83,7 +83,7 @@ def unscored(scene: str, rung: str, quantity: str, status: Status, outcome: str)
     because = f"the reason why {scene} has no number"
     return Verdict(
         *(scene, "taylor", rung, "", quantity, status, outcome),
-        reason=stated(Cause.STATED, because),
+        reason=stated(Cause.NOT_POSED, because),
         provenance={**PROVENANCE, "scene": f"digest of {scene}"},
     )
 

@@ -14,7 +14,8 @@ import pytest
 from builders.scenes import scene_file
 from builders.verdicts import row
 
-from taylor_verify.batch.comparison import Earlier, read_baseline
+from taylor_verify.batch.comparison import Earlier
+from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.check import check
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement

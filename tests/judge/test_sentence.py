@@ -24,10 +24,11 @@ import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.judge.diagnosis import diagnosed, is_bounded, is_constant, power_of_time
 from taylor_verify.records.error_kind import ErrorKind
+from taylor_verify.records.json_text import converted
 from taylor_verify.records.quantities import COMPLETE, CONSERVED, INITIAL, STATES
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, read_row
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.next_steps import coarser_tolerance
 
@@ -242,8 +243,10 @@ def test_every_quantity_of_every_status_has_a_sentence(quantity: str, status: St
     rows = [row(status, quantity=quantity, error_kind=kind) for kind in kinds]
     rows += [replace(v, max=None, bound=None, ratio=None) for v in rows]
     rows += [replace(v, since=2.0, until=9.0, exponent=1.0, change=-3e-12) for v in rows]
-    rows += [replace(v, reason=stated(Cause.STATED, "")) for v in rows]
-    rows += [row(status, quantity=quantity, max=None, at=None, reason=stated(Cause.STATED, "why"))]
+    rows += [replace(v, reason=stated(Cause.NOT_POSED, "")) for v in rows]
+    rows += [
+        row(status, quantity=quantity, max=None, at=None, reason=stated(Cause.NOT_POSED, "why"))
+    ]
     for verdict in rows:
         text = verdict.sentence
         assert text.startswith(f"{quantity}: ")
@@ -266,7 +269,7 @@ def test_every_quantity_of_every_status_has_a_sentence(quantity: str, status: St
 )
 def test_digits_are_counted_down_to_none(size: float, digits: int | None, words: str) -> None:
     """Never more than the rung has, never less than none; what is not finite has no count."""
-    verdict = row(Status.FAIL, max=size, reason=stated(Cause.STATED, ""))
+    verdict = row(Status.FAIL, max=size, reason=stated(Cause.NOT_POSED, ""))
     assert verdict.digits == digits
     assert verdict.sentence.startswith(f"omega: {words};")
 
@@ -277,7 +280,7 @@ def test_the_row_of_a_verdict_has_its_sentence() -> None:
     written = json.loads(json.dumps(verdict.row()))
     assert (written["digits"], written["since"], written["error_kind"]) == (11, 1.0, "growth")
     assert written["sentence"] == verdict.sentence
-    assert read_row(written) == verdict
+    assert converted(written, Verdict) == verdict
 
 
 def test_a_coarser_tolerance_is_named_only_for_accuracy() -> None:

@@ -29,9 +29,10 @@ from jsonschema import Draft202012Validator
 import taylor_verify
 from taylor_verify.cli import main
 from taylor_verify.records import schema, store
+from taylor_verify.records.json_text import converted
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, exit_status, read_row
+from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words import annotations, junit
 from taylor_verify.words.account import with_numbers as sentence
 from taylor_verify.words.annotations import annotation_lines
@@ -160,7 +161,9 @@ def test_junit_has_the_structure_of_surefire_and_jenkins(seconds: float | None) 
 def test_any_text_makes_a_document(scene: str, quantity: str, because: str) -> None:
     """Markup, control characters and lone surrogates of somebody's program are escaped; what XML can
     hold comes back as it was."""
-    verdict = row(Status.FAIL, scene=scene, quantity=quantity, reason=stated(Cause.STATED, because))
+    verdict = row(
+        Status.FAIL, scene=scene, quantity=quantity, reason=stated(Cause.NOT_POSED, because)
+    )
     text = junit.junit([verdict])
     text.encode()
     (failure,) = ElementTree.fromstring(text).iter("failure")
@@ -260,7 +263,10 @@ def test_each_status_has_its_level() -> None:
 def test_the_runner_reads_back_what_was_said(quantity: str, because: str) -> None:
     """Whatever a program wrote to stderr, a verdict is one line and no command of the program's."""
     verdict = row(
-        Status.FAIL, scene="a,b: 100%.toml", quantity=quantity, reason=stated(Cause.STATED, because)
+        Status.FAIL,
+        scene="a,b: 100%.toml",
+        quantity=quantity,
+        reason=stated(Cause.NOT_POSED, because),
     )
     (line,) = annotation_lines([verdict])
     # GitHub's runner splits its input at these.
@@ -303,7 +309,7 @@ def test_the_summary_has_every_row_and_first_what_is_no_pass() -> None:
 def test_the_summary_breaks_no_table() -> None:
     """Bars, tags and line ends of somebody's words stay within their cell."""
     text = step_summary(
-        [row(Status.FAIL, reason=stated(Cause.STATED, "a | b\n<script> `c`"), unit="x|y")]
+        [row(Status.FAIL, reason=stated(Cause.NOT_POSED, "a | b\n<script> `c`"), unit="x|y")]
     )
     (line,) = [line for line in text.splitlines() if "script" in line]
     assert len(re.findall(r"(?<!\\)\|", line)) == 10
@@ -313,14 +319,14 @@ def test_the_summary_breaks_no_table() -> None:
 def test_the_summary_is_never_longer_than_github_takes() -> None:
     """GitHub drops a summary above 1 MiB as a whole: the reasons are cut, and it says so."""
     rows = [
-        row(Status.FAIL, scene=f"s/{i}", reason=stated(Cause.STATED, "é" * 400))
+        row(Status.FAIL, scene=f"s/{i}", reason=stated(Cause.NOT_POSED, "é" * 400))
         for i in range(5000)
     ]
     text = step_summary(rows)
     assert len(text.encode()) < 2**20
     assert re.search(r"And 4[59]00 more", text)
     assert "| **5000** |" in text
-    endless = step_summary([row(Status.FAIL, reason=stated(Cause.STATED, "x" * 2**20))])
+    endless = step_summary([row(Status.FAIL, reason=stated(Cause.NOT_POSED, "x" * 2**20))])
     assert len(endless.encode()) < 2**20
     assert "| **1** |" in endless
 
@@ -430,7 +436,7 @@ def test_the_schema_describes_every_field_of_a_verdict(capsys: Captured) -> None
     )
     assert set(schema.REQUIRED) <= set(row().row())
     stored = (store.row(verdict) for verdict in (row(), row(Status.FAIL, time_shift=0.1)))
-    rows = [read_row(each).row() for each in stored]
+    rows = [converted(each, Verdict).row() for each in stored]
     counts = {status.value: 0 for status in Status}
     assert violations({"verdicts": rows, "summary": counts}) == []
 

@@ -272,7 +272,7 @@ def test_a_number_at_an_axis_reads_as_it_stands(low: float, decades: float, is_l
     """The text of 1, 2 or 5 of any decade is that number, and axes have as many powers as decades."""
     power = floor(low)
     for digit in (1,) if is_long else (1, 2, 5):
-        text = log_axes.number(digit * 10.0**power, is_long)
+        text = log_axes.number(digit * 10.0**power, is_long=is_long)
         raised = re.fullmatch(rf"(?:(\d)·)?10([{RAISED}]+)", text)
         value = (
             int(raised[1] or 1) * 10.0 ** int(raised[2].translate(LOWERED))

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from builders.verdicts import MIXED, RECORD
 
-from taylor_verify.batch.report import read_report
+from taylor_verify.batch.earlier_file import read_report
 from taylor_verify.cli import main
 from taylor_verify.records import store
 from taylor_verify.scenes.reading.reader import load

@@ -117,7 +117,7 @@ def one_run(draw: st.DrawFn) -> list[Verdict]:
             numbers |= dict.fromkeys(("mean", "final"), numbers["max"])
         verdict = Verdict(scene, solver, rung, setting, quantity, status, outcome, **numbers)
         rest: dict[str, Any] = {
-            "reason": stated(Cause.STATED, draw(TEXT)),
+            "reason": stated(Cause.NOT_POSED, draw(TEXT)),
             "seconds": seconds,
             "provenance": provenance,
         }
@@ -420,9 +420,10 @@ def test_every_line_of_a_table_has_as_many_cells_as_its_heading(report: Path) ->
     """No text of a scene, unit, outcome or reason breaks a table, whatever is in it."""
     nasty = "a|b\n`c` <img> *d* _e_ \\| [f](g) $h$"
     hostile = [
-        passed(nasty, "f64", "omega", unit=nasty, reason=stated(Cause.STATED, nasty)),
+        passed(nasty, "f64", "omega", unit=nasty, reason=stated(Cause.NOT_POSED, nasty)),
         replace(
-            unscored(nasty, "f32", "omega", Status.FAIL, nasty), reason=stated(Cause.STATED, nasty)
+            unscored(nasty, "f32", "omega", Status.FAIL, nasty),
+            reason=stated(Cause.NOT_POSED, nasty),
         ),
     ]
     write(report, [*MIXED, *hostile], [])

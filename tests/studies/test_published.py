@@ -23,8 +23,8 @@ from builders.pages import results
 from builders.schema import violations
 from builders.verdicts import row as baseline_row
 
-from taylor_verify.batch import earlier_file
 from taylor_verify.batch.differences import FACTOR, LEVEL, Direction, compare
+from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.plotting.picture import Picture, content
 from taylor_verify.records import store
 from taylor_verify.records.precisions import LADDER
@@ -363,7 +363,8 @@ def test_unlike_rungs_are_in_one_class() -> None:
 
 def test_published_rows_are_no_departures_from_themselves() -> None:
     """Every row is in its own rounding class and no regression, read as a report or as a baseline."""
-    read, edited = earlier_file.load(REPORTS / "data" / "verdicts.json")
+    baseline = read_baseline(REPORTS / "data" / "verdicts.json")
+    read, edited = baseline.verdicts, baseline.edited
     assert edited is False
     for rows in (verdicts(), read):
         compared = compare(rows, rows)

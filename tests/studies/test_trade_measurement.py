@@ -24,19 +24,14 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.document import TradePoint
 from taylor_verify.tradeoff.setting import setting as real_setting
-from taylor_verify.tradeoff.timing import (
-    CONFIDENCE,
-    coverage,
-    estimate,
-    in_rounds,
-    place,
-)
+from taylor_verify.tradeoff.timing import in_rounds
 from taylor_verify_reports.studies.tradeoff import measurement, rounds
 from taylor_verify_reports.studies.tradeoff.measurement import (
     SCENES,
     published_settings,
     scene_named,
 )
+from taylor_verify_reports.studies.tradeoff.medians import CONFIDENCE, coverage, estimate, place
 from taylor_verify_reports.studies.tradeoff.rounds import YARDSTICK, measured
 
 F64 = rung("f64")

@@ -58,12 +58,16 @@ def run(
         For a name that is no solver or no rung, and for a tolerance that is no positive number below 1 or
         is given for a quantity that the scene does not have, and for a baseline that is none.
     """
-    from taylor_verify.batch.compared import compared, earlier
+    from taylor_verify.batch.comparison import ComparedJudgement
+    from taylor_verify.batch.earlier_file import earlier
     from taylor_verify.chain import judge_scene
 
     before = earlier(baseline, gate)
     result = judge_scene(scene, solver, rung, tolerance, causes=causes)
-    return result if before is None else compared(result, before, gate)
+    if before is None:
+        return result
+    comparison = before.compare_as_baseline(result, gate == "baseline")
+    return ComparedJudgement(**result.common, comparison=comparison)
 
 
 def solve(

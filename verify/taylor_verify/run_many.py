@@ -99,7 +99,7 @@ def run_many(
     from pathlib import Path
 
     from taylor_verify.batch.chosen_scenes import Selection, select
-    from taylor_verify.batch.compared import earlier
+    from taylor_verify.batch.earlier_file import earlier
     from taylor_verify.batch.judgements import Judgements
     from taylor_verify.batch.judging import judge_all
     from taylor_verify.batch.lock import alone_in
@@ -140,7 +140,6 @@ def _faults(
 ) -> Iterator[str]:
     """Yield a sentence for each argument of a wrong kind."""
     from numbers import Integral
-    from os import PathLike
 
     from taylor_verify.records.faults import brief
     from taylor_verify.solvers.solver import Solver

@@ -10,6 +10,9 @@ from typing import Any
 from taylor_verify.batch.job import Job
 from taylor_verify.judge.tolerances import NO_TOLERANCES, Tolerances
 from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.faults import Refused, brief
+from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 
@@ -71,8 +74,6 @@ def select(
     ValueError
         For a name that is no rung, and for what is neither scenes nor rungs.
     """
-    from taylor_verify.numbers.precision import rung as rung_named
-    from taylor_verify.records.precisions import LADDER
     from taylor_verify.scenes.expected import left_out
     from taylor_verify.scenes.library import named, names
 
@@ -80,7 +81,8 @@ def select(
     rungs = None if rungs is None else _several(rungs, "rungs")
     asked = rungs if rungs is not None else LADDER if scenes is None else ("f64",)
     on = tuple(dict.fromkeys(rung_named(rung).name for rung in asked))
-    words = [_word(scene) for scene in (names() if scenes is None else scenes)]
+    named_scenes = names() if scenes is None else scenes
+    words = [fspath(scene) if isinstance(scene, PathLike) else scene for scene in named_scenes]
     without = left_out([word for word in words if isinstance(word, str)], on)
     chosen = [one for word in words for one in (named(word) if isinstance(word, str) else [word])]
     return Selection(read_all(chosen), on, without, is_standard_set=scenes is None)
@@ -88,7 +90,6 @@ def select(
 
 def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
     """Read scenes, each once. Raises Refused with the faults of all that cannot be read."""
-    from taylor_verify.records.faults import Refused
     from taylor_verify.scenes.reading.reader import as_scene
 
     asked = [*scenes]
@@ -109,15 +110,8 @@ def read_all(scenes: Iterable[Scene | str]) -> tuple[Scene, ...]:
 
 def _several(asked: Any, what: str) -> Sequence[Any]:
     """Return what was asked for as a sequence: a text is one name, and no row of letters."""
-    from taylor_verify.numbers.precision import Rung
-    from taylor_verify.records.faults import brief
-
     if isinstance(asked, str | PathLike | Scene | Rung):
         return [asked]
     if isinstance(asked, bytes) or not isinstance(asked, Iterable):
         raise ValueError(f"expected {what} or the name of one, got {brief(asked)} @ {what}")
     return [*asked]
-
-
-def _word(scene: Scene | str | PathLike[str]) -> Scene | str:
-    return fspath(scene) if isinstance(scene, PathLike) else scene

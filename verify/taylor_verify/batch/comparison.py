@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from taylor_verify.batch import earlier_file
-from taylor_verify.batch.differences import (
-    Difference,
-    Differences,
-    Direction,
-    compare,
-    finite,
-)
+from taylor_verify.batch.differences import Difference, Differences, Direction, compare, row_of
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.answers import AgainstBaseline
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.passing import NotPassed, Passing
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.solvers.files.file import Recorded
@@ -78,6 +70,26 @@ class Comparison(Passing):
             raise NotPassed("\n".join(lines) or "no row was compared")
 
 
+@dataclass(frozen=True, repr=False)
+class ComparedJudgement(Judgement):
+    """A Judgement, and its ``comparison`` with a baseline: it passes where both do.
+
+    A comparison that ``decides`` is asked alone.
+    """
+
+    comparison: Comparison
+
+    @property
+    def passed(self) -> bool:
+        """True if the comparison passed and, unless it decides alone, the judgement too."""
+        return self.comparison.passed and (self.comparison.decides or super().passed)
+
+    def raise_for_failure(self) -> None:
+        """Raise NotPassed, with the lines of the comparison or else of the judgement, unless it passed."""
+        self.comparison.raise_for_failure()
+        super().raise_for_failure()
+
+
 @dataclass(frozen=True)
 class Earlier:
     """The verdicts of an earlier run, read from ``source`` before a new run begins.
@@ -124,24 +136,6 @@ class Earlier:
         report = compare(before, results.verdicts)
         compared = report.compared, report.departures, (), (), before, self._notes
         return Comparison(*compared, doubted=bool(self.edited), source=self.source)
-
-
-def read_baseline(file: str | PathLike[str]) -> Earlier:
-    """Read ``verdicts.json`` of `run --out`, or the document of `run --json` and `check --json`.
-
-    Raises records.faults.Refused for a file that cannot be read, and ValueError for one that holds
-    something else.
-    """
-    return Earlier(fspath(file), *earlier_file.load(fspath(file)))
-
-
-def earlier_document(document: Mapping[str, Any]) -> Earlier:
-    """Return the rows of the document of `run --json`. Raises ValueError for any other."""
-    try:
-        content = json.dumps(document).encode()
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"expected a JSON document, got {error} @ baseline") from None
-    return Earlier("the baseline", *earlier_file.of_document(content, "baseline"))
 
 
 def _asked_again(before: Sequence[Verdict], results: Judgements | Judgement) -> tuple[Verdict, ...]:
@@ -191,26 +185,22 @@ def _unjudged(
     A failed row without a finite error is worse than any, even if the baseline has no finite error either.
     A row that shows nothing is not compared: it is undecided, vacuous or refused, or it fails and is new.
     """
-    known = {_row(verdict) for verdict in before}
+    known = {row_of(verdict) for verdict in before}
     decisive = (Direction.WORSE, Direction.OTHER_QUESTION)
-    places = {_row(difference) for difference in named if difference.direction in decisive}
+    places = {row_of(difference) for difference in named if difference.direction in decisive}
     for verdict in now:
         status = exit_status([verdict])
-        if status == 0 or _row(verdict) in places:
+        if status == 0 or row_of(verdict) in places:
             continue
         if status != 1:
             words = "a row that shows something", f"{verdict.verdict} ({verdict.because})"
             yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
-        elif finite(verdict, "max") is None:
+        elif finite(verdict.max) is None:
             words = "a finite error", "no finite number"
             yield Difference.of(verdict, Direction.WORSE, *words, "max")
-        elif _row(verdict) not in known:
+        elif row_of(verdict) not in known:
             words = "a row of the baseline", "a new one that fails"
             yield Difference.of(verdict, Direction.OTHER_QUESTION, *words)
-
-
-def _row(of: Verdict | Difference) -> tuple[str, str, str]:
-    return of.scene, of.rung, of.quantity
 
 
 def shown_verdicts(results: Judgements | Judgement) -> list[Verdict]:

@@ -52,6 +52,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Final
 
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import COMPLETE, SOUND_ATTITUDE
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -99,8 +100,9 @@ class Difference:
         cls, verdict: Verdict, direction: Direction, expected: str, got: str, what: str = ""
     ) -> Difference:
         """Return the difference of a row, or of its number ``what``."""
-        row = verdict.scene, verdict.rung, verdict.quantity
-        return cls(*row, what, expected, got, verdict.solver, verdict.setting, direction)
+        return cls(
+            *row_of(verdict), what, expected, got, verdict.solver, verdict.setting, direction
+        )
 
     def __str__(self) -> str:
         place = " ".join(part for part in (self.scene, self.rung, self.quantity, self.what) if part)
@@ -240,10 +242,14 @@ def _of_errors(old: Verdict, new: Verdict) -> Iterator[Difference]:
     grown: list[tuple[str, str, str]] = []
     shrunk: list[tuple[str, str, str]] = []
     for name in ERRORS:
-        was, now = finite(old, name), finite(new, name)
+        was, now = finite(getattr(old, name)), finite(getattr(new, name))
         level = LEVEL * (1.0 if name == "ratio" else attainable)
-        if has_grown(was, now, level):
-            grown.append((name, _most(was, level), format_number(now)))
+        # An earlier error that is no number has nothing beyond it.
+        if was is not None and has_grown(was, now, level):
+            floors = f"{LEVEL:g} roundoff floors, {level:.3g}"
+            larger = f"the larger of the earlier error {was:.3g} and {floors}"
+            most = f"at most {FACTOR * max(was, level):.3g} ({FACTOR:g} x {larger})"
+            grown.append((name, most, format_number(now)))
         elif has_grown(now, was, level):
             shrunk.append((name, _least(was), format_number(now)))
     for direction, errors in ((Direction.WORSE, grown), (Direction.BETTER, shrunk)):
@@ -261,13 +267,6 @@ def has_grown(was: float | None, now: float | None, level: float) -> bool:
     return not now <= FACTOR * max(was, level)
 
 
-def _most(was: float | None, level: float) -> str:
-    if was is None:
-        return format_number(was)
-    larger = f"the larger of the earlier error {was:.3g} and {LEVEL:g} roundoff floors, {level:.3g}"
-    return f"at most {FACTOR * max(was, level):.3g} ({FACTOR:g} x {larger})"
-
-
 def _least(was: float | None) -> str:
     if was is None:
         return format_number(was)
@@ -276,15 +275,14 @@ def _least(was: float | None) -> str:
 
 def _attainable(old: Verdict, new: Verdict) -> float:
     """Return the error that is attainable in the former number of steps."""
-    before, now = (finite(row, "attainable") or 0.0 for row in (old, new))
+    before, now = (finite(row.attainable) or 0.0 for row in (old, new))
     steps = old.steps / new.steps if 0 < old.steps < new.steps else 1.0
     return max(before, math.sqrt(steps) * now)
 
 
-def finite(verdict: Verdict, name: str) -> float | None:
-    """Return a number of a verdict as it is stored in its row: None for NaN and the infinities."""
-    value: float | None = getattr(verdict, name)
-    return value if value is not None and math.isfinite(value) else None
+def row_of(each: Verdict | Difference) -> tuple[str, str, str]:
+    """Return scene, rung and quantity."""
+    return each.scene, each.rung, each.quantity
 
 
 def format_number(value: float | None) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
-from taylor_verify.batch.differences import Difference, Direction
+from taylor_verify.batch.differences import Difference, Direction, row_of
 from taylor_verify.records.answers import ExpectationsMet
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
@@ -37,7 +37,7 @@ class Agreement:
 
     def met(self, verdict: Verdict) -> Expectation | None:
         """Return the expectation of a row that is no pass and came as expected; None for all others."""
-        expectation = self.expected.get(_row(verdict))
+        expectation = self.expected.get(row_of(verdict))
         if expectation is None or verdict.verdict is Status.PASS:
             return None
         return expectation if expectation.verdict == verdict.verdict.value else None
@@ -68,7 +68,7 @@ class Agreement:
 
     def row(self, verdict: Verdict) -> dict[str, Any]:
         """Return the row as JSON has it, with what was expected of it where the file speaks of it."""
-        expectation = self.expected.get(_row(verdict))
+        expectation = self.expected.get(row_of(verdict))
         if expectation is None:
             return verdict.row()
         is_met = expectation.verdict == verdict.verdict.value
@@ -118,16 +118,8 @@ def compare_with_expectations(
             expected[row] = wanted
             got = by_quantity[quantity].verdict.value if quantity in by_quantity else "no row"
             if got != wanted.verdict:
-                mismatches.append(_mismatch(row, wanted, got))
+                # To the better or to the worse, it is a failure.
+                why = f" ({wanted.why})" if wanted.why else ""
+                words = f"{wanted.verdict}{why}", got
+                mismatches.append(Difference(*row, "", *words, TAYLOR, "", Direction.CHANGED))
     return Agreement(verdicts, expected, tuple(mismatches))
-
-
-def _mismatch(row: Row, wanted: Expectation, got: str) -> Difference:
-    """Return a row that came otherwise; to the better or to the worse, it is a failure."""
-    why = f" ({wanted.why})" if wanted.why else ""
-    expected = f"{wanted.verdict}{why}"
-    return Difference(*row, "", expected, got, TAYLOR, "", Direction.CHANGED)
-
-
-def _row(verdict: Verdict) -> Row:
-    return verdict.scene, verdict.rung, verdict.quantity

@@ -21,21 +21,22 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from msgspec import to_builtins
 from platformdirs import user_cache_path
 
+from taylor_verify.batch.job import Job
 from taylor_verify.batch.lock import Occupied, alone_in
 from taylor_verify.batch.pickling import dumps
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.provenance import versions
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, converted
 from taylor_verify.records.regular_file import bounded_bytes
-
-if TYPE_CHECKING:
-    from taylor_verify.batch.job import Job
-    from taylor_verify.judge.judgement import Judgement
-    from taylor_verify.solvers.solver import Solver
+from taylor_verify.scenes.reading.reader import as_scene
+from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
+from taylor_verify.solvers.solver import Solver
 
 _SUFFIX: Final = ".judged"
 _log = logging.getLogger(__name__)
@@ -76,9 +77,6 @@ class Unfinished:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _file(self, job: Job) -> Path:
-        from taylor_verify.judge.provenance import versions
-        from taylor_verify.scenes.reading.reader import as_scene
-
         question = (as_scene(job.scene).digest, *_words(job))
         depends = (question, program_digests(job.solver), versions(), package_digest())
         return self.folder / f"{_digest(repr(depends).encode())}{_SUFFIX}"
@@ -118,8 +116,6 @@ def to_bytes(judgements: Sequence[Judgement]) -> bytes:
 
 def from_bytes(content: bytes) -> list[Judgement]:
     """Return the judgements as they were; ValueError for any other content."""
-    from taylor_verify.judge.judgement import Judgement
-
     digest, _, text = content.partition(b"\n")
     if digest != _digest(text).encode():
         raise ValueError("expected the digest of the content")
@@ -143,8 +139,6 @@ def program_digests(solver: Solver | str) -> list[str]:
 
     They are those of the files that a command names, and of the module of a function.
     """
-    from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
-
     if not isinstance(solver, str):
         return _digests_of(solver)
     if solver.startswith(PYTHON):

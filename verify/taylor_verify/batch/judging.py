@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.finished_jobs import unfinished
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.work import run_all
+from taylor_verify.judge.judgement import Judgement
+from taylor_verify.records.faults import Refused
+from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.solvers.registry import PYTHON
-
-if TYPE_CHECKING:
-    from taylor_verify.judge.judgement import Judgement
 
 Progress = Callable[[int, int, Job | None], None]
 """Called with the jobs finished, all jobs, and the one that has just ended (None at the start)."""
@@ -64,7 +63,9 @@ def judge_all(
             progress(ended, len(jobs), job)
 
     report(None)
-    if len(jobs) == 1 and executor is None and not _may_end_the_process(jobs[0]):
+    # With the `os._exit(0)` of a function by its name this process would seem to pass.
+    is_named = any(isinstance(j.solver, str) and j.solver.startswith(PYTHON) for j in jobs)
+    if len(jobs) == 1 and executor is None and not is_named:
         judgements = run_job(jobs[0])
         report(jobs[0])
         return judgements
@@ -100,16 +101,10 @@ def judge_all(
     return [each for known in stored for each in (next(rest) if known is None else known)]
 
 
-def _may_end_the_process(job: Job) -> bool:
-    """Return True for a function by its name: with its `os._exit(0)` this process would seem to pass."""
-    return isinstance(job.solver, str) and job.solver.startswith(PYTHON)
-
-
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
+    # Not at the top: where others judge, this process does without it, which takes 300 ms.
     from taylor_verify.chain import judge_scene
-    from taylor_verify.records.faults import Refused
-    from taylor_verify.scenes.reading.reader import as_scene
 
     with failing(job.name, Refused):
         scene = as_scene(job.scene)
@@ -126,8 +121,6 @@ def _expense(job: Job) -> float:
     It counts the tracked states, and ten times as much where the truth, or the flow between two samples of
     a loaded body, is no closed form; of long runs the radians.
     """
-    from taylor_verify.scenes.reading.reader import as_scene
-
     scene = as_scene(job.scene)
     body, start = scene.body, scene.initial
     states = len(start.moving) * (1 + 3 * len(scene.track))

@@ -83,7 +83,8 @@ class LocalPool(Executor):
 
     def terminate(self) -> None:
         """End the workers at once, in the middle of whatever they do; return when they have ended."""
-        with _interrupts_ignored():
+        # A second interrupt does not end the end of the workers, which takes some seconds at most.
+        with _interrupts_handled(signal.SIG_IGN):
             self._threads.shutdown(wait=False, cancel_futures=True)
             for worker in self._workers:
                 worker.process.terminate()
@@ -228,16 +229,17 @@ def _script_hidden() -> Iterator[None]:
 
 
 @contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let a second interrupt not end the end of the workers, which takes some seconds at most."""
-    if threading.current_thread() is not threading.main_thread():
+def _interrupts_handled(handler: Any) -> Iterator[None]:
+    """Handle interrupts so within the block, in the main thread; a handler that is not Python's stays."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before is None:
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGINT, handler)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before or signal.default_int_handler)
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager
@@ -252,26 +254,15 @@ def _interrupts_blocked() -> Iterator[None]:
         return
     # The first worker would start it, and that lifts the mask in Python 3.13.0 and before.
     resource_tracker.ensure_running()
-    with _interrupts_noted():
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            yield
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _interrupts_noted() -> Iterator[None]:
-    """Call the handler of an interrupt at the end of the block and not within it."""
-    handler = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(handler):
-        yield
-        return
     noted: list[tuple[int, FrameType | None]] = []
-    signal.signal(signal.SIGINT, lambda number, frame: noted.append((number, frame)))
+    handler = signal.getsignal(signal.SIGINT)
     try:
-        yield
+        with _interrupts_handled(lambda number, frame: noted.append((number, frame))):
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
     finally:
-        signal.signal(signal.SIGINT, handler)
-        if noted:
+        if noted and callable(handler):
             handler(*noted[0])

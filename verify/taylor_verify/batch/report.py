@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from taylor_verify.batch.comparison import Comparison, Earlier, shown_verdicts
+from taylor_verify.batch.comparison import Comparison, shown_verdicts
 from taylor_verify.batch.differences import Difference
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.records import store
 from taylor_verify.records.answers import LikelyCause
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-
-if TYPE_CHECKING:
-    from taylor_verify.words.case import Remark
+from taylor_verify.words.account import cause_line
+from taylor_verify.words.case import Remark
 
 
 class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the report)
@@ -25,15 +22,6 @@ class ReportNotWritten(OSError):  # noqa: N818 (it names what happened to the re
     def __init__(self, message: str, results: Judgements) -> None:
         super().__init__(message)
         self.results = results
-
-
-def read_report(folder: str | PathLike[str]) -> Earlier:
-    """Read the verdicts of a report folder.
-
-    Raises FileNotFoundError where there are none, and ValueError for a file that holds something else.
-    """
-    place = Path(folder)
-    return Earlier(fspath(folder), store.load(place), store.are_edited(place))
 
 
 def write_junit(
@@ -70,9 +58,6 @@ def _explained(results: Judgements | Judgement, cause: LikelyCause) -> list[Verd
 
 def remarks(results: Judgements | Judgement, comparison: Comparison | None = None) -> list[Remark]:
     """Return the remarks on rows for a CI, besides their verdicts: unexpected answers, and regressions."""
-    from taylor_verify.words.account import cause_line
-    from taylor_verify.words.case import Remark
-
     remarked: list[Remark] = []
 
     def remark(row: Verdict | Difference, status: Status, text: str) -> None:

@@ -102,7 +102,8 @@ def _sentence(error: Exception) -> str:
     if isinstance(error, OSError):
         place = f" @ {error.filename}" if error.filename else ""
         return f"expected to read and write files, got {str(error.strerror or error)!r}{place}"
-    if isinstance(error, ModuleNotFoundError) and not _is_ours(error.name or __name__):
+    ours = __name__.partition(".")[0]
+    if isinstance(error, ModuleNotFoundError) and (error.name or ours).split(".")[0] != ours:
         from taylor_verify.solvers.taylor import package
 
         if error.name == package.NAME:
@@ -111,8 +112,3 @@ def _sentence(error: Exception) -> str:
     from taylor_verify.batch.failure import Failed, fault
 
     return str(error) if isinstance(error, Failed) else fault(error)
-
-
-def _is_ours(module: str) -> bool:
-    """Return True for a module of this package."""
-    return module.partition(".")[0] == __name__.partition(".")[0]

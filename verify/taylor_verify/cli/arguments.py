@@ -222,7 +222,7 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     for option, _, value in (word.partition("=") for word in arguments):
         if option.startswith("--") and value == "--":
             options.verb.error(f"expected a value, got -- @ {option}")
-    if options.act is _greet and ("CI" in os.environ or not sys.stdout.isatty()):
+    if options.act is _GREET and ("CI" in os.environ or not sys.stdout.isatty()):
         parser.error(f"expected a verb, got none ({', '.join(OWN_VERBS)})")
     scenes = getattr(options, "scenes", None)
     files = getattr(options, "files", None)
@@ -246,13 +246,6 @@ def _unknown_verb(arguments: Sequence[str]) -> str:
     word = next(word for word in arguments if not word.startswith("-"))
     known = [*OWN_VERBS, *(verb.name for verb in verbs(OWN_VERBS))]
     return f"expected a verb, got {word} ({near_word(word, known, '`taylor-verify --help` names them')})"
-
-
-def _greet(options: argparse.Namespace) -> Answer:
-    from taylor_verify.cli.greeting import greeting
-
-    del options
-    return greeting()
 
 
 def _with_times_attached(arguments: Sequence[str]) -> list[str]:
@@ -295,7 +288,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         exit_on_error=False,
     )
     parser.add_argument("--version", action="version", version=f"taylor-verify {__version__}")
-    parser.set_defaults(act=_greet, verb=parser, json=False, quiet=False, color=COLOURS[0])
+    parser.set_defaults(act=_GREET, verb=parser, json=False, quiet=False, color=COLOURS[0])
     own = parser.add_subparsers(title="verbs", metavar=_VERB)
     for name, (what, example, arguments) in OWN_VERBS.items():
         verb = _verb_parser(own, name, what, example)
@@ -346,3 +339,7 @@ def _act(name: str, options: argparse.Namespace) -> Answer:
     """Import the module of a verb and let it answer."""
     answer: Answer = import_module(f"taylor_verify.cli.{name}").answer(options)
     return answer
+
+
+# The answer to a call without a verb.
+_GREET: Final = partial(_act, "greeting")

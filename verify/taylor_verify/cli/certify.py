@@ -9,7 +9,7 @@ from typing import Any
 from taylor_verify.certify import certify
 from taylor_verify.certify.certificate import Certificate
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
-from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.console import titled
 from taylor_verify.cli.inputs import parse_tolerance, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.records.json_text import complete
@@ -28,22 +28,10 @@ def answer(options: argparse.Namespace) -> Answer:
                 scene, options.file, tolerance, interpolation=options.interpolation
             )
     messages = [certificate.because] if certificate.because else []
-    text = partial(_text, options.file, certificate)
-    return Answer(_status(certificate), document(certificate), text, messages)
-
-
-def _status(certificate: Certificate) -> int:
-    if certificate.passed:
-        return PASS
-    return UNDECIDED if certificate.is_undecided else FAIL
-
-
-def _text(file: str, certificate: Certificate) -> str:
-    page = Page()
-    page.line(bold(file), f" against {certificate.scene}")
-    for line in certificate_lines(certificate):
-        page.line(line)
-    return page.text()
+    status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL
+    lines = certificate_lines(certificate)
+    text = partial(titled, options.file, f" against {certificate.scene}", lines)
+    return Answer(status, document(certificate), text, messages)
 
 
 def document(certificate: Certificate) -> dict[str, Any]:

@@ -24,13 +24,7 @@ from taylor_verify.cli.sentences import (
 )
 from taylor_verify.cli.standard_input import scene_and_files
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
-from taylor_verify.judge.series.files import (
-    FilesJudgement,
-    checked_steps,
-    files_judgement,
-    judge_each,
-    repeated,
-)
+from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR, states_among
 from taylor_verify.records.showing import counts
@@ -66,8 +60,7 @@ def answer(options: argparse.Namespace) -> Answer:
         one = _judged(options, scene, files[0])
         text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
         return concluded(asked, one, exit_status(one.verdicts), one.document(), text)
-    each = judge_each(files, partial(_judged, options, scene))
-    several = files_judgement(each, steps, options.knob or "")
+    several = judge_files(files, steps, partial(_judged, options, scene), options.knob or "")
     status = exit_status(several.verdicts)
     text = partial(_text_of_several, several, scene.name, options.rung)
     return concluded(asked, several, status, several.document(), text)
@@ -195,7 +188,10 @@ def _text_of_several(judged: FilesJudgement, scene: str, rung: str, status: int 
     page.line()
     _print_files(page, judged)
     for one in judged.files:
-        _print_peculiar(page, one, common)
+        if lines := [line for line in _peculiar(one) if line not in common]:
+            page.line()
+            page.line(bold(one.file.name))
+            page.indented("  ", *lines)
     page.line()
     page.line(f"{counts(judged.verdicts)}; `check` of one file alone says the reasons")
     return page.text()
@@ -213,14 +209,6 @@ def _print_files(page: Page, judged: FilesJudgement) -> None:
         begin = [one.file.name, f"{step.value:g}" if step else "", str(len(one.file.times))]
         rows.append([*begin, *(figure(errors.get(name)) for name in states), counts(one.verdicts)])
     print_table(page.console, headings, rows, keys=1)
-
-
-def _print_peculiar(page: Page, one: FileJudgement, common: Sequence[str]) -> None:
-    lines = [line for line in _peculiar(one) if line not in common]
-    if lines:
-        page.line()
-        page.line(bold(one.file.name))
-        page.indented("  ", *lines)
 
 
 def _peculiar(one: FileJudgement) -> Iterator[str]:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.batch.comparison import Comparison, Earlier, read_baseline, shown_verdicts
+from taylor_verify.batch.comparison import Comparison, Earlier, shown_verdicts
+from taylor_verify.batch.earlier_file import read_baseline
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.report import remarks, write_junit
 from taylor_verify.cli.answer import WRONG_CALL, Answer, WrongCall, graver, wrong_calls

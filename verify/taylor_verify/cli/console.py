@@ -81,6 +81,15 @@ class Page:
         return self.console.end_capture().rstrip("\n")
 
 
+def titled(title: str, rest: str, lines: Iterable[str]) -> str:
+    """Return a text that begins with a title in bold and the rest of its line; other lines follow."""
+    page = Page()
+    page.line(bold(title), rest)
+    for line in lines:
+        page.line(line)
+    return page.text()
+
+
 def print_table(
     console: Console, headings: Sequence[str], rows: Sequence[Sequence[Cell]], keys: int
 ) -> None:

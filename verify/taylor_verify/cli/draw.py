@@ -24,7 +24,6 @@ from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.numbers.precision import rung
 from taylor_verify.plotting.picture import ENDINGS as STILLS
 from taylor_verify.plotting.picture import Picture, content
-from taylor_verify.records.record import Record
 from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
@@ -46,7 +45,10 @@ def answer(options: argparse.Namespace) -> Answer:
     if options.animate and (names or files):
         raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
-        document = _document(scene, options.animate)
+        with wrong_calls(f" @ {scene.name}", Unsettled):
+            document = motion(scene)
+            # A short motion is animated over a longer time.
+            document = lengthened(scene, document) if options.animate else document
         if options.animate:
             shown = [_animate(moving(document), place)]
         else:
@@ -65,13 +67,6 @@ def _animate(motion: Mapping[str, Any], place: Path) -> dict[str, str]:
     return {"file": str(path), "picture": "animation", **named}
 
 
-def _document(scene: Scene, is_animated: bool) -> dict[str, Any]:
-    """Return the motion to be drawn, a short one longer to be animated. Raises WrongCall without it."""
-    with wrong_calls(f" @ {scene.name}", Unsettled):
-        document = motion(scene)
-        return lengthened(scene, document) if is_animated else document
-
-
 def _pictures(
     document: Mapping[str, Any],
     names: Sequence[str],
@@ -88,12 +83,9 @@ def _pictures(
         )
     judged = {file.name: judge(file) for file in files}
     if judged and (not names or ERRORS in names):
-        drawings[ERRORS] = file_errors.picture(document, _records(judged))
+        records = {name: each.record.document() for name, each in judged.items() if each.record}
+        drawings[ERRORS] = file_errors.picture(document, records)
     return {**drawings, **dict(_loads(document, names, judged))}
-
-
-def _records(judged: Mapping[str, FileJudgement]) -> dict[str, Record]:
-    return {name: each.record for name, each in judged.items() if each.record}
 
 
 def _loads(

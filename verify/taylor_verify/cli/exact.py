@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any, Final
 
 from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
-from taylor_verify.cli.console import Page, bold
+from taylor_verify.cli.console import Page, bold, titled
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
 from taylor_verify.exact.event_times import events_of
@@ -49,15 +49,10 @@ def _of_events(options: argparse.Namespace) -> Answer:
     doubts = [content["because"]] if "because" in content else []
     status = UNDECIDED if doubts or content["undecided"] else PASS
     document = {"scene": scene.name, "event": options.event, "until": options.until, **content}
-    return Answer(status, document, str if doubts else partial(_text_of_events, document), doubts)
-
-
-def _text_of_events(content: Mapping[str, Any]) -> str:
-    page, (first, *rest) = Page(), event_lines(content)
-    page.line(bold(content["scene"]), f": {first}")
-    for line in rest:
-        page.line(line)
-    return page.text()
+    if doubts:
+        return Answer(status, document, str, doubts)
+    first, *rest = event_lines(document)
+    return Answer(status, document, partial(titled, scene.name, f": {first}", rest))
 
 
 def _of_times(options: argparse.Namespace) -> Answer:

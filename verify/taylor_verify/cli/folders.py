@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Final
 
+from taylor_verify.batch import lock
 from taylor_verify.cli.answer import WrongCall, wrong_calls
 
 # Bytes of a file name that are not UTF-8, as Python has them.
@@ -27,8 +28,6 @@ def alone_in(folder: Path | None, option: str = "--out") -> Iterator[None]:
 
     Raises WrongCall if another run is there, or if the folder cannot be written.
     """
-    from taylor_verify.batch import lock
-
     with ExitStack() as stack:
         if folder is not None:
             with (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from typing import Final
 
 from taylor_verify.cli.answer import PASS, Answer
@@ -14,8 +15,9 @@ _USES: Final = {
 }
 
 
-def greeting() -> Answer:
+def answer(options: argparse.Namespace) -> Answer:
     """Return the answer to a call without a verb."""
+    del options
     what = "how wrong is your simulation of a rigid body, or of a solid in an ideal fluid?"
     lines = [
         f"taylor-verify {__version__}: {what}",

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from taylor_verify.batch.chosen_scenes import read_all
 from taylor_verify.cli.answer import WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
+from taylor_verify.judge.tolerances import Tolerances, tolerances
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.library import named
 from taylor_verify.scenes.reading.table import exact_number, is_numeral
 from taylor_verify.scenes.scene import Scene
-
-if TYPE_CHECKING:
-    from taylor_verify.judge.tolerances import Tolerances
 
 # The most scenes that a message names.
 _SHOWN: Final = 3
@@ -73,8 +71,6 @@ def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
 
     Raises WrongCall for what is none.
     """
-    from taylor_verify.judge.tolerances import tolerances
-
     with wrong_calls():
         return tolerances(parse_tolerance(text), scenes, "--tolerance")
 
@@ -91,14 +87,14 @@ def parse_tolerance(text: str | None) -> Any:
 
 
 def _by_name(text: str) -> dict[str, Any]:
-    tolerances: dict[str, Any] = {}
+    by_name: dict[str, Any] = {}
     for part in text.split(","):
         name, equals, value = (word.strip() for word in part.partition("="))
-        if not equals or name in tolerances:
+        if not equals or name in by_name:
             got = f"{name} twice" if equals else repr(part)
             raise ValueError(f"expected NAME=E,NAME=E with each name once, got {got} @ --tolerance")
-        tolerances[name] = _tolerance(value)
-    return tolerances
+        by_name[name] = _tolerance(value)
+    return by_name
 
 
 def _tolerance(text: str) -> float | str:

@@ -10,10 +10,11 @@ from typing import Final
 
 from taylor_verify.batch.chosen_scenes import select
 from taylor_verify.batch.comparison import Earlier
+from taylor_verify.batch.earlier_file import read_report
 from taylor_verify.batch.expectations import Agreement
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.lock import Occupied
-from taylor_verify.batch.report import ReportNotWritten, read_report
+from taylor_verify.batch.report import ReportNotWritten
 from taylor_verify.cli.answer import PASS, WRONG_CALL, Answer, WrongCall, graver, wrong_calls
 from taylor_verify.cli.ci import Outputs, concluded, outputs
 from taylor_verify.cli.console import PIPED_WIDTH, Cell, Page, bold, print_table
@@ -37,6 +38,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.run_many import run_many
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.words.account import cause_line, note_line
+from taylor_verify.words.cells import in_roundoffs, over_attainable
 from taylor_verify.words.opening import opening
 
 # Up to so many runs, their sentences come before the lines of the overview.
@@ -148,7 +150,10 @@ def _text(results: Judgements, explained: bool, status: int | None) -> str:
     why = agreement.unjudged
     if not why or len({verdict.because for verdict in verdicts}) > 1:
         _print_rows(page, results, explained)
-    total = f"{counts(verdicts)}{_as_expected(agreement)}"
+    met, mismatches = agreement.document().met, len(agreement.mismatches)
+    total = counts(verdicts)
+    total += f"; {met} of them as expected" if met else ""
+    total += f"; {mismatches} not as expected" if mismatches else ""
     print_end(page, agreement.unexpected, total, status, explained)
     if why:
         page.line(f"nothing was judged: {why}")
@@ -207,22 +212,12 @@ def _expected(verdict: Verdict, agreement: Agreement) -> str:
     return "" if expected is None else expected.why
 
 
-def _as_expected(agreement: Agreement) -> str:
-    """Return how many of the rows that are no pass are what the extremes are expected to answer."""
-    met, mismatches = agreement.document().met, len(agreement.mismatches)
-    words_and_counts = {
-        f"{met} of them as expected": met,
-        f"{mismatches} not as expected": mismatches,
-    }
-    return "".join(f"; {words}" for words, count in words_and_counts.items() if count)
-
-
 def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
     status = status_text(gravest(v.verdict for v in group))
     compared = [v for v in group if v.at is not None]
     if not compared:
         return (status, *[""] * 8)
-    state = max((v for v in compared if is_state(v.quantity)), key=_ratio)
+    state = max((v for v in compared if is_state(v.quantity)), key=over_attainable)
     drift = max((v for v in compared if v.is_conserved), key=_units, default=None)
     return (
         status,
@@ -230,7 +225,7 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
         f"{_units(state):.3g}",
         f"{state.at:.6g}",
         *((drift.quantity, f"{_units(drift):.3g}") if drift else ("", "")),
-        f"{max(map(_ratio, compared)):.2g}",
+        f"{max(map(over_attainable, compared)):.2g}",
         str(state.steps or ""),
         f"{state.seconds:.3f}" if state.seconds is not None else "",
     )
@@ -238,13 +233,5 @@ def _run_cells(group: list[Verdict]) -> tuple[Cell, ...]:
 
 def _units(verdict: Verdict) -> float:
     """Return the largest error in units of roundoff; NaN counts as larger than any."""
-    return _finite(verdict.max) / verdict.roundoff if verdict.roundoff else inf
-
-
-def _ratio(verdict: Verdict) -> float:
-    """Return the largest error over attainable; NaN counts as larger than any."""
-    return _finite(verdict.ratio)
-
-
-def _finite(number: float | None) -> float:
-    return inf if number is None or isnan(number) else number
+    units = in_roundoffs(verdict, verdict.max)
+    return inf if units is None or isnan(units) else units

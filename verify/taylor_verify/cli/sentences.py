@@ -5,17 +5,14 @@ from __future__ import annotations
 import sys
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from rich.text import Text
 
 from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, WRONG_CALL
 from taylor_verify.cli.console import Page, bold
+from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.account import allowance
 from taylor_verify.words.next_steps import next_steps
-
-if TYPE_CHECKING:
-    from taylor_verify.records.verdict import Verdict
 
 _COLOURS = {"pass": "green", "fail": "bold red", "undecided": "yellow", "vacuous": "yellow"}
 _MEANINGS = {PASS: "passed", FAIL: "failed", UNDECIDED: "undecided", WRONG_CALL: "not judged"}

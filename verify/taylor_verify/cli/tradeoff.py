@@ -12,33 +12,20 @@ from typing import Any, Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import (
-    PASS,
-    UNDECIDED,
-    WRONG_CALL,
-    Answer,
-    WrongCall,
-    wrong_calls,
-)
+from taylor_verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import alone_in, not_written, writable
 from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.streams import say
 from taylor_verify.records.replacement import replace_files
+from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import prepare
 from taylor_verify.solvers.engines.launcher import NotMade
-from taylor_verify.tradeoff.document import label
-from taylor_verify.tradeoff.recommendation import OutOfReach, check_target, recommended
-from taylor_verify.tradeoff.setting import (
-    RUNGS,
-    Setting,
-    chosen,
-    outside,
-    settings,
-    toleranced,
-)
+from taylor_verify.tradeoff.document import label_of
+from taylor_verify.tradeoff.recommendation import OutOfReach, recommended
+from taylor_verify.tradeoff.setting import RUNGS, Setting, chosen, outside, settings, toleranced
 from taylor_verify.tradeoff.solves import cold_caches
 from taylor_verify.tradeoff.trade_off import trade_off
 
@@ -61,7 +48,10 @@ def answer(options: argparse.Namespace) -> Answer:
     rungs = known_rungs(options.rung or RUNGS)
     asked = _asked(options, rungs)
     if options.outside:
-        _make_environments()
+        # Before anything is timed: a download is no part of a solve, which says so where there is none.
+        for name in toleranced():
+            with suppress(NotMade):
+                prepare(name, say)
     documents: list[dict[str, Any]] = []
     missed: list[str] = []
     with alone_in(place), cold_caches():
@@ -106,27 +96,15 @@ def _asked(
     return lambda scene: (*(named or settings(scene, rungs)), *others)
 
 
-def _make_environments() -> None:
-    """Make the environments of engines before anything is timed: a download is no part of a solve.
-
-    The solve in one that cannot be made says so.
-    """
-    for name in toleranced():
-        with suppress(NotMade):
-            prepare(name, say)
-
-
 def _target(text: str | None) -> float | None:
     if text is None:
         return None
     try:
-        target = float(read_number(text, "--target"))
-        check_target(target)
+        return positive(float(read_number(text, "--target")), "--target")
     except (WrongCall, OverflowError, ValueError) as error:
         raise WrongCall(
             f"expected a positive error, such as 1e-9, got {text!r} @ --target"
         ) from error
-    return target
 
 
 # The text.
@@ -148,7 +126,7 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
         page.line(f"not run: {', '.join(names)} ({reason})")
     for row in trade["points"]:
         if row["standing"] not in ("sound", _NOT_RUN):
-            words = f"  {_label(row)}: {row['because']}"
+            words = f"  {label_of(row)}: {row['because']}"
             page.line(bold(row["standing"], "red"), words)
     page.line(
         f"Best of up to {timing['repeats']} solves, {timing['order']} (seed {timing['seed']}); "
@@ -171,17 +149,13 @@ def _print_trade(page: Page, trade: Mapping[str, Any]) -> None:
     page.line()
 
 
-def _label(row: Mapping[str, Any]) -> str:
-    return label(row["solver"], row["setting"], row["rung"])
-
-
 def _print_points(page: Page, trade: Mapping[str, Any]) -> None:
     rows = [row for row in trade["points"] if row["standing"] != _NOT_RUN]
     quantities = list(dict.fromkeys(name for row in rows for name in row["max"]))
     errors = [heading for name in quantities for heading in (f">{name}", ">final")]
     cells = []
     for row in rows:
-        mark = "*" if _label(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
+        mark = "*" if label_of(row) in trade["front"] else "" if row["standing"] == "sound" else "!"
         sizes = [row[part].get(name) for name in quantities for part in ("max", "final")]
         sizes = [_short(value) for value in (*sizes, row["drift"])]
         times = [_short(row[key]) for key in _TIMES]

@@ -39,15 +39,9 @@ def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
     moving = [np.array(course[name]) for name in scene.initial.MOVING]
     turns = quaternions(np.array(course["attitude"]), scene.initial.attitude)
     centre = [np.array(course["centre"])] if "centre" in course else []
-    state = np.hstack([*moving, turns, *centre, *_own(loads, course, is_held=False)])
-    values = Acting(scene, loads).loads(course["t"], state, _taken(loads, course))
+    own = [np.array(course[s.name]) for s in loads.states if not isinstance(s, Held)]
+    held = [np.array(course[s.name]) for s in loads.states if isinstance(s, Held)]
+    taken = np.hstack(held) if held else None
+    state = np.hstack([*moving, turns, *centre, *own])
+    values = Acting(scene, loads).loads(course["t"], state, taken)
     return np.hstack(values) if isinstance(values, tuple) else values
-
-
-def _taken(loads: Loads, course: Mapping[str, Any]) -> Numbers | None:
-    return np.hstack(_own(loads, course, is_held=True)) if loads.held_values else None
-
-
-def _own(loads: Loads, course: Mapping[str, Any], is_held: bool) -> list[Numbers]:
-    states = (state for state in loads.states if isinstance(state, Held) is is_held)
-    return [np.array(course[state.name]) for state in states]

@@ -15,7 +15,7 @@ import numpy as np
 
 from taylor_verify.draw.caption import captioned
 from taylor_verify.draw.stage import CROSS
-from taylor_verify.draw.surface import Mark, Surface, figure
+from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
 
@@ -38,7 +38,7 @@ def surface(portrait: Document) -> Surface:
         letter="",
         name=f"body axis {axis}",
         axes=("x", "y", "z (space)"),
-        marks=() if fixed is None else (Mark(fixed, CROSS, name),),
+        marks=() if fixed is None else (Part(fixed, CROSS, name),),
     )
 
 

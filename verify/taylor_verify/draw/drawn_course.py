@@ -70,7 +70,9 @@ def motion(scene: Scene, intervals: int = INTERVALS) -> Document:
     # The route and the evidence below are those of the last call of `exact`.
     extent = _length(scene, orbit)
     course = _course_of(scene, exact, extent, intervals)
-    if (more := _enough(course)) > 1:
+    # Rows show angles below half a turn only, however fast the body is: more parts than these do not help.
+    more = min(ceil(float(_angles(_attitudes(course)).max()) / _TURN), _MOST)
+    if more > 1:
         course = _course_of(scene, exact, extent, more * intervals)
     return {
         "scene": scene.name,
@@ -164,8 +166,7 @@ def _analytic(orbit: Elements) -> list[Document]:
 
 def span(scene: Scene) -> Fraction:
     """Return the time from the start to the farthest instant; below zero where time runs backward."""
-    start = scene.clock.start
-    return max((instant - start for instant in scene.clock.instants), key=abs)
+    return max(scene.clock.elapsed, key=abs)
 
 
 def _length(scene: Scene, orbit: Elements) -> Fraction:
@@ -190,12 +191,6 @@ def _course_of(scene: Scene, exact: Solution, extent: Fraction, intervals: int) 
     for name, rows in exactly.quantities.items():
         course[name] = [_rounded(list(row.flat)) for row in rows]
     return course
-
-
-def _enough(course: Document) -> int:
-    """Return the number of parts of an interval in which the body turns little; `_MOST` at most."""
-    # Rows show angles below half a turn only, however fast the body is: more parts than these do not help.
-    return min(ceil(float(_angles(_attitudes(course)).max()) / _TURN), _MOST)
 
 
 def _rounded(entries: Sequence[mpf]) -> list[float]:

@@ -25,7 +25,6 @@ from taylor_verify.plotting.sheet import Entry, sheet
 from taylor_verify.plotting.style import QUIET, look_of_line, look_of_rung
 from taylor_verify.plotting.wording import plain, power_of_ten
 from taylor_verify.records.quantities import is_conserved, states_among
-from taylor_verify.records.record import Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,16 +56,13 @@ class Line:
 Panels = Mapping[str, Sequence[Line]]
 
 
-def panels_of(
-    records: Mapping[str, Record | Row], start: float, *, in_roundoffs: bool = False
-) -> Panels:
+def panels_of(records: Mapping[str, Row], start: float, *, in_roundoffs: bool = False) -> Panels:
     """Return the lines of each state quantity, then of one conserved quantity, mostly the energy.
 
-    ``records`` are those of the answers, or their documents, by name. The row at ``start`` is left out.
+    ``records`` are documents of the answers' records, by name. The row at ``start`` is left out.
     """
     lines_of: dict[str, list[Line]] = {}
-    for name, each in records.items():
-        record = each.document() if isinstance(each, Record) else each
+    for name, record in records.items():
         unit = record["unit_roundoff"] if in_roundoffs else 1.0
         times = np.array(record["times"])
         for gate in record["gates"]:
@@ -87,11 +83,11 @@ def _above_zero(values: Sequence[float | None]) -> Numbers:
 
 
 def picture(
-    document: Document, records: Mapping[str, Record | Row], *, in_roundoffs: bool = False
+    document: Document, records: Mapping[str, Row], *, in_roundoffs: bool = False
 ) -> Picture:
     """Return the errors of all answers in one picture, beside the roundoff floor.
 
-    ``document`` is the exact motion. ``records`` are those of the judged answers, or their documents, by
+    ``document`` is the exact motion. ``records`` are documents of the judged answers' records, by
     the names that the picture shows: files, or rungs, whose errors are in their own roundoffs. Raises
     NotDrawn if no error is above zero.
     """

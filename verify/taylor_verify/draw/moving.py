@@ -76,7 +76,8 @@ def moving(document: Document) -> dict[str, Any]:
         "inset": _inset(document),
         "panels": [_panel(panel) for panel in _shown(document, parts)],
         "flips": _rounded(parts.flips, 7),
-        "seconds": _seconds(attitudes),
+        # So long that the eye can follow each turn.
+        "seconds": min(max(_TURN * turns(attitudes), _SHORTEST), _LONGEST),
     }
 
 
@@ -154,11 +155,6 @@ def _on_surface(drawn: Surface) -> dict[str, Any]:
         "view": {"azimuth": drawn.side.azimuth, "elevation": drawn.side.elevation},
         "sinks": drawn.sinks,
     }
-
-
-def _seconds(attitudes: Numbers) -> float:
-    """Return how long the motion plays, so that the eye can follow each turn."""
-    return min(max(_TURN * turns(attitudes), _SHORTEST), _LONGEST)
 
 
 def _rounded(values: Numbers | Iterable[float], digits: int = _DIGITS) -> Any:

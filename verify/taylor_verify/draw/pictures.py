@@ -6,13 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, Final
 
-from taylor_verify.draw import (
-    axis_path,
-    centre_path,
-    components,
-    polhode,
-    spheres,
-)
+from taylor_verify.draw import axis_path, centre_path, components, polhode, spheres
 from taylor_verify.draw.caption import NotDrawn
 from taylor_verify.plotting.picture import Picture
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, NotDrawn, captioned
 from taylor_verify.draw.stage import Look
-from taylor_verify.draw.surface import Curve, Surface, figure
+from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Ellipsoid, Numbers
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.wording import plain
@@ -57,7 +57,7 @@ def surface(portrait: Document) -> Surface:
         semi_axes=(a, b, c),
         axes=tuple(f"{OMEGA}{s} = {v:.3g}" for s, v in zip(SUBSCRIPTS, (a, b, c), strict=True)),
         curves=tuple(
-            Curve(section, _BORDER, "separatrices") for section in _separatrices((a, b, c), moments)
+            Part(section, _BORDER, "separatrices") for section in _separatrices((a, b, c), moments)
         ),
     )
 

@@ -11,7 +11,7 @@ import numpy as np
 from taylor_verify.draw.axis_path import momentum_of
 from taylor_verify.draw.caption import NotDrawn, captioned
 from taylor_verify.draw.stage import Look
-from taylor_verify.draw.surface import Curve, Surface, figure
+from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
 
@@ -39,25 +39,22 @@ def surface(document: Document) -> Surface:
         course=first,
         letter=letter,
         name=f"direction of {letter} in the body",
-        curves=tuple(Curve(rows, _SECOND, f"direction of {name}") for name, rows in others),
+        curves=tuple(Part(rows, _SECOND, f"direction of {name}") for name, rows in others),
     )
 
 
 def _directions(document: Document) -> dict[str, Numbers]:
-    directions = {}
+    course, directions = document["course"], {}
+    vectors = {letter: np.array(course[name]) for letter, name in _NAMES.items() if name in course}
+    if document["body"] is not None:
+        vectors = {"H": momentum_of(document)[0]}
     # Where wheels cancel the momentum of the body, only the rounding of the digits is left.
     wheels = float(np.linalg.norm(document["rotor"] or [0.0]))
-    for letter, rows in _vectors(document).items():
+    for letter, rows in vectors.items():
         sizes = np.linalg.norm(rows, axis=1, keepdims=True)
         if sizes.min() > _ZERO * max(sizes.max(), wheels):
             directions[letter] = rows / sizes
     return directions
-
-
-def _vectors(document: Document) -> dict[str, Numbers]:
-    if document["body"] is not None:
-        return {"H": momentum_of(document)[0]}
-    return {letter: np.array(document["course"][name]) for letter, name in _NAMES.items()}
 
 
 def picture(document: Document) -> Picture:

@@ -71,11 +71,20 @@ class Stage:
     surface: Ellipsoid | None = None
 
     @classmethod
-    def showing(cls, spots: Numbers, view: View, width: float, height: float) -> Stage:
-        """Return a stage of this size in inches that shows all spots (n, 2), at one scale."""
+    def around(
+        cls, surface: Ellipsoid, view: View, width: float, height: float, also: Numbers
+    ) -> Stage:
+        """Return a stage of this size in inches, at one scale, with a surface.
+
+        Of the surface it shows the filled rim, and the three sections across its axes. The points of
+        ``also`` are within the stage, even if they lie beyond the surface.
+        """
         figure = blank(height)
         axes = add_axes(figure, Frame(0.0, 0.0, width, height))
         axes.axis("off")
+        rim = view.project(surface.outline(view))
+        names = view.project(np.diag(surface.semi_axes) * (1 + _NAME))
+        spots = np.concatenate([rim, names, view.project(also)])
         low, high = spots.min(axis=0), spots.max(axis=0)
         if not np.isfinite([low, high]).all():
             raise NotDrawn("expected a motion whose numbers doubles hold, got one beyond them")
@@ -85,27 +94,8 @@ class Stage:
         middle = (low + high) / 2
         axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
         axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-        return cls(figure, axes, view, width)
-
-    @classmethod
-    def around(
-        cls,
-        surface: Ellipsoid,
-        view: View,
-        width: float,
-        height: float,
-        also: Numbers | None = None,
-    ) -> Stage:
-        """Return a stage with a surface: its filled rim, and the three sections across its axes.
-
-        The points of ``also`` are within the stage, even if they lie beyond the surface.
-        """
-        rim = view.project(surface.outline(view))
-        names = view.project(np.diag(surface.semi_axes) * (1 + _NAME))
-        beyond = [] if also is None else [view.project(also)]
-        bare = cls.showing(np.concatenate([rim, names, *beyond]), view, width, height)
-        bare.axes.fill(*rim.T, facecolor=_SURFACE, edgecolor=QUIET, linewidth=0.7, zorder=0)
-        stage = cls(bare.figure, bare.axes, view, width, surface)
+        axes.fill(*rim.T, facecolor=_SURFACE, edgecolor=QUIET, linewidth=0.7, zorder=0)
+        stage = cls(figure, axes, view, width, surface)
         for pole in np.eye(3):
             stage.line(surface.circle(pole), 1, {"color": _WIRE, "linewidth": 0.5})
         return stage
@@ -131,10 +121,10 @@ class Stage:
             look = {"color": colour, "linewidth": width, "gid": "path"}
             self.line(piece, zorder + k / _STRETCHES, look)
 
-    def mark(self, point: Numbers, look: Look, **other: Any) -> None:
+    def mark(self, point: Numbers, look: Look) -> None:
         """Draw a mark above all lines."""
         alpha = 1.0 if self.faces(point)[0] else _FAINT_MARK
-        self.axes.plot(*self.view.project(point).T, alpha=alpha, zorder=6, **look, **other)
+        self.axes.plot(*self.view.project(point).T, alpha=alpha, zorder=6, **look)
 
     def name_axes(self, semi_axes: Sequence[float], names: Sequence[str]) -> None:
         """Draw the axes where they leave the surface, each with its name."""

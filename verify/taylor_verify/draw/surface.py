@@ -28,19 +28,10 @@ SPHERE: Final = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Curve:
-    """A line of points (n, 3) beside the course, with its look and its name in the legend."""
+class Part:
+    """A line of points (n, 3) or a mark at one point (3,), with its look and its name in the legend."""
 
     points: Numbers
-    look: Look
-    name: str
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A point (3,) with its look and its name in the legend."""
-
-    point: Numbers
     look: Look
     name: str
 
@@ -58,8 +49,8 @@ class Surface:
     name: str
     semi_axes: tuple[float, float, float] = SPHERE
     axes: tuple[str, ...] = ("1", "2", "3")
-    curves: tuple[Curve, ...] = ()
-    marks: tuple[Mark, ...] = ()
+    curves: tuple[Part, ...] = ()
+    marks: tuple[Part, ...] = ()
 
     @property
     def sinks(self) -> bool:
@@ -80,32 +71,27 @@ class Surface:
         return View.facing([float(v) for v in direction])
 
     @property
-    def ends(self) -> tuple[Mark, Mark]:
+    def ends(self) -> tuple[Part, Part]:
         """The start and the end of the course."""
-        start = Mark(self.course[0], {**START, "gid": "start"}, "start")
-        return start, Mark(self.course[-1], {**END, "gid": "end"}, "end")
+        start = Part(self.course[0], {**START, "gid": "start"}, "start")
+        return start, Part(self.course[-1], {**END, "gid": "end"}, "end")
 
 
 def figure(drawn: Surface, words: str) -> Figure:
     """Return the picture; ``words`` stand below the legend."""
-    stage = _stage(drawn)
+    solid = Ellipsoid(drawn.semi_axes)
+    stage = Stage.around(solid, drawn.side, _STAGE, _HEIGHT, drawn.course)
+    stage.name_axes(drawn.semi_axes, drawn.axes)
     for curve in drawn.curves:
         stage.line(curve.points, 2, curve.look)
     # The surface does not hide a course that has sunk below it.
     over = replace(stage, surface=None) if drawn.sinks else stage
     over.course(drawn.course, _WIDTH, 3)
     for mark in (*drawn.marks, *drawn.ends):
-        over.mark(mark.point, mark.look)
+        over.mark(mark.points, mark.look)
     entries: list[Entry] = [({"color": scale()(0.6), "linewidth": _WIDTH}, drawn.name)]
-    parts: list[Curve | Mark] = [*drawn.curves, *drawn.ends, *drawn.marks]
-    entries += [(look, name) for name, look in {each.name: each.look for each in parts}.items()]
+    styles = {each.name: each.look for each in (*drawn.curves, *drawn.ends, *drawn.marks)}
+    entries += [(look, name) for name, look in styles.items()]
     stage.legend(entries, f"Faint: on the far side. {words}", _LEGEND)
     stage.time_bar(drawn.times, _TIME)
     return stage.figure
-
-
-def _stage(drawn: Surface) -> Stage:
-    solid = Ellipsoid(drawn.semi_axes)
-    stage = Stage.around(solid, drawn.side, _STAGE, _HEIGHT, drawn.course)
-    stage.name_axes(drawn.semi_axes, drawn.axes)
-    return stage

@@ -37,6 +37,5 @@ def explain(
         For a name that is no rung.
     """
     from taylor_verify.explain.explanation import explanation
-    from taylor_verify.numbers.precision import rung as rung_named
 
-    return explanation(scene, rung_named(rung).name)
+    return explanation(scene, rung)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import partial
-from math import isfinite
 from os import PathLike
 from typing import Any
 
@@ -28,6 +27,7 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
@@ -47,40 +47,40 @@ _SPARE_DIGITS = 6
 _FROM_RECORD = ("equations", "parameters", "units", "route", "truth_digits", "unit_roundoff")
 
 
-def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]:
+def explanation(scene: Scene | str | PathLike[str], rung: Rung | str) -> dict[str, Any]:
     """Run the scene on a rung and return the document of ``explain``; no number is an estimate.
 
     Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
     says so.
     """
-    scene = as_scene(scene)
+    scene, rung = as_scene(scene), rung_named(rung)
     body = scene.body
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
     patience = Patience(_SECONDS)
     orbit = patience.made(partial(_orbit, scene), _NO_ORBIT)
-    path = patience.made(partial(_loaded_path, scene, rung_named(rung)), None)
+    path = patience.made(partial(_loaded_path, scene, rung), None)
     loads = patience.made(lambda: path and loads_document(scene, path), None)
     too_long = _unjudged(scene, rung)
-    judged, lacking = patience.made(partial(_judged, scene, rung_named(rung)), too_long)
+    judged, lacking = patience.made(partial(_judged, scene, rung), too_long)
     record = judged.record.document() if judged.record is not None else {}
     first = judged.verdicts[0]
     effort = ("steps", "evaluations", "seconds")
-    condition = partial(_condition, scene, path, rung_named(rung))
+    condition = partial(_condition, scene, path, rung)
     period = float(orbit["orbit"]["period"]) if "period" in orbit["orbit"] else None
     return {
         "scene": scene.name,
         "title": scene.title,
         "source": scene.source,
         "model": scene.model,
-        "rung": rung,
-        "bits": rung_named(rung).bits,
+        "rung": rung.name,
+        "bits": rung.bits,
         "track": sorted(quantity.name for quantity in scene.tracked),
         "warnings": [*scene.warnings, *lacking],
         "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
         "regime": solution(scene).regime,
         "rung_regime": record.get("regime"),
-        "rounded": _rounded(scene, rung_named(rung)),
+        "rounded": _rounded(scene, rung),
         "cost": {
             **_cost(scene, rung),
             **{name: None if lacking else getattr(first, name) for name in effort},
@@ -93,14 +93,14 @@ def explanation(scene: Scene | str | PathLike[str], rung: str) -> dict[str, Any]
     }
 
 
-def _unjudged(scene: Scene, rung: str) -> tuple[Judgement, list[str]]:
+def _unjudged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
     """Return a judgement without a record, and a warning that says what is left out."""
     sentence = (
         f"left out: the run, its gates and the condition of the orbit take more than {_SECONDS:g} s of "
         "processor time (`run` takes the time that it needs)"
     )
     row = Verdict(
-        *(scene.name, "taylor", rung, "", "scene", Status.UNDECIDED, Outcome.TIMED_OUT.value),
+        *(scene.name, "taylor", rung.name, "", "scene", Status.UNDECIDED, Outcome.TIMED_OUT.value),
         reason=stated(Cause.UNFINISHED, sentence),
     )
     return Judgement((row,), None), [sentence]
@@ -172,11 +172,7 @@ def _orbit(scene: Scene) -> Mapping[str, Any]:
 
 def _element(element: Element) -> dict[str, str]:
     words = {name: getattr(element, name) for name in ("unit", "meaning", "source")}
-    return {"name": element.name, "value": _written(element.value), **words}
-
-
-def _written(value: Any) -> str:
-    return str(mp.nstr(value, _DIGITS))
+    return {"name": element.name, "value": str(mp.nstr(element.value, _DIGITS)), **words}
 
 
 def _condition(
@@ -189,13 +185,13 @@ def _condition(
     if carried is None:
         return None
     worst, pace = carried.worst, carried.pace
-    per_period = None if pace is None or period is None else _finite(pace * period)
+    per_period = None if pace is None or period is None else finite(pace * period)
     sentences = list(_condition_sentences(carried, rung, per_period))
     return {
         "from": carried.times[0],
-        "worst": _finite(carried.factors[worst]),
+        "worst": finite(carried.factors[worst]),
         "worst_at": carried.times[worst],
-        "end": _finite(carried.factors[-1]),
+        "end": finite(carried.factors[-1]),
         "end_at": carried.times[-1],
         "per_period": per_period,
         "sentence": " ".join(sentences),
@@ -223,10 +219,6 @@ def _condition_sentences(carried: Carrying, rung: Rung, per_period: float | None
     )
 
 
-def _finite(factor: float) -> float | None:
-    return factor if isfinite(factor) else None
-
-
 def _gate(verdict: Verdict) -> dict[str, Any]:
     names = (
         "quantity",
@@ -249,14 +241,14 @@ def _gate(verdict: Verdict) -> dict[str, Any]:
 _COUNTED = ("states", "parameters", "sums", "products", "quotients")
 
 
-def _cost(scene: Scene, rung: str) -> dict[str, Any]:
+def _cost(scene: Scene, rung: Rung) -> dict[str, Any]:
     """Return the cost of an evaluation, that of other equations, and why these were chosen.
 
     ``general`` counts the general equations of all quantities that the model has. ``same`` counts the
     general equations of this body for the quantities of this scene, without coefficients that are zero.
     """
     try:
-        problem = pose(scene, rung_named(rung))
+        problem = pose(scene, rung)
     except NotRepresentable:
         unknown = dict.fromkeys(_COUNTED)
         return {**unknown, "general": unknown, "same": unknown, "because": []}

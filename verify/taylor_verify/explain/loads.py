@@ -19,7 +19,7 @@ from taylor_verify.exact.registry import kind_of
 from taylor_verify.judge.floor.loads import Along
 from taylor_verify.judge.load_notes import NOTHING_CONSERVED
 from taylor_verify.records.quantities import TRACKED
-from taylor_verify.scenes.loads.loads import VECTORS, Hung, Loads
+from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -28,15 +28,6 @@ Floats = np.ndarray[Any, np.dtype[np.float64]]
 _REPEATS: Final = 3
 _KINDS: Final = {"+": "sums", "-": "sums", "*": "products", "/": "quotients"}
 _DATA: Final = ("number", "input", "pi")
-
-
-@dataclass(frozen=True)
-class Term:
-    """A summand of the loads: its place in the scene, its text, and loads that have it alone."""
-
-    place: str
-    text: str
-    loads: Loads
 
 
 def loads_document(scene: Scene, path: Path) -> dict[str, Any]:
@@ -51,7 +42,7 @@ def loads_document(scene: Scene, path: Path) -> dict[str, Any]:
         "conserved": list(conserved(scene)),
         "switches": len(loads.switches),
         "free": _sizes(path, whole.free),
-        "terms": [_term(path, term) for term in terms(loads)],
+        "terms": [_term(path, *term) for term in terms(loads)],
         "work": float(whole.work),
         "operations": operations(loads),
     }
@@ -73,21 +64,20 @@ def conserved(scene: Scene) -> Iterator[str]:
 # Terms.
 
 
-def terms(loads: Loads) -> Iterator[Term]:
-    """Yield the forces that hang on the body, and the summands of each text and number."""
+def terms(loads: Loads) -> Iterator[tuple[str, str, Loads]]:
+    """Yield each summand of the loads: its place in the scene, its text, and loads that have it alone.
+
+    Those are the forces that hang on the body, and the summands of each text and number.
+    """
     alone = replace(loads, vectors=(), hung=())
     for hung in loads.hung:
-        yield Term("hung", _hanging(hung), replace(alone, hung=(hung,)))
+        force, at = (", ".join(map(str, vector)) for vector in hung)
+        yield "hung", f"force ({force}) at ({at})", replace(alone, hung=(hung,))
     for name, entries in loads.vectors:
         for i, entry in enumerate(entries):
             for text in summands(entry) if isinstance(entry, str) else filter(None, [entry]):
                 vector = tuple(text if k == i else Fraction(0) for k in range(3))
-                yield Term(f"{name}[{i}]", str(text), replace(alone, vectors=((name, vector),)))
-
-
-def _hanging(hung: Hung) -> str:
-    force, at = (", ".join(map(str, vector)) for vector in hung)
-    return f"force ({force}) at ({at})"
+                yield f"{name}[{i}]", str(text), replace(alone, vectors=((name, vector),))
 
 
 def summands(text: str) -> list[str]:
@@ -168,14 +158,14 @@ class _Acting:
         return min(times) / len(self.path.elapsed)
 
 
-def _term(path: Path, term: Term) -> dict[str, Any]:
-    acting = _Acting(path, term.loads)
+def _term(path: Path, place: str, text: str, loads: Loads) -> dict[str, Any]:
+    acting = _Acting(path, loads)
     return {
-        "place": term.place,
-        "text": term.text,
+        "place": place,
+        "text": text,
         **_sizes(path, acting.forces),
         "work": acting.work,
-        "operations": operations(term.loads),
+        "operations": operations(loads),
         "seconds": acting.seconds(),
     }
 

@@ -30,12 +30,8 @@ def number_axes(axes: Axes) -> None:
     for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
         is_long = powers_within(*limits) >= 2
         axis.set_major_locator(LogLocator(subs=(1.0,) if is_long else (1.0, 2.0, 5.0)))
-        axis.set_major_formatter(partial(_formatted, is_long))
+        axis.set_major_formatter(partial(number, is_long=is_long))
         axis.set_minor_formatter(NullFormatter())
-
-
-def _formatted(is_long: bool, value: float, _place: int | None) -> str:
-    return number(value, is_long)
 
 
 def powers_within(low: float, high: float) -> int:
@@ -43,7 +39,7 @@ def powers_within(low: float, high: float) -> int:
     return floor(log10(high)) - ceil(log10(low)) + 1
 
 
-def number(value: float, is_long: bool) -> str:
+def number(value: float, _place: int | None = None, *, is_long: bool) -> str:
     """Return the text of a number: a power of ten on a long axis, one digit on a short one."""
     if is_long:
         return power_of_ten(value)

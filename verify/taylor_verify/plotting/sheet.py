@@ -46,10 +46,21 @@ class Frame:
 def sheet(
     count: int, entries: Sequence[Entry], note: str = "", height: float = HEIGHT
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure with ``count`` panels, two in a row, and its legend."""
-    frames, total = frames_of(count, foot_of(entries, note), height)
+    """Return a figure with ``count`` panels, two in a row, and its legend.
+
+    The legend is in the free place beside a last panel that is alone in its row, else at the foot.
+    """
+    across, has_place = min(2, count), count > 1 and count % 2 == 1
+    width, whole = PAGE_WIDTH / across - LEFT - RIGHT, HEADING + height + BELOW
+    total = whole * -(-count // across) + (0.0 if has_place else foot_of(entries, note))
+    columns = [LEFT + k * (width + LEFT + RIGHT) for k in range(across)]
+    frames = [
+        Frame(columns[k % across], total - whole * (k // across + 1) + BELOW, width, height)
+        for k in range(count)
+    ]
     figure = blank(total)
-    draw_legend(figure, entries, note, free_place(frames))
+    free = Frame(columns[1], frames[-1].low, width, height) if has_place else None
+    draw_legend(figure, entries, note, free)
     return figure, [add_axes(figure, frame) for frame in frames]
 
 
@@ -66,34 +77,6 @@ def add_axes(figure: Figure, frame: Frame) -> Axes:
     return figure.add_axes(
         (frame.left / width, frame.low / height, frame.width / width, frame.height / height)
     )
-
-
-def frames_of(count: int, foot: float, height: float = HEIGHT) -> tuple[list[Frame], float]:
-    """Return the place of each panel, two in a row, and the height of the figure."""
-    across = min(2, count)
-    width, whole = PAGE_WIDTH / across - LEFT - RIGHT, HEADING + height + BELOW
-    # The legend is in a free place beside the last panel, else at the foot.
-    total = whole * -(-count // across) + (0.0 if _leaves_a_place(count) else foot)
-    places = (divmod(k, across) for k in range(count))
-    frames = [
-        Frame(
-            LEFT + column * (width + LEFT + RIGHT), total - whole * (row + 1) + BELOW, width, height
-        )
-        for row, column in places
-    ]
-    return frames, total
-
-
-def free_place(frames: Sequence[Frame]) -> Frame | None:
-    """Return the free place beside the last panel, if that is alone in its row."""
-    if not _leaves_a_place(len(frames)):
-        return None
-    last, right = frames[-1], frames[1]
-    return Frame(right.left, last.low, last.width, last.height)
-
-
-def _leaves_a_place(count: int) -> bool:
-    return count > 1 and count % 2 == 1
 
 
 def foot_of(entries: Sequence[Entry], note: str) -> float:

@@ -133,14 +133,9 @@ def load(kind: str, entry: EntryPoint) -> Any:
         content = entry.load()
     except (Exception, SystemExit) as error:
         raise BrokenPlugin(f"{expected}, got {_in_one_line(error)}") from error
-    if lack := lacks(kind, content):
+    if lack := _LACKS[kind](content):
         raise BrokenPlugin(f"{expected} {lack}")
     return content
-
-
-def lacks(kind: str, content: Any) -> str:
-    """Return what a plug-in lacks of its contract, as the end of a sentence; empty where it keeps it."""
-    return _LACKS[kind](content)
 
 
 def _lacks_parts(*parts: str) -> Callable[[Any], str]:
@@ -180,6 +175,7 @@ def _lacks_of_script(content: Any) -> str:
     return f"to be the path of a script ({', '.join(_SCRIPTS)}), got {content!r:.200}"
 
 
+# What a plug-in of each kind lacks of its contract, as the end of a sentence; empty where it keeps it.
 _LACKS: Final[Mapping[str, Callable[[Any], str]]] = {
     "solvers": _lacks_of_solver,
     "readers": _lacks_of_reader,

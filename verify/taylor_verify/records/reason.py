@@ -19,7 +19,6 @@ from typing import Final
 
 # At most this many of the rows that do not share a shift are named.
 _MOST_NAMED: Final = 3
-_AS_A_SHIFT: Final = "as a shift of time"
 
 
 class Cause(StrEnum):
@@ -36,7 +35,6 @@ class Cause(StrEnum):
     MISSING_PACKAGE = "missing package"
     TOO_FAR = "too far"
     INCOMPLETE = "incomplete"
-    STATED = "stated"
 
 
 class Carried(StrEnum):
@@ -114,20 +112,16 @@ class RoundoffFloor:
         matrix = (
             "the orbit's transition matrix" if self.carried is Carried.ORBIT else "the gradient"
         )
-        root, count = "sqrt(N)", f"sqrt({self.steps})"
+        root, count, repeated = "sqrt(N)", f"sqrt({self.steps})", ""
         if self.alike > 1:
             root, count = "sqrt(N m)", f"sqrt({self.steps} x {self.alike})"
+            repeated = _REPEATED.format(self.alike)
         return (
             f"attainable = u {root} x growth = {u} x {count} x {_figure(self.growth, 3)} = {value}"
         ), (
             "in each step one rounding of every component x_i, u (|x_i| + h S_i) with S_i the terms "
-            f"of its rate in magnitude, carried by {matrix}{self._additions()}"
+            f"of its rate in magnitude, carried by {matrix}{_INERTIA * self.velocities}{repeated}"
         )
-
-    def _additions(self) -> str:
-        """Return the clauses on what else is in the floor."""
-        repeated = _REPEATED.format(self.alike) if self.alike > 1 else ""
-        return f"{_INERTIA * self.velocities}{repeated}"
 
 
 # Floors that are not made of steps, or are made of other floors.
@@ -297,12 +291,8 @@ class Reason:
     def parts(self) -> list[str]:
         """Return the sentences one by one: conclusions, the arithmetic of the bound, the shift."""
         remarks = (remark.text for remark in self.remarks)
-        return [*remarks, *self._terms(), *filter(None, [self.meaning])]
-
-    @property
-    def meaning(self) -> str:
-        """The shift of time behind the error; empty where the reason has none."""
-        return f"{_AS_A_SHIFT}: {self.shift.sentence()}" if self.shift else ""
+        shift = [f"as a shift of time: {self.shift.sentence()}"] if self.shift else []
+        return [*remarks, *self._terms(), *shift]
 
     def with_remark(self, cause: Cause, text: str) -> Reason:
         """Return this reason with a conclusion in front of those that it has."""

@@ -42,12 +42,13 @@ class Sampled:
         return quantities[name]
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and _plain(vars(self)) == _plain(vars(other))
+        return type(self) is type(other) and _listed(vars(self)) == _listed(vars(other))
 
     __hash__ = None  # type: ignore[assignment]
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: _packed(value) for name, value in vars(self).items()}
+        packed: dict[str, Any] = _packed(vars(self))
+        return packed
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame with a row for each time, and columns named as those of a file.
@@ -125,12 +126,8 @@ def _packed(value: Any) -> Any:
     return value
 
 
-def _plain(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Return fields that can be compared: arrays as lists."""
-    return {name: _listed(value) for name, value in fields.items()}
-
-
 def _listed(value: Any) -> Any:
+    """Return a value that can be compared: each array as a list."""
     if isinstance(value, Mapping):
         return {name: _listed(each) for name, each in value.items()}
     return value.tolist() if hasattr(value, "tolist") else value

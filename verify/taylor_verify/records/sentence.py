@@ -134,7 +134,10 @@ def _bound(verdict: Verdict) -> str:
     if tolerance is None:
         is_above = verdict.verdict is Status.FAIL
         return f"larger than {verdict.rung} rounding explains{_since(verdict)}" if is_above else ""
-    limit = f"the tolerance of {tolerance:.3g}{_allowed_by_arithmetic(verdict)}"
+    limit = f"the tolerance of {tolerance:.3g}"
+    if verdict.attainable is not None and verdict.error_kind is not ErrorKind.ROUNDOFF:
+        explained = GATE_FACTOR * verdict.attainable
+        limit += f" (rounding in {verdict.rung} explains {explained:.2g})"
     if verdict.verdict is Status.FAIL:
         return f"above {limit}{_since(verdict)}"
     return f"within {limit}" if verdict.verdict is Status.PASS else ""
@@ -142,9 +145,3 @@ def _bound(verdict: Verdict) -> str:
 
 def _since(verdict: Verdict) -> str:
     return "" if verdict.since is None else f" since t = {verdict.since:g}"
-
-
-def _allowed_by_arithmetic(verdict: Verdict) -> str:
-    if verdict.attainable is None or verdict.error_kind is ErrorKind.ROUNDOFF:
-        return ""
-    return f" (rounding in {verdict.rung} explains {GATE_FACTOR * verdict.attainable:.2g})"

@@ -20,7 +20,7 @@ _SIZES: Final = (
     *("max", "mean", "final", "bound", "attainable", "roundoff"),
     *("ratio", "tolerance", "residual", "remains", "seconds"),
 )
-_OF_A_PASS: Final = ("mean", "final", "ratio", "attainable", "roundoff")
+_OF_A_PASS: Final = ("max", "bound", "mean", "final", "ratio", "attainable", "roundoff")
 # A mean of equal numbers may be above them by its roundings.
 _ROUNDINGS: Final = 1 + 2.0**-40
 
@@ -51,36 +51,32 @@ def _check_sizes(verdict: Verdict, place: str) -> None:
     for name in _SIZES:
         value = getattr(verdict, name)
         if value is not None and not value >= 0:
-            expected = "expected a number that is not negative"
-            raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
+            raise _fault("a number that is not negative", repr(value), f"{place}.{name}")
     for name in ("mean", "final"):
         value, most = getattr(verdict, name), verdict.max
         if value is not None and most is not None and not value <= most * _ROUNDINGS:
-            expected = f"expected no more than the largest error {most!r}"
-            raise ValueError(f"{expected}, got {value!r} @ {place}.{name}")
+            expected = f"no more than the largest error {most!r}"
+            raise _fault(expected, repr(value), f"{place}.{name}")
 
 
 def _check_pass(verdict: Verdict, place: str) -> None:
-    largest, bound = (_number(verdict, name, place) for name in ("max", "bound"))
     for name in _OF_A_PASS:
-        _number(verdict, name, place)
-    if not largest <= bound:
-        expected = f"expected an error within its bound {bound!r} of a row that passed"
-        raise ValueError(f"{expected}, got {largest!r} @ {place}.max")
+        if getattr(verdict, name) is None:
+            raise _fault("a number of a row that passed", "null", f"{place}.{name}")
+    largest, bound = verdict.max, verdict.bound
+    if largest is not None and bound is not None and not largest <= bound:
+        expected = f"an error within its bound {bound!r} of a row that passed"
+        raise _fault(expected, repr(largest), f"{place}.max")
 
 
-def _number(verdict: Verdict, name: str, place: str) -> float:
-    value: float | None = getattr(verdict, name)
-    if value is None:
-        raise ValueError(f"expected a number of a row that passed, got null @ {place}.{name}")
-    return value
+def _fault(expected: str, got: str, place: str) -> ValueError:
+    return ValueError(f"expected {expected}, got {got} @ {place}")
 
 
 def _check_run(verdict: Verdict, place: str) -> None:
     """Refuse a row whose run cannot be made again: no arithmetic, or no text of a scene."""
     if not re.fullmatch(RUNG_PATTERN, verdict.rung):
-        expected = "expected a precision (f32 f64 f80 f128 mpN)"
-        raise ValueError(f"{expected}, got {verdict.rung!r:.60} @ {place}.rung")
+        expected = "a precision (f32 f64 f80 f128 mpN)"
+        raise _fault(expected, f"{verdict.rung!r:.60}", f"{place}.rung")
     if not isinstance(verdict.provenance.get("scene"), str):
-        expected = "expected the digest of the scene's text"
-        raise ValueError(f"{expected}, got none @ {place}.provenance.scene")
+        raise _fault("the digest of the scene's text", "none", f"{place}.provenance.scene")

@@ -17,12 +17,12 @@ import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import file_names
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, complete, read
 from taylor_verify.records.record import Record
 from taylor_verify.records.regular_file import bounded_bytes
@@ -31,7 +31,7 @@ from taylor_verify.records.runs import Run, runs
 from taylor_verify.records.soundness import check_rows, check_runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.sums import line
-from taylor_verify.records.verdict import Verdict, read_row
+from taylor_verify.records.verdict import Verdict
 
 FOLDER: Final = "data"
 VERDICTS: Final = "verdicts.json"
@@ -44,9 +44,9 @@ _MADE_BY = {"made_by": "taylor-verify run; do not edit"}
 # Fields on which no number depends: they may differ where verdicts.json may not.
 _MACHINE = ("processor", "command")
 _SHIFT = ("time_shift", "residual", "shift", "trend", "remains")
-_RUN = ("scene", "solver", "setting", "rung")
 
-_Timed = Mapping[tuple[Any, ...], Mapping[str, Any]]
+# The seconds and the machine of each run.
+_Timed = Mapping[tuple[str, str, str, str], tuple[float | None, Mapping[str, Any]]]
 
 _ENCODER: Final = json.JSONEncoder(allow_nan=False, ensure_ascii=False)
 # A row is for programs, and a large file has thousands of them.
@@ -125,8 +125,9 @@ def load(folder: Path) -> tuple[Verdict, ...]:
     """
     file = folder / FOLDER / VERDICTS
     stored, timed = read(file, _Verdicts), _timed(folder / FOLDER / TIMINGS)
+    rows = (_as_made(row, stored, timed or {}) for row in stored.verdicts)
+    placed = {f"verdicts[{k}]": row for k, row in enumerate(rows)}
     try:
-        placed = dict(_placed(stored, timed))
         check_rows(placed)
         if timed is not None:
             check_runs(placed, timed)
@@ -137,26 +138,22 @@ def load(folder: Path) -> tuple[Verdict, ...]:
 
 @dataclass(frozen=True)
 class _Verdicts:
-    """The document of verdicts; its rows are read one by one, each with its timing."""
+    """The document of verdicts, with what many of them have in common."""
 
     versions: dict[str, str]
-    verdicts: tuple[dict[str, Any], ...]
+    verdicts: tuple[Verdict, ...]
     scenes: dict[str, str] = field(default_factory=dict)
 
 
-def _placed(stored: _Verdicts, timed: _Timed | None) -> Iterator[tuple[str, Verdict]]:
-    for place, row in enumerate(stored.verdicts):
-        try:
-            read = verdict(row, stored.versions, (timed or {}).get(_key(row), {}))
-        except ValueError as error:
-            raise ValueError(_within(str(error), f"verdicts[{place}]")) from error
-        yield f"verdicts[{place}]", with_digest(read, stored.scenes)
-
-
-def _within(fault: str, place: str) -> str:
-    """Return a fault of a row with the place of the row in its document."""
-    sentence, _, inner = fault.partition(" @ ")
-    return f"{sentence} @ {place}" + (f".{inner}" if inner and inner != "the document" else "")
+def _as_made(row: Verdict, stored: _Verdicts, timed: _Timed) -> Verdict:
+    """Return a stored row as it was made: with its seconds, machine, versions and digest."""
+    seconds, machine = timed.get(row.run, (None, {}))
+    python = {"python": machine["python"]} if "python" in machine else {}
+    all_versions = {**python, **stored.versions}
+    provenance: dict[str, Any] = {"versions": all_versions} if all_versions else {}
+    provenance |= {name: value for name, value in machine.items() if name != "python"}
+    whole = replace(row, provenance=provenance | row.provenance, seconds=seconds)
+    return with_digest(whole, stored.scenes)
 
 
 def with_digest(verdict: Verdict, digests: Mapping[str, str]) -> Verdict:
@@ -226,7 +223,7 @@ def _timings(ordered_runs: Iterable[Run]) -> dict[str, Any]:
         own = machine(verdict)
         if own not in machines:
             machines.append(own)
-        key = {name: getattr(run, name) for name in _RUN}
+        key = {name: getattr(run, name) for name in ("scene", "solver", "setting", "rung")}
         timings.append({**key, "seconds": verdict.seconds, "machine": machines.index(own)})
     return {"machines": machines, "timings": timings}
 
@@ -281,12 +278,7 @@ def _encoded(value: Any, encoder: json.JSONEncoder) -> str:
 
 # Reading.
 
-
-def _stored_bytes(file: Path) -> bytes:
-    try:
-        return bounded_bytes(file, "a stored document", DOCUMENT)
-    except Refused as refused:
-        raise ValueError(str(refused)) from None
+_stored_bytes = partial(bounded_bytes, expected="a stored document", most=DOCUMENT)
 
 
 def read_document(file: Path) -> dict[str, Any]:
@@ -316,30 +308,14 @@ def _timed(file: Path) -> _Timed | None:
     """Return each run's seconds and machine; None where there is no such file."""
     if not file.exists():
         return None
-    stored, timed = read(file, _Timings), dict[tuple[Any, ...], dict[str, Any]]()
+    stored, timed = read(file, _Timings), {}
     for place, timing in enumerate(stored.timings):
         if not 0 <= timing.machine < len(stored.machines):
             expected = f"expected one of {len(stored.machines)} machines, got {timing.machine}"
             raise ValueError(f"{expected} @ timings[{place}].machine @ {file}")
-        machine = stored.machines[timing.machine]
-        timed[_key(vars(timing))] = {"seconds": timing.seconds, "machine": machine}
+        run = timing.scene, timing.solver, timing.setting, timing.rung
+        timed[run] = timing.seconds, stored.machines[timing.machine]
     return timed
-
-
-def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
-    return tuple(row.get(name) for name in _RUN)
-
-
-def verdict(
-    stored: Mapping[str, Any], same: Mapping[str, str], timing: Mapping[str, Any]
-) -> Verdict:
-    """Return a stored row as it was, made with the versions ``same``; seconds and machine as timed."""
-    own = dict(timing.get("machine", {}))
-    python = {"python": own.pop("python")} if "python" in own else {}
-    all_versions = {**python, **same}
-    provenance: dict[str, Any] = {"versions": all_versions} if all_versions else {}
-    provenance |= {**own, **stored.get("provenance", {})}
-    return read_row({**stored, "provenance": provenance, "seconds": timing.get("seconds")})
 
 
 @contextmanager

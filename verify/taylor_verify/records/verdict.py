@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
 from math import floor, inf, log10
-from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from taylor_verify.records import status
 from taylor_verify.records.error_kind import ErrorKind
-from taylor_verify.records.json_text import Count, Size, about, converted, finite, plain, read
+from taylor_verify.records.json_text import Count, Size, about, finite, plain
 from taylor_verify.records.quantities import COMPLETE, is_conserved
-from taylor_verify.records.reason import NO_REASON, Cause, Reason, stated
+from taylor_verify.records.reason import NO_REASON, Reason
 from taylor_verify.records.sentence import sentence
 from taylor_verify.records.status import Status
-
-Study = TypeVar("Study")
 
 
 @dataclass(frozen=True)
@@ -165,37 +162,6 @@ class Verdict:
             else:
                 values[name] = finite(value)
         return {**values, "digits": self.digits, "sentence": self.sentence}
-
-
-def read_row(row: Mapping[str, Any]) -> Verdict:
-    """Return the verdict that a row holds; keys that a verdict has not are left out.
-
-    A row that says its reason in a sentence alone has that sentence as its remark. Raises ValueError, with
-    the place in the row, for a row that is none.
-    """
-    return converted(_with_reason(row), Verdict)
-
-
-def read_study(file: Path, kind: type[Study]) -> Study:
-    """Return the document of a type in a file, each of its ``verdicts`` read as `read_row` reads it.
-
-    Raises OSError, and ValueError with the file for one that holds something else.
-    """
-    document = read(file, dict[str, Any])
-    rows = document.get("verdicts")
-    if isinstance(rows, list):
-        stated_rows = [_with_reason(row) if isinstance(row, dict) else row for row in rows]
-        document = {**document, "verdicts": stated_rows}
-    try:
-        return converted(document, kind)
-    except ValueError as error:
-        raise ValueError(f"{error} @ {file}") from error
-
-
-def _with_reason(row: Mapping[str, Any]) -> Mapping[str, Any]:
-    if "reason" in row or not row.get("because"):
-        return row
-    return {**row, "reason": plain(stated(Cause.STATED, str(row["because"])))}
 
 
 def summary(verdicts: Iterable[Verdict]) -> dict[str, int]:

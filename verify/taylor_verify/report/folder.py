@@ -11,12 +11,11 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report import csv_tables, published_tables
-from taylor_verify.report.index_page import readme
+from taylor_verify.report.index_page import Page, readme
 from taylor_verify.words.page_parts import MADE_BY
 
 if TYPE_CHECKING:
     from taylor_verify.batch.judgements import Judgements
-    from taylor_verify.words.entry import Page
 
 FRONT: Final = "README.md"
 GATES: Final[Mapping[str, Callable[[Sequence[Verdict]], str]]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, Final
+from typing import Final, NamedTuple
 
 from taylor_verify.records.precisions import place_of_rung
 from taylor_verify.records.quantities import GATE_FACTOR
@@ -25,8 +25,14 @@ from taylor_verify.words.cells import (
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import counts, made_with, whole
 
-if TYPE_CHECKING:
-    from taylor_verify.words.entry import Page
+
+class Page(NamedTuple):
+    """A file or folder of a report, its contents in words, and the CSV of its numbers if there is one."""
+
+    path: str
+    what: str
+    sheet: str = ""
+
 
 _WHAT: Final = (
     "Every *scene* is one motion, given in exact numbers. A solver computes it in several number "
@@ -80,11 +86,11 @@ def readme(verdicts: Sequence[Verdict], others: Iterable[Page] = ()) -> str:
     judged_runs = runs(verdicts)
     besides = [
         [
-            entry.link,
-            code(Path(entry.sheet).name) if entry.has_sheet else NOTHING,
-            entry.what,
+            f"[{other.path}]({other.path})",
+            code(Path(other.sheet).name) or NOTHING,
+            other.what,
         ]
-        for entry in others
+        for other in others
     ]
     return whole(
         "How accurate it is",

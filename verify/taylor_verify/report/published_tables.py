@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from taylor_verify.records.runs import (
-    Run,
-    conserved_quantities,
-    gravest,
-    quantities_of_scene,
-    runs,
-)
+from taylor_verify.records.runs import Run, conserved_quantities, gravest, quantities_of_scene, runs
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.words.cells import NOTHING, judged, peak, verdict_table, worst_ratio
 from taylor_verify.words.markdown import bold, bullets, code, prose, table
 from taylor_verify.words.page_parts import counts, page, roundoffs, sections, unscored
-
-if TYPE_CHECKING:
-    pass
 
 _RATIO: Final = (
     "*Over attainable* is the largest ratio, over all samples, of the error to the error that perfect "

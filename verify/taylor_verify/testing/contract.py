@@ -14,7 +14,14 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
+from taylor_verify.chain import solve_scene
+from taylor_verify.exact import exact
 from taylor_verify.records.plugins import KINDS, entries, load, package_of
+from taylor_verify.scenes.reading.reader import load as load_scene
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.engines.script import read_script
+from taylor_verify.solvers.function import solver_of
+from taylor_verify.solvers.trajectory import Outcome
 
 _SCENE: Final = "euler/rest"
 
@@ -55,33 +62,17 @@ def check_reader(reader: Any, example: str | PathLike[str]) -> None:
 
 
 def _use_solver(content: Any) -> None:
-    from taylor_verify.chain import solve_scene
-    from taylor_verify.solvers.function import solver_of
-    from taylor_verify.solvers.trajectory import Outcome
-
     trajectory = solve_scene(_SCENE, solver_of(content, "a plug-in"))
     if trajectory.outcome is not Outcome.FINISHED and not trajectory.outcome.is_unavailable:
         raise BrokenContract(f"it {trajectory.outcome.value} ({trajectory.detail})")
 
 
 def _use_scenes(content: Any) -> None:
-    from taylor_verify.scenes.reading.reader import load as load_scene
-
     for file in sorted(Path(content).glob("*.toml")):
         load_scene(file)
 
 
-def _use_engine(content: Any) -> None:
-    from taylor_verify.solvers.engines.script import read_script
-
-    read_script(Path(content))
-
-
 def _use_causes(content: Any) -> None:
-    from taylor_verify.exact import exact
-    from taylor_verify.scenes.reading.reader import load as load_scene
-    from taylor_verify.scenes.scene import Scene
-
     scene = load_scene(_SCENE)
     motion = exact(scene, scene.clock.instants, 20)
     rows = {name: values.astype(float) for name, values in motion.quantities.items()}
@@ -93,14 +84,10 @@ def _use_causes(content: Any) -> None:
             )
 
 
-def _use_verb(content: Any) -> None:
-    content.add(argparse.ArgumentParser())
-
-
-_USES: Final[Mapping[str, Callable[[Any], None]]] = {
+_USES: Final[Mapping[str, Callable[[Any], object]]] = {
     "solvers": _use_solver,
     "scenes": _use_scenes,
-    "engines": _use_engine,
+    "engines": lambda content: read_script(Path(content)),
     "causes": _use_causes,
-    "verbs": _use_verb,
+    "verbs": lambda content: content.add(argparse.ArgumentParser()),
 }

@@ -27,7 +27,7 @@ Every pytest session of the environment loads this plugin. So only this module a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, final
 
@@ -155,8 +155,6 @@ def _judgement(
 ) -> tuple[Judgement, BaseException | None]:
     """Return the judgement, and the exception that a callable raised, whose traceback pytest then shows."""
     __tracebackhide__ = True
-    from dataclasses import replace
-
     from taylor_verify.chain import judge_scene
     from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
@@ -210,6 +208,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _cases(mark: pytest.Mark) -> Iterator[Case]:
     from taylor_verify.numbers.precision import rung as rung_named
     from taylor_verify.records.faults import Refused
+    from taylor_verify.scenes.library import find, named
 
     options: Mapping[str, Any] = mark.kwargs
     if unknown := sorted(options.keys() - {"rung", "tolerance", "only"}):
@@ -218,23 +217,16 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
         _wrong_mark("expected scenes, such as 'euler/generic', got none")
     rungs = options.get("rung", "f64")
     try:
-        names = [name for word in mark.args for name in _scenes(word)]
+        # A word of a marker stands for scenes as on the command line.
+        names = [name for word in mark.args for name in named(str(word))]
+        for name in names:
+            find(name)
         for rung in [rungs] if isinstance(rungs, str) else rungs:
             for name in names:
                 rung_name = rung_named(rung).name
                 yield Case(name, rung_name, options.get("tolerance"), options.get("only"))
     except (Refused, ValueError) as fault:
         _wrong_mark(str(fault))
-
-
-def _scenes(word: str | Path) -> tuple[str, ...]:
-    """Return the scenes that a word of a marker stands for, as on the command line."""
-    from taylor_verify.scenes.library import find, named
-
-    scenes = named(str(word))
-    for scene in scenes:
-        find(scene)
-    return scenes
 
 
 def _wrong_mark(why: str) -> None:

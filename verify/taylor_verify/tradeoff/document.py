@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from taylor_verify.records.standing import Standing
 
@@ -13,6 +15,11 @@ Number = float | None
 def label(solver: str, setting: str, rung: str) -> str:
     """Return solver, setting and rung in one printed line."""
     return " ".join(filter(None, (solver, setting, rung)))
+
+
+def label_of(row: Mapping[str, Any]) -> str:
+    """Return the label of a row of a document."""
+    return label(row["solver"], row["setting"], row["rung"])
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from taylor_verify.records.standing import Standing
 from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.tradeoff.accuracy import Accuracy
 from taylor_verify.tradeoff.document import TradePoint
+from taylor_verify.tradeoff.setting import TOLERANCE
 from taylor_verify.tradeoff.solves import Timed
 
 
@@ -29,13 +30,6 @@ class Point:
         return self.timed.setting.label
 
     @property
-    def asked_digits(self) -> float | None:
-        """The digits of the requested tolerance; None for a step."""
-        setting = self.timed.setting
-        asks = setting.asked == "tolerance" and setting.requested is not None
-        return digits(setting.requested or 0.0) if asks else None
-
-    @property
     def error(self) -> float:
         """The largest error of all tracked quantities and samples."""
         return self.accuracy.worst
@@ -49,6 +43,8 @@ class Point:
     def on(self, scene: str) -> TradePoint:
         """Return the point in its stored form, without times."""
         setting, trajectory = self.timed.setting, self.timed.trajectory
+        # A step has no digits.
+        asks = setting.asked == TOLERANCE and setting.requested is not None
         return TradePoint(
             scene=scene,
             solver=setting.solver.name,
@@ -57,7 +53,7 @@ class Point:
             family=setting.family,
             asked=setting.asked,
             requested=setting.requested,
-            requested_digits=self.asked_digits,
+            requested_digits=digits(setting.requested or 0.0) if asks else None,
             achieved_digits=digits(self.error),
             error=finite(self.error),
             max={name: finite(value) for name, value in self.accuracy.max.items()},

@@ -113,7 +113,7 @@ def recommend(
     seed: int = SEED,
 ) -> Recommendation:
     """Return the fastest setting; arguments and raised errors are those of `taylor_verify.recommend`."""
-    check_target(error)
+    positive(error, "error", "a positive error")
     scene = as_scene(scene)
     asked = settings(scene) if asked is None else asked
     bound = [
@@ -127,11 +127,6 @@ def recommend(
     if not measurable and reasons:
         raise OutOfReach(_out_of_reach(scene, error, f": {'; '.join(reasons)}"))
     return replace(recommended(trade_off(scene, measurable, seed=seed), error), left_out=reasons)
-
-
-def check_target(error: float) -> None:
-    """Raise ValueError for a target that is no positive number."""
-    positive(error, "error", "a positive error")
 
 
 def recommended(trade: TradeOff, error: float) -> Recommendation:

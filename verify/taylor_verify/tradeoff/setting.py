@@ -82,13 +82,15 @@ def settings(scene: Scene, rungs: Iterable[str] = RUNGS) -> tuple[Setting, ...]:
     A solver that is not installed, or is not made for the scene, says so when it is run. Raises ValueError
     for a name that is no rung.
     """
-    is_rigid = isinstance(scene.body, RigidBody)
+    is_rigid, loads = isinstance(scene.body, RigidBody), scene.body.loads
+    # Switches, or instants of held states, at which a solver begins anew.
+    has_stops = loads is not None and bool(loads.switches or loads.held_states)
     all_settings: list[Setting] = []
     for rung in map(rung_named, dict.fromkeys(rungs)):
         all_settings += taylor(rung)
         if rung.name == "f64":
             all_settings += library(_SCIPY, LIBRARY_TOLERANCES, rung)
-            if _has_stops(scene):
+            if has_stops:
                 all_settings += library(_SCIPY[:2], LIBRARY_TOLERANCES, rung, _UNSTOPPED)
             all_settings += geometric(scene, rung) if is_rigid else ()
             all_settings += odefun(scene, rung)
@@ -179,12 +181,6 @@ def library(
     for solver in solvers:
         for text in tolerances:
             yield setting(f"{solver}?rtol={text}&atol={text}{option}", rung)
-
-
-def _has_stops(scene: Scene) -> bool:
-    """Return True if there are switches, or instants of held states, at which a solver begins anew."""
-    loads = scene.body.loads
-    return loads is not None and bool(loads.switches or loads.held_states)
 
 
 def geometric(scene: Scene, rung: Rung) -> Iterator[Setting]:

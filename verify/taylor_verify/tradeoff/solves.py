@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import itemgetter
 from time import perf_counter
 from typing import Final
 
 from taylor_verify.models.problem import Problem
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.setting import Setting
-from taylor_verify.tradeoff.timing import Clock, in_rounds
+from taylor_verify.tradeoff.timing import in_rounds
 
 REPEATS: Final = 5
 SEED: Final = 1
@@ -61,12 +62,12 @@ class Timed:
         return max(self.seconds) / self.best if self.best else None
 
 
+# The seconds of a solve, and their part in a compiled integrator. Whole answers would fill the memory.
+_Seconds = tuple[float, float | None]
+
+
 def timed(
-    problems: Mapping[Setting, Problem | str],
-    repeats: int,
-    seed: int,
-    clock: Clock = perf_counter,
-    patience: float = PATIENCE,
+    problems: Mapping[Setting, Problem | str], repeats: int, seed: int, patience: float = PATIENCE
 ) -> list[Timed]:
     """Solve every setting once, and those that finished ``repeats`` times more; return all in their order.
 
@@ -74,47 +75,39 @@ def timed(
     first time, which is enough to measure errors. A setting is not run, and its answer says so, if a
     coarser setting of its family took more than ``patience`` seconds.
     """
-    firsts = _first_solves(problems, clock, patience)
-    repeated = [
-        _Repeated(first, problem)
-        for first, problem in zip(firsts, problems.values(), strict=True)
-        if first.trajectory.outcome is Outcome.FINISHED and not isinstance(problem, str)
+    firsts = _first_solves(problems, patience)
+    finished = [each for each in firsts if each.trajectory.outcome is Outcome.FINISHED]
+    later: dict[Setting, list[_Seconds]] = {each.setting: [] for each in finished}
+    turns = [
+        partial(_solve_again, each, problems[each.setting], later[each.setting], patience)
+        for each in finished
     ]
-    in_rounds([partial(solves.once_more, patience) for solves in repeated], repeats, seed)
-    timed_again = {solves.first.setting: solves.timed() for solves in repeated}
-    return [timed_again.get(first.setting, first) for first in firsts]
+    in_rounds(turns, repeats, seed)
+    return [_with_seconds(each, later.get(each.setting)) for each in firsts]
 
 
-class _Repeated:
-    """The later solves of a setting: seconds of each, and its part in a compiled integrator.
-
-    Whole answers are not kept, because they would fill the memory.
-    """
-
-    def __init__(self, first: Timed, problem: Problem) -> None:
-        self.first, self._problem = first, problem
-        self._again: list[tuple[float, float | None]] = []
-        self._spent = first.trajectory.seconds
-
-    def once_more(self, patience: float) -> None:
-        """Solve once; after the first repeat only while all solves took less than ``patience`` seconds."""
-        if self._again and self._spent > patience:
-            return
-        solved = self.first.setting.solver.solve(self._problem)
-        self._again.append((solved.seconds, solved.inner_seconds))
-        self._spent += solved.seconds
-
-    def timed(self) -> Timed:
-        """Return the first answer with the times of the later solves, or of the only one."""
-        only = self.first.trajectory
-        solves = self._again or [(only.seconds, only.inner_seconds)]
-        _, inner = min(solves, key=lambda solve: solve[0])
-        return replace(self.first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+def _solve_again(
+    first: Timed, problem: Problem | str, later: list[_Seconds], patience: float
+) -> None:
+    """Solve once; after the first repeat only while all solves took less than ``patience`` seconds."""
+    assert not isinstance(problem, str)
+    spent = first.trajectory.seconds + sum(seconds for seconds, _ in later)
+    if later and spent > patience:
+        return
+    solved = first.setting.solver.solve(problem)
+    later.append((solved.seconds, solved.inner_seconds))
 
 
-def _first_solves(
-    problems: Mapping[Setting, Problem | str], clock: Clock, patience: float
-) -> list[Timed]:
+def _with_seconds(first: Timed, later: Sequence[_Seconds] | None) -> Timed:
+    """Return the first answer with the times of the later solves, or of the only one; none if it failed."""
+    if later is None:
+        return first
+    solves = later or [(first.trajectory.seconds, first.trajectory.inner_seconds)]
+    _, inner = min(solves, key=itemgetter(0))
+    return replace(first, seconds=tuple(seconds for seconds, _ in solves), inner=inner)
+
+
+def _first_solves(problems: Mapping[Setting, Problem | str], patience: float) -> list[Timed]:
     """Return the first answer of every setting, or the reason why it was not run."""
     solves: list[Timed] = []
     # Families whose finer settings are not run.
@@ -126,9 +119,9 @@ def _first_solves(
             nothing = Trajectory(Outcome.NOT_STARTED, detail=because)
             solves.append(Timed(setting, nothing, first=0.0))
             continue
-        began = clock()
+        began = perf_counter()
         trajectory = setting.solver.solve(problem)
-        solves.append(Timed(setting, trajectory, first=clock() - began))
+        solves.append(Timed(setting, trajectory, first=perf_counter() - began))
         if not trajectory.seconds <= patience:
             slow.add(setting.family)
     return solves

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any
 
 from taylor_verify.judge.provenance import provenance
@@ -18,7 +17,6 @@ from taylor_verify.tradeoff.pareto import pareto
 from taylor_verify.tradeoff.point import Point, digits, point
 from taylor_verify.tradeoff.setting import Setting, settings
 from taylor_verify.tradeoff.solves import PATIENCE, REPEATS, SEED, WHAT_IS_TIMED, timed
-from taylor_verify.tradeoff.timing import Clock
 
 
 @dataclass(frozen=True)
@@ -69,19 +67,18 @@ def trade_off(
     asked: Sequence[Setting] | None = None,
     repeats: int = REPEATS,
     seed: int = SEED,
-    clock: Clock = perf_counter,
     patience: float = PATIENCE,
 ) -> TradeOff:
     """Measure the errors and the best times of the settings ``asked``, or of all.
 
-    There are ``repeats`` rounds, whose order ``seed`` draws. ``clock`` returns seconds. A setting that has
+    There are ``repeats`` rounds, whose order ``seed`` draws. A setting that has
     taken ``patience`` seconds is timed no further (see `solves.timed`). A setting that cannot run becomes a
     point with the reason, and without an error.
     """
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
     truths, points = Truths(), []
-    for answer in timed(posed, repeats, seed, clock, patience):
+    for answer in timed(posed, repeats, seed, patience):
         problem = posed[answer.setting]
         known = None if isinstance(problem, str) else truths.accuracy(problem, answer.trajectory)
         points.append(point(answer, known))

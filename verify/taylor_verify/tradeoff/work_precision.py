@@ -21,7 +21,7 @@ from taylor_verify.plotting.sheet import Entry, name_lines, sheet
 from taylor_verify.plotting.style import INK, QUIET, TAYLOR, heading_of, kind_of, look_of, place
 from taylor_verify.plotting.wording import plain, stem_of
 from taylor_verify.records.standing import Standing
-from taylor_verify.tradeoff.document import label
+from taylor_verify.tradeoff.document import label_of
 from taylor_verify.tradeoff.pareto import pareto
 
 if TYPE_CHECKING:
@@ -145,16 +145,12 @@ def _picture(document: Mapping[str, Any], key: str) -> Picture:
     first, best = front[0], front[-1]
     alt = (
         f"Largest error against {work} on {document['scene']}, both logarithmic, for {names}. "
-        f"The least {work} of a sound setting has {_label(first)} with an error of "
-        f"{plain(first['error'])}; the most accurate is {_label(best)} with {plain(best['error'])} at "
+        f"The least {work} of a sound setting has {label_of(first)} with an error of "
+        f"{plain(first['error'])}; the most accurate is {label_of(best)} with {plain(best['error'])} at "
         f"{best[key] / first[key]:.2g} times that {work}. {len(front)} settings are beaten by none."
     )
     title = f"Error against {work}: {document['scene']}"
     return Picture(stem_of(document, work), title, alt, partial(_figure, document, key))
-
-
-def _label(row: Row) -> str:
-    return label(row["solver"], row["setting"], row["rung"])
 
 
 def floors_of(document: Mapping[str, Any]) -> dict[str, float]:
@@ -170,10 +166,11 @@ def _figure(document: Mapping[str, Any], key: str) -> Figure:
     # The times of taylor on all rungs are near each other. Other panels can be compared.
     shared = _limits_x(s for own in panels.values() for s in own if own[-1].kind != TAYLOR)
     front = [(row[key], row["error"]) for row in front_of(document, key)]
+    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
     for axes, (heading, own) in zip(places, panels.items(), strict=True):
         limits = _limits_x(own) if own[-1].kind == TAYLOR else shared
         axes.set(xscale="log", yscale="log", xlim=limits)
-        axes.set(xlabel=_work_named(document, key), ylabel=_error_named(document))
+        axes.set(xlabel=_work_named(document, key), ylabel=f"largest error ({unit})")
         axes.set_title(heading, pad=4)
         _draw(axes, own, floors, front)
     return figure
@@ -189,11 +186,6 @@ def _work_named(document: Mapping[str, Any], key: str) -> str:
     # A published time is a median of many, which the page explains.
     best = f", best of {document['timing']['repeats']}" if "timing" in document else ""
     return f"time of a solve{best} (s)"
-
-
-def _error_named(document: Mapping[str, Any]) -> str:
-    unit = "relative; attitude in rad" if "attitude" in document["track"] else "relative"
-    return f"largest error ({unit})"
 
 
 def _draw(

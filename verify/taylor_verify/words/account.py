@@ -35,7 +35,10 @@ def account(
     """
     lines = [opening(verdicts, causes), run]
     for verdict in verdicts:
-        lines += [_row(verdict), *_mends(verdict)]
+        row = f"{verdict.scene} {verdict.rung} {with_numbers(verdict)}"
+        lines.append(f"{verdict.verdict}  {row}")
+        if verdict.verdict in _MENDS and not verdict.is_waived:
+            lines.append(f"    {_MENDS[verdict.verdict]}")
     for cause in causes:
         lines.append(cause_line(cause.sentence, f"{cause.scene} {cause.rung}".strip()))
     return [*filter(None, lines), *map(note_line, notes)]
@@ -69,15 +72,6 @@ def allowance(verdict: Verdict) -> str:
     """Return the bound of a verdict that was compared, and its arithmetic."""
     bound = "" if verdict.bound is None else f"{verdict.bound:.3g} = "
     return f"{bound}{verdict.reason.allowance}"
-
-
-def _row(verdict: Verdict) -> str:
-    return f"{verdict.verdict}  {verdict.scene} {verdict.rung} {with_numbers(verdict)}"
-
-
-def _mends(verdict: Verdict) -> Iterator[str]:
-    if verdict.verdict in _MENDS and not verdict.is_waived:
-        yield f"    {_MENDS[verdict.verdict]}"
 
 
 def event_lines(document: Mapping[str, Any]) -> Iterator[str]:

@@ -39,17 +39,14 @@ def sentence(
     unexplained = [name for name, left in leaves.items() if left > _UNEXPLAINED]
     explained = {name: left for name, left in leaves.items() if left <= _UNEXPLAINED}
     if explained:
-        left = (_left(left, errors.get(name, 1.0), name) for name, left in explained.items())
+        sizes = {name: errors.get(name, 1.0) for name in explained}
+        left = (f"{explained[n] * size:.2g} of {size:.2g} of {n}" for n, size in sizes.items())
         parts.append(f"leaves {', '.join(left)}")
     parts += [f"does not explain the error of {', '.join(unexplained)}"] * bool(unexplained)
     others = " | ".join(alike)
     parts += [f"not told apart from: {others}"] * bool(others)
     parts += [f"as a scene: {changed}"] * bool(changed)
     return "; ".join(parts)
-
-
-def _left(left: float, error: float, name: str) -> str:
-    return f"{left * error:.2g} of {error:.2g} of {name}"
 
 
 def with_numbers(
@@ -117,13 +114,10 @@ def missing_load_line(loads: Sequence[MissingLoad]) -> str:
     noun, what = ("moment", "omega") if is_moment else ("force and couple", "the velocities")
     few = [loads[k * (len(loads) - 1) // (_TIMES - 1)] for k in range(_TIMES)]
     some = list(dict.fromkeys(few))
-    listed = "; ".join(f"t = {each.t:.6g}: {_vector(each.load)}" for each in some)
+    vectors = {each.t: ", ".join(f"{value:.3g}" for value in each.load) for each in some}
+    listed = "; ".join(f"t = {t:.6g}: ({vector})" for t, vector in vectors.items())
     return (
         f"no cause is proven; each row of {what} follows from the row before if from "
         f"t = {loads[0].t:.6g} to {loads[-1].until:.6g} a {noun} acts (body axes) that the scene "
         f"does not have: {listed}"
     )
-
-
-def _vector(values: Sequence[float]) -> str:
-    return f"({', '.join(f'{value:.3g}' for value in values)})"

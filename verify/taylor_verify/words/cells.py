@@ -115,7 +115,7 @@ def verdict_table(headings: Sequence[str], verdicts: Iterable[Verdict]) -> str:
 
 def over_attainable(verdict: Verdict) -> float:
     """Return the ratio, or infinity for one that is no finite number."""
-    return inf if verdict.ratio is None else verdict.ratio
+    return inf if verdict.ratio is None or isnan(verdict.ratio) else verdict.ratio
 
 
 def worst(verdicts: Iterable[Verdict]) -> Verdict | None:

@@ -13,14 +13,10 @@ def certificate_lines(certificate: Certified) -> list[str]:
             f"{name}: off by at most {bound:.3e} for all t, near t = {certificate.at[name]:.6g}"
             f" (evaluating it in float64 adds at most {certificate.rounding[name]:.1e})"
         )
-        if certificate.tolerance is not None:
-            lines[-1] += f"; {_verdict(bound, certificate.tolerance)}"
+        if (tolerance := certificate.tolerance) is not None:
+            lines[-1] += f"; {'within' if bound <= tolerance else 'beyond'} {tolerance:g}"
     lines += [finding_sentence(finding) for finding in certificate.findings]
     return [*lines, *gap_sentences(certificate.gaps)]
-
-
-def _verdict(bound: float, tolerance: float) -> str:
-    return f"{'within' if bound <= tolerance else 'beyond'} {tolerance:g}"
 
 
 def finding_sentence(finding: InterpolantFinding) -> str:

@@ -29,12 +29,10 @@ def _cell(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     text = " ".join(value.split())
-    return f"'{text}" if text.startswith(_FORMULA) and not _is_number(text) else text
-
-
-def _is_number(text: str) -> bool:
+    if not text.startswith(_FORMULA):
+        return text
     try:
         float(text)
     except ValueError:
-        return False
-    return True
+        return f"'{text}"
+    return text

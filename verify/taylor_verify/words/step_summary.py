@@ -66,20 +66,14 @@ def _page(
 def _table(heading: str, rows_shown: Sequence[Case], reasons: bool = False) -> str:
     if not rows_shown:
         return ""
-    columns = ["scene", "rung", "quantity", *_NUMBERS, "verdict"]
-    rows = [_row(case) for case in rows_shown]
-    if reasons:
-        columns.append("because")
-        rows = [
-            [*row, prose("; ".join(case.sentences))]
-            for row, case in zip(rows, rows_shown, strict=True)
-        ]
+    columns = ["scene", "rung", "quantity", *_NUMBERS, "verdict", *(["because"] if reasons else [])]
+    rows = []
+    for case in rows_shown:
+        run = " ".join(code(word) for word in (case.scene, case.mark) if word)
+        verdict = case.verdict
+        numbers = [CELLS[name](verdict) if verdict else NOTHING for name in _NUMBERS]
+        because = [prose("; ".join(case.sentences))] if reasons else []
+        row = [run, case.rung, code(case.quantity), *numbers, judged(case.status), *because]
+        rows.append(row)
     text = table(columns, rows)
     return f"### {heading}\n\n{text}" if heading else text
-
-
-def _row(case: Case) -> list[str]:
-    run = " ".join(code(word) for word in (case.scene, case.mark) if word)
-    verdict = case.verdict
-    numbers = [CELLS[name](verdict) if verdict else NOTHING for name in _NUMBERS]
-    return [run, case.rung, code(case.quantity), *numbers, judged(case.status)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -12,8 +11,8 @@ from taylor_verify.records import store
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.report.folder import index
+from taylor_verify.report.index_page import Page
 from taylor_verify.scenes import library
-from taylor_verify.words.entry import Page
 from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.accuracy import quoted
 from taylor_verify_reports.studies.registry import STUDIES, others
@@ -101,7 +100,12 @@ def entries(place: Path, made: Collection[str] = ()) -> list[Page]:
         return path in made or (place / path).exists()
 
     pages = (*(Page(study.path, study.title) for study in others()), *_PAGES_OF_NO_STUDY)
-    return [replace(page, has_sheet=is_there(page.sheet)) for page in pages if is_there(page.path)]
+    sheets = [f"tables/{Path(page.path).stem}.csv" for page in pages]
+    return [
+        page._replace(sheet=sheet if is_there(sheet) else "")
+        for page, sheet in zip(pages, sheets, strict=True)
+        if is_there(page.path)
+    ]
 
 
 def _requote(place: Path, verdicts: Sequence[Verdict]) -> tuple[Path, ...]:

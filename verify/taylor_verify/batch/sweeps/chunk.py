@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
@@ -59,13 +59,6 @@ class Judged(NamedTuple):
     package: str
 
 
-class Explained(NamedTuple):
-    """The likely causes of the failures of one scene, each a sentence."""
-
-    point: int
-    causes: tuple[str, ...]
-
-
 def judge(chunk: Chunk) -> Judged:
     """Solve and judge a chunk. A scene that breaks the code is an undecided row, and stops no other."""
     asked = list(chunk.questions.questions(chunk.first, chunk.stop))
@@ -74,33 +67,30 @@ def judge(chunk: Chunk) -> Judged:
     return Judged(chunk.number, len(asked), columns, package_digest())
 
 
-def explain(chunk: Chunk) -> Explained:
-    """Solve and judge the one scene of a chunk again, and search the causes of its failures."""
+def explain(chunk: Chunk) -> tuple[int, tuple[str, ...]]:
+    """Return the number of the one scene of a chunk, and the likely causes of its failures in words."""
     (question,) = chunk.questions.questions(chunk.first, chunk.stop)
     assert isinstance(question.scene, Scene)
     try:
         judged = judge_scene(question.scene, chunk.solver, chunk.rung, chunk.tolerances)
     except Exception:
         # Its row is undecided, and says what broke.
-        return Explained(chunk.first, ())
-    return Explained(chunk.first, tuple(cause.sentence for cause in judged.causes))
+        return chunk.first, ()
+    return chunk.first, tuple(cause.sentence for cause in judged.causes)
 
 
 def _verdicts(question: Question, chunk: Chunk) -> Sequence[Verdict]:
     """Return the verdicts on a scene, without the causes of failures: a dataset has no place for them."""
     if isinstance(question.scene, Refused):
-        refused = (
-            Outcome.NOT_REPRESENTABLE,
-            stated(Cause.NOT_POSED, "; ".join(question.scene.faults)),
-        )
-        return [_unjudged(question, chunk, Status.REFUSED, *refused)]
+        reason = stated(Cause.NOT_POSED, "; ".join(question.scene.faults))
+        return [_unjudged(question, chunk, Status.REFUSED, Outcome.NOT_REPRESENTABLE, reason)]
     try:
         return judge_scene(
             question.scene, chunk.solver, chunk.rung, chunk.tolerances, causes=False
         ).verdicts
     except Exception as error:
-        broken = Outcome.RAISED, stated(Cause.UNFINISHED, fault(error))
-        return [_unjudged(question, chunk, Status.UNDECIDED, *broken)]
+        reason = stated(Cause.UNFINISHED, fault(error))
+        return [_unjudged(question, chunk, Status.UNDECIDED, Outcome.RAISED, reason)]
 
 
 def _unjudged(
@@ -118,22 +108,19 @@ def _columns(
     columns: Columns = {name: [] for name in (*COLUMNS, *(DRAWN + name for name in drawn))}
     for question, verdicts in zip(asked, rows, strict=True):
         for verdict in verdicts:
-            for name, value in _row(question, verdict):
-                columns[name].append(value)
+            row = _row(question, verdict)
+            for name in COLUMNS:
+                columns[name].append(row[name])
         for name in drawn:
             columns[DRAWN + name] += [question.drawn.get(name)] * len(verdicts)
     return columns
 
 
-def _row(question: Question, verdict: Verdict) -> Iterator[tuple[str, Any]]:
-    for name in COLUMNS:
-        match name:
-            case "point":
-                yield name, question.number
-            case "verdict":
-                yield name, verdict.verdict.value
-            case "because":
-                # The arithmetic of a bound that was kept would be most of the dataset.
-                yield name, "" if verdict.verdict is Status.PASS else verdict.because
-            case _:
-                yield name, getattr(verdict, name)
+def _row(question: Question, verdict: Verdict) -> dict[str, Any]:
+    return {
+        **vars(verdict),
+        "point": question.number,
+        "verdict": verdict.verdict.value,
+        # The arithmetic of a bound that was kept would be most of the dataset.
+        "because": "" if verdict.verdict is Status.PASS else verdict.because,
+    }

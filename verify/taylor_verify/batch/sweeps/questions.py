@@ -201,12 +201,7 @@ def _drawn(family: Family, count: int | None, seed: int | None, spread: str | No
     if spread is not None and spread not in known:
         faults.append(f"expected one of {', '.join(known)}, got {spread} @ points")
     if not family.free:
-        asked = {"count": count, "seed": seed, "points": spread}
-        faults += [
-            f"expected no {key} for a grid, where nothing is drawn, got {value} @ {key}"
-            for key, value in asked.items()
-            if value is not None
-        ]
+        faults += _needless(count, seed, spread, "a grid, where nothing is drawn")
     if faults:
         raise ValueError("\n".join(faults))
     drawn = (count or family.count or COUNT) if family.free else 1
@@ -222,19 +217,23 @@ def _drawn(family: Family, count: int | None, seed: int | None, spread: str | No
     )
 
 
+def _needless(count: object, seed: object, spread: object, what: str) -> list[str]:
+    """Return a sentence for each option that is given, where it means nothing."""
+    asked = {"count": count, "seed": seed, "points": spread}
+    return [
+        f"expected no {key} for {what}, got {value} @ {key}"
+        for key, value in asked.items()
+        if value is not None
+    ]
+
+
 def is_whole(value: object, least: int, most: float = inf) -> bool:
     """Return True for a whole number from ``least`` to ``most``; a boolean is none."""
     return isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
 
 
 def _listed(name: str, files: Any, count: object, seed: object, spread: object) -> Listed:
-    asked = {"count": count, "seed": seed, "points": spread}
-    faults = [
-        f"expected no {key} for a folder of scenes, got {value} @ {key}"
-        for key, value in asked.items()
-        if value is not None
-    ]
-    if faults:
+    if faults := _needless(count, seed, spread, "a folder of scenes"):
         raise ValueError("\n".join(faults))
     if not files:
         raise refusal("a folder with scenes (*.toml)", "none", name)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import replace
 from math import inf, isfinite
 from typing import Any, Final
 
@@ -24,7 +22,6 @@ from taylor_verify.records.sweep import Spread, SweepSummary, WorstCase
 Rows = dict[str, np.ndarray[Any, Any]]
 """The columns of a part, by their names."""
 
-WORST: Final = 10
 _ROWS: Final = (
     "point",
     "scene",
@@ -44,9 +41,7 @@ _LOOKED_AT: Final = (Status.FAIL, Status.UNDECIDED)
 _GRAVITY_OF_WORDS: Final = {status.value: place for place, status in enumerate(GRAVITY)}
 
 
-def summary(
-    dataset: Dataset, questions: Questions, title: str = "", worst: int = WORST
-) -> SweepSummary:
+def summary(dataset: Dataset, questions: Questions, worst: int) -> SweepSummary:
     """Return the summary of a dataset that is finished, with so many of its worst cases."""
     totals = _Totals(worst, questions.drawn)
     for part in dataset.tables([*_ROWS, *(DRAWN + name for name in questions.drawn)]):
@@ -55,7 +50,7 @@ def summary(
     made = Provenance(versions(), processor(), command())
     return SweepSummary(
         name=asked.name,
-        title=title,
+        title=questions.title,
         solver=asked.solver,
         rung=asked.rung,
         count=asked.count,
@@ -196,19 +191,4 @@ def _case(rows: Rows, place: int, drawn: tuple[str, ...]) -> WorstCase:
         max=largest if isfinite(largest) else None,
         because=row["because"],
         drawn={name: float(row[DRAWN + name]) for name in drawn},
-    )
-
-
-def with_causes(result: SweepSummary, causes: Mapping[int, tuple[str, ...]]) -> SweepSummary:
-    """Return the summary with the causes of each worst case, by its point."""
-    return replace(
-        result,
-        worst=tuple(replace(case, causes=causes.get(case.point, ())) for case in result.worst),
-    )
-
-
-def with_files(result: SweepSummary, files: Mapping[int, str]) -> SweepSummary:
-    """Return the summary with the file of each worst case, by its point."""
-    return replace(
-        result, worst=tuple(replace(case, file=files.get(case.point, "")) for case in result.worst)
     )

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Executor
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
@@ -17,7 +17,7 @@ from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.finished_jobs import package_digest, program_digests
 from taylor_verify.batch.judging import Interrupted
 from taylor_verify.batch.lock import alone_in
-from taylor_verify.batch.sweeps.chunk import Chunk, Judged, explain, judge
+from taylor_verify.batch.sweeps.chunk import Chunk, explain, judge
 from taylor_verify.batch.sweeps.dataset import (
     MANIFEST,
     OWN_NAMES,
@@ -27,7 +27,7 @@ from taylor_verify.batch.sweeps.dataset import (
     read_manifest,
 )
 from taylor_verify.batch.sweeps.questions import Drawn, Questions, is_whole, questions
-from taylor_verify.batch.sweeps.summary import WORST, summary, with_causes, with_files
+from taylor_verify.batch.sweeps.summary import summary
 from taylor_verify.batch.sweeps.sweep_files import SUMMARY_NAMES, write_summary
 from taylor_verify.batch.work import run_stream
 from taylor_verify.judge.provenance import packages
@@ -43,7 +43,6 @@ from taylor_verify.solvers.trajectory import Outcome
 
 Result = TypeVar("Result")
 
-AHEAD: Final = 64
 # Chunks are many enough to go round and to lose little by an end, and long enough to be worth a message.
 _CHUNKS: Final = 64
 _LEAST_CHUNK: Final = 4
@@ -67,8 +66,8 @@ def sweep(
     jobs: int | None = None,
     out: str | PathLike[str] | None = None,
     resume: bool = False,
-    worst: int = WORST,
-    ahead: int = AHEAD,
+    worst: int = 10,
+    ahead: int = 64,
 ) -> SweepSummary:
     """Solve and judge many scenes; arguments and errors are those of `taylor_verify.sweep`."""
     faults = list(_faults(jobs, worst, ahead, resume, out))
@@ -98,12 +97,9 @@ def sweep(
             if out is None:
                 raise
             raise Failed(f"{lost}; what was judged is stored: go on with --resume") from lost
-        made = _explained(work, summary(dataset, asked, asked.title, worst))
-        if out is None:
-            # Nothing is drawn or written for a folder that goes.
-            return with_files(made, {})
-        written, _ = write_summary(folder, made, asked)
-    return written
+        made = _explained(work, summary(dataset, asked, worst))
+        # Nothing is written to a folder that goes.
+        return made if out is None else write_summary(folder, made, asked)
 
 
 def _faults(
@@ -229,7 +225,9 @@ def _judge_all(work: _Work) -> None:
     try:
         with closing(work.results(judge, map(work.part, left), len(left) == 1)) as answers:
             for answer in answers:
-                _check_package(dataset, answer)
+                if answer.package != dataset.manifest.package:
+                    expected = "expected the same version of taylor-verify on every worker"
+                    raise Failed(f"{expected}, got another one on a worker")
                 dataset.write(answer.chunk, answer.columns)
                 done += answer.scenes
                 _say(done, total)
@@ -243,15 +241,9 @@ def _explained(work: _Work, result: SweepSummary) -> SweepSummary:
     cases = (work.chunk(point, point, point + 1) for point in points)
     is_little = len(points) <= _MOST_EXPLAINED_HERE
     with closing(work.results(explain, cases, is_little)) as answers:
-        return with_causes(result, {answer.point: answer.causes for answer in answers})
-
-
-def _check_package(dataset: Dataset, answer: Judged) -> None:
-    """Refuse the rows of a worker with other code."""
-    if answer.package != dataset.manifest.package:
-        raise Failed(
-            "expected the same version of taylor-verify on every worker, got another one on a worker"
-        )
+        causes = dict(answers)
+    worst = (replace(case, causes=causes.get(case.point, ())) for case in result.worst)
+    return replace(result, worst=tuple(worst))
 
 
 def _say(done: int, total: int) -> None:

@@ -5,23 +5,22 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Final
 
 from taylor_verify.batch.sweeps.questions import Questions
-from taylor_verify.batch.sweeps.summary import with_files
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.replacement import first_line, replace_files
 from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import Quantiles, Spread, SweepSummary, WorstCase
-from taylor_verify.words.cells import NOTHING, figure
+from taylor_verify.words.cells import INFINITE, NOTHING, figure
 from taylor_verify.words.markdown import code, prose, table
 from taylor_verify.words.page_parts import traced
 
 WORST: Final = "worst"
-_NAMES: Final = tuple(each.name for each in fields(Quantiles))
-_HEADINGS: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
+_SHARES: Final = ("median:", "90 %:", "99 %:", "99.9 %:", "largest:")
+_HEADINGS: Final = ("quantity", "judged:", *_SHARES, "fail:", "undecided:")
 SUMMARY_NAMES: Final = ("summary.md", "summary.json", WORST)
 """The names in a sweep's folder of the summary and the worst cases."""
 _REASON: Final = "# Why: "
@@ -29,15 +28,13 @@ _REASON: Final = "# Why: "
 _ODD: Final = re.compile(r"[^A-Za-z0-9._-]+")
 
 
-def write_summary(
-    folder: Path, summary: SweepSummary, questions: Questions
-) -> tuple[SweepSummary, list[Path]]:
-    """Write everything in one step; return the summary with the files of its worst cases, and all paths.
+def write_summary(folder: Path, summary: SweepSummary, questions: Questions) -> SweepSummary:
+    """Write everything in one step; return the summary with the files of its worst cases.
 
     Raises OSError.
     """
-    files = {case.point: _file(rank, case) for rank, case in enumerate(summary.worst, 1)}
-    summary = with_files(summary, files)
+    worst = (replace(case, file=_file(k, case)) for k, case in enumerate(summary.worst, 1))
+    summary = replace(summary, worst=tuple(worst))
     texts = {
         case.file: _reason(summary, case) + questions.text(case.point) for case in summary.worst
     }
@@ -49,7 +46,8 @@ def write_summary(
     earlier = [
         file for file in (folder / WORST).glob("*.toml") if first_line(file).startswith(_REASON)
     ]
-    return summary, [*replace_files(folder, texts, stale=earlier)]
+    replace_files(folder, texts, stale=earlier)
+    return summary
 
 
 def page(summary: SweepSummary) -> str:
@@ -63,15 +61,9 @@ def page(summary: SweepSummary) -> str:
         "The error over what perfect rounding would leave (the roundoff floor), of the rows that passed or "
         f"failed; a body fails above {summary.bound}. "
         "A quantile is an error that occurred, at most a thousandth above the exact quantile.",
-        table(
-            ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
-            [_cells(each, each.ratio) for each in summary.quantities],
-        ),
+        table(_HEADINGS, [_cells(each, each.ratio) for each in summary.quantities]),
         "The largest error of each body, in the unit of its quantity.",
-        table(
-            ["quantity", "judged:", *_HEADINGS, "fail:", "undecided:"],
-            [_cells(each, each.max) for each in summary.quantities],
-        ),
+        table(_HEADINGS, [_cells(each, each.max) for each in summary.quantities]),
     ]
     if summary.worst:
         words = "Each has the numbers that `run` finds for its scene."
@@ -80,14 +72,11 @@ def page(summary: SweepSummary) -> str:
 
 
 def _cells(spread: Spread, quantiles: Quantiles | None) -> list[str]:
-    sizes = [getattr(quantiles, name) for name in _NAMES] if quantiles else None
-    shown = [_size(size) for size in sizes] if sizes else [NOTHING] * len(_NAMES)
+    shown = [NOTHING] * len(_SHARES)
+    if quantiles:
+        shown = [INFINITE if size is None else figure(size) for size in astuple(quantiles)]
     last = (spread.counts[status.value] for status in (Status.FAIL, Status.UNDECIDED))
     return [code(spread.quantity), str(spread.judged), *shown, *map(str, last)]
-
-
-def _size(size: float | None) -> str:
-    return "∞" if size is None else figure(size)
 
 
 def _worst_table(cases: Sequence[WorstCase]) -> str:

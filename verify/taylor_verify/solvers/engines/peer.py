@@ -8,7 +8,6 @@ solvers in this process. Tolerances are in the problem's own units.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -19,7 +18,7 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.precision import Rung, hexadecimal
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import Outside, command_of
-from taylor_verify.solvers.engines.session import Broken, Session, end_sessions, session
+from taylor_verify.solvers.engines.session import Broken, end_sessions, session
 from taylor_verify.solvers.solver import Lack, Solver, not_started, refused
 from taylor_verify.solvers.straight_line import lines
 from taylor_verify.solvers.trajectory import Outcome, Trajectory, of_rows
@@ -56,9 +55,9 @@ class Peer(Solver):
         command = command_of(self.engine)
         if isinstance(command, Lack):
             return not_started(command)
-        request = self._request(problem)
         try:
-            return self._trajectory(problem, self._posed(session(command), request))
+            answer = session(command).ask(self._request(problem), self.engine.time_limit)
+            return self._trajectory(problem, answer)
         except Broken as end:
             # The next question begins anew.
             end_sessions(command)
@@ -66,27 +65,17 @@ class Peer(Solver):
 
     def seconds(self, problem: Problem, count: int) -> float | None:
         """Return the processor's seconds of a solve, the mean of so many; None where there is no answer."""
-        command, request = command_of(self.engine), self._request(problem)
+        command = command_of(self.engine)
         if isinstance(command, Lack):
             return None
-        running = session(command)
+        request = {**self._request(problem), "count": count}
         try:
-            if request not in running.places:
-                self._posed(running, request)
-            again = {"again": running.places[request], "count": count}
-            return float(running.ask(again, self.engine.time_limit)["seconds"])
+            return float(session(command).ask(request, self.engine.time_limit)["seconds"])
         except (Broken, KeyError):
             end_sessions(command)
             return None
 
-    def _posed(self, running: Session, request: str) -> dict[str, Any]:
-        """Ask for the states, and keep the place that the problem has in the session."""
-        answer = running.ask(json.loads(request), self.engine.time_limit)
-        if isinstance(answer.get("place"), int):
-            running.places[request] = answer["place"]
-        return answer
-
-    def _request(self, problem: Problem) -> str:
+    def _request(self, problem: Problem) -> dict[str, Any]:
         settings: dict[str, float | str] = {}
         for key, value in self.engine.settings:
             settings[key] = value
@@ -94,7 +83,7 @@ class Peer(Solver):
                 settings[key] = float(value)
         if method := self.engine.engine.method:
             settings["method"] = method
-        return json.dumps({"problem": document(problem), "settings": settings})
+        return {"problem": document(problem), "settings": settings}
 
     def _trajectory(self, problem: Problem, answer: Mapping[str, Any]) -> Trajectory:
         if "fault" in answer:

@@ -32,10 +32,9 @@ class Broken(Exception):
 
 
 class Session:
-    """A running program; ``places`` is a memory for its callers, as long as it runs."""
+    """A running program."""
 
     def __init__(self, command: Sequence[str]) -> None:
-        self.places: dict[str, int] = {}
         self._talk = Talk(*supervised(command, subprocess.PIPE))
 
     def ask(self, request: Mapping[str, Any], limit: float) -> dict[str, Any]:

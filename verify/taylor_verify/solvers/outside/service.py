@@ -2,11 +2,9 @@
 
 A request and its answer are one line of JSON each, on the standard input and output.
 
-    {"problem": {...}, "settings": {...}}   solves, and keeps the problem
-        {"place": 0, "states": [[...], ...], "steps": 9, "evaluations": 99, "seconds": ...,
-         "setup_seconds": ...}
-    {"again": 0, "count": 100}              propagates so many times; seconds of one of them
-        {"seconds": ...}
+    {"problem": {...}, "settings": {...}}
+        {"states": [[...], ...], "steps": 9, "evaluations": 99, "seconds": ..., "setup_seconds": ...}
+    the same with "count": 100, which propagates so many times; seconds are those of one of them
     anything that fails
         {"fault": "a sentence"}
 
@@ -36,7 +34,7 @@ def stay(solve: Solve) -> None:
     # Output that a library prints would stand among the answers, so it goes to standard error.
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
-    propagations: list[Callable[[], Any]] = []
+    propagations: dict[str, Callable[[], Any]] = {}
     for line in sys.stdin:
         try:
             answer = _answer(json.loads(line), solve, propagations)
@@ -45,17 +43,19 @@ def stay(solve: Solve) -> None:
         print(json.dumps(answer), file=answers, flush=True)
 
 
-def _answer(request: Any, solve: Solve, propagations: list[Callable[[], Any]]) -> dict[str, Any]:
-    if "again" in request:
-        return {"seconds": _timed(propagations[request["again"]], request["count"])}
+def _answer(
+    request: Any, solve: Solve, propagations: dict[str, Callable[[], Any]]
+) -> dict[str, Any]:
+    count, asked = request.pop("count", 0), json.dumps(request)
+    if count and asked in propagations:
+        return {"seconds": _timed(propagations[asked], count)}
     began = time.process_time()
     solved = solve(_read(request["problem"]), Settings(**request["settings"]))
     spent = time.process_time() - began
     assert solved.again is not None
-    propagations.append(solved.again)
-    seconds = _timed(solved.again, 1)
+    propagations[asked] = solved.again
+    seconds = _timed(solved.again, count or 1)
     return {
-        "place": len(propagations) - 1,
         "states": [[float(value).hex() for value in state] for state in solved.states],
         "steps": int(solved.steps),
         "evaluations": int(solved.evaluations),

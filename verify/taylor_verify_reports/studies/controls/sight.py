@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from taylor_verify.records import store
-from taylor_verify.records.json_text import complete, plain
+from taylor_verify.records.json_text import complete, plain, read
 from taylor_verify.records.provenance import Machine
 from taylor_verify.records.quantities import STATES, is_conserved
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, read_study
+from taylor_verify.records.verdict import Verdict
 from taylor_verify_reports.studies.stored import Stored
 
 
@@ -137,7 +137,7 @@ def _fields(study: ControlsStudy) -> dict[str, Any]:
 
 def _checked(file: Path, kind: type[ControlsStudy]) -> ControlsStudy:
     """Return the document in a file. Raises ValueError for other content, or a defect without verdicts."""
-    study = read_study(file, kind)
+    study = read(file, kind)
     try:
         _ = study.sights
     except ValueError as error:

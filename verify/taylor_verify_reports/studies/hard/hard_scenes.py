@@ -14,7 +14,7 @@ from taylor_verify.records.json_text import complete, plain
 from taylor_verify.records.provenance import Machine, Provenance
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, read_study
+from taylor_verify.records.verdict import Verdict
 from taylor_verify_reports.studies.stored import Stored
 
 
@@ -154,7 +154,7 @@ def _fields(study: HardStudy) -> dict[str, Any]:
     return {**complete(study), "machine": plain(study.machine), "verdicts": rows}
 
 
-HARD: Final = Stored(HardStudy, "hard", _fields, read_study)
+HARD: Final = Stored(HardStudy, "hard", _fields)
 
 
 def last_value(

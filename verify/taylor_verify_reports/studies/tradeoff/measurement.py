@@ -40,12 +40,12 @@ from taylor_verify.tradeoff.setting import (
     taylor,
 )
 from taylor_verify.tradeoff.solves import SEED, cold_caches
-from taylor_verify.tradeoff.timing import estimate
 from taylor_verify.tradeoff.trade_off import (
     TradeOff,
     sound_points,
     trade_off,
 )
+from taylor_verify_reports.studies.tradeoff.medians import estimate
 from taylor_verify_reports.studies.tradeoff.rounds import (
     ROUNDS,
     YARDSTICK,

@@ -11,8 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import ceil
 from statistics import median
-from time import thread_time
+from time import perf_counter, thread_time
 from typing import Final, NamedTuple
 
 from taylor_verify.models.problem import Problem, pose
@@ -23,21 +24,17 @@ from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 from taylor_verify.tradeoff.setting import Name, setting
 from taylor_verify.tradeoff.solves import WHAT_IS_TIMED
-from taylor_verify.tradeoff.timing import (
-    CONFIDENCE,
-    FORMULA,
-    LEAST_SECONDS,
-    Clock,
-    calls_to_time,
-    clock_resolution,
-    coverage,
-    in_rounds,
-    place,
-)
+from taylor_verify.tradeoff.timing import in_rounds
+from taylor_verify_reports.studies.tradeoff.medians import CONFIDENCE, FORMULA, coverage, place
 from taylor_verify_reports.studies.tradeoff.trades import TimingMethod
 
 YARDSTICK: Final = ("taylor", "f64")
 ROUNDS: Final = 3
+# A function that returns seconds.
+Clock = Callable[[], float]
+# The least duration of a measurement: an interrupt does not matter then, nor what the clock costs.
+LEAST_SECONDS: Final = 1e-2
+_MOST_CALLS: Final = 1000
 # The least duration of a measurement, in units of the clock's resolution: the clock errs by 1 % at most.
 _TIMES_RESOLUTION: Final = 100
 # A setting that takes more seconds is solved only once in each process.
@@ -136,6 +133,23 @@ def _summed(
         inner=median(inner) if len(inner) == len(rounds) else None,
         setup=first.compile_seconds,
     )
+
+
+def calls_to_time(seconds: float, least: float = LEAST_SECONDS) -> int:
+    """Return the number of calls of so many ``seconds`` that last ``least`` seconds together."""
+    return min(_MOST_CALLS, max(1, ceil(least / seconds))) if seconds > 0 else _MOST_CALLS
+
+
+def clock_resolution() -> float:
+    """Return the smallest observed step of the clock, in seconds."""
+
+    def step() -> float:
+        began = perf_counter()
+        while (now := perf_counter()) == began:
+            pass
+        return now - began
+
+    return min(step() for _ in range(100))
 
 
 def method(processes: int, rounds: int, seed: int) -> TimingMethod:
