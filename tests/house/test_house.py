@@ -57,7 +57,7 @@ def _last_name(node: ast.AST) -> str:
 # and its door, its document or its picture.
 SHARED: Final = """
     __init__ acting certificate closed damping elements ellipsoid events field functions immersed
-    invariants jacobi judgement kinks loaded loads manufactured missing_load native orbit parts provenance
+    invariants jacobi judgement kinks loaded loads manufactured missing_load native orbit provenance
     question regime registry rigid scene states sweep units
 """
 

@@ -79,7 +79,7 @@ class Path:
 
     @cached_property
     def durations(self) -> Floats:
-        """How far each time is from the start."""
+        """The distance of each time from the start."""
         return np.array([abs(float(t)) for t in self.elapsed])
 
     @cached_property

@@ -226,7 +226,7 @@ class Along:
         """The number of components of momentum, turn, centre and own states."""
         return len(self.sizes_of_state)
 
-    @property
+    @cached_property
     def sizes_of_state(self) -> Floats:
         """The units of momentum, turn, centre and own states, by component."""
         path = self.path
