@@ -19,6 +19,7 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector, diagonal, scaled
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.motion import Impulse, Motion, Spin
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, Any]
@@ -116,12 +117,16 @@ def test_a_restarted_motion_continues(span: Fraction) -> None:
             assert largest(rest[name][0] - whole[name][1]) <= mpf(10) ** -45
 
 
-def test_arcs_are_motions_of_their_own() -> None:
-    """Row k of arcs is the motion from the k-th state alone, after the k-th span."""
-    scene = euler(RigidBody(TENSOR, MOMENT), "attitude")
+@pytest.mark.parametrize(
+    "scene",
+    [euler(RigidBody(TENSOR, MOMENT), "attitude"), load("loads/heavy-top")],
+    ids=["loads apart from the attitude", "a weight"],
+)
+def test_arcs_are_motions_of_their_own(scene: Scene) -> None:
+    """Row k of arcs is the motion from the k-th state alone, after the k-th span, in its own attitude."""
     starts = [Spin(vector(1, 0, "0.5"), QUATERNION), Spin(vector("0.2", -1, 0))]
     spans = [Fraction(3, 2), Fraction(-1, 3)]
-    together = arcs(scene, starts, spans, 30)
+    together = arcs(scene, starts, spans, 30, [Fraction(0)] * 2)
     for k, (start, span) in enumerate(zip(starts, spans, strict=True)):
         alone = TaylorSolution(replace(scene, initial=start)).motion([span], 30)
         with mp.workdps(50):

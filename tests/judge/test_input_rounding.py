@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from builders.scenes import CLEBSCH, GENERAL, TENSOR, asked_at, sample_scene
 
+from taylor_verify.exact.conditioning.condition import path_of_run
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.floor import rounded_input
+from taylor_verify.judge.floor.loads import Along
 from taylor_verify.judge.floor.rounded_input import InputRounding, input_rounding
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Body, RigidBody
@@ -47,6 +49,13 @@ def test_the_derivative_tells_what_exact_motions_beside_tell(name: str) -> None:
     assert set(carried.at_samples) == set(beside.at_samples)
     for quantity, sizes in beside.at_samples.items():
         assert carried.at_samples[quantity] == pytest.approx(sizes, rel=1e-4)
+
+
+def test_a_free_body_has_its_absent_loads_once() -> None:
+    """One piece of time holds all rows where no loads are written: each piece costs a pass over texts."""
+    path = path_of_run(asked_at("kirchhoff/general-body", Fraction(1, 2), Fraction(1)))
+    (piece,) = Along(path).pieces()
+    assert len(piece.places) == len(path.elapsed) > 1
 
 
 def times_alone(*instants: Fraction) -> InputRounding:
