@@ -73,7 +73,10 @@ class LoadedBody:
         self._tapes_from: dict[Fraction | None, PieceTapes] = {}
 
     def starting(self, initial: State, own: Mapping[str, Vector]) -> LoadedBody:
-        """The same body from another start; R_0 stands in the tapes where something reads the attitude."""
+        """Return the same body from another start.
+
+        Its tapes are shared unless something reads the attitude: then R_0 stands in them.
+        """
         other = LoadedBody(replace(self._scene, initial=initial), self._loads, self._orders, own)
         if not (self._loads.reads_attitude or self._layout.travels):
             other._tapes, other._tapes_from = self._tapes, self._tapes_from

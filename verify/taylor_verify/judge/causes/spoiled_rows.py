@@ -90,6 +90,8 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
             motion = Motion(v, unit)
             errors = {name: error[: nodes[-1]] for name, error in answer.errors(motion).items()}
             leaves = answer.parts(errors)
+            if not leaves:
+                return None
             allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
             if max(leaves.values()) <= allowed:
                 words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"

@@ -53,7 +53,12 @@ def with_times(
 
     Sentences about the time follow.
     """
-    read, sums, notes = _with_sums(columns, place, faults)
+    read, beside = list(columns), [*_seconds_beside_fractions(columns)]
+    sums, notes = list[Column](), list[str]()
+    for whole, fractions, parts in beside:
+        sums.append(whole._replace(values=[*_sums(whole, fractions, parts, place, faults)]))
+        read = [sums[-1] if each is whole else each for each in read if each is not fractions]
+        notes.append(f"`{cut(fractions.name)}` is added to `{cut(whole.name)}`")
     names = Candidates([Name(column) for column in columns], {}, {})
     asked = [theirs for ours, theirs in wanted if ours in _OURS]
     clocks = _clocks(read, asked, scene, names, sums)
@@ -111,23 +116,17 @@ def _is_calendar(value: object) -> bool:
 # Seconds beside their fractions.
 
 
-def _with_sums(
-    columns: Sequence[Column], place: str, faults: Faults
-) -> tuple[list[Column], list[Column], list[str]]:
-    """Return the columns with fractions of a second added to the seconds, the sums, and notes on these."""
+def _seconds_beside_fractions(
+    columns: Sequence[Column],
+) -> Iterator[tuple[Column, Column, int]]:
+    """Yield columns of whole seconds, those of their fractions, and how many parts a second has there."""
     by_key = {Name(column).key: column for column in columns}
-    read, sums, notes = list(columns), list[Column](), list[str]()
     for key, fractions in by_key.items():
         end = next((end for end in _FRACTIONS if key.endswith(end)), "")
         stem = key.removesuffix(end)
         whole = next((by_key[stem + s] for s in _SECONDS if end and stem + s in by_key), None)
-        if whole is None:
-            continue
-        values = list(_sums(whole, fractions, _FRACTIONS[end], place, faults))
-        sums.append(whole._replace(values=values))
-        read = [sums[-1] if each is whole else each for each in read if each is not fractions]
-        notes.append(f"`{cut(fractions.name)}` is added to `{cut(whole.name)}`")
-    return read, sums, notes
+        if whole is not None:
+            yield whole, fractions, _FRACTIONS[end]
 
 
 def _sums(
