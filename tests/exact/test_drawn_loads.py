@@ -65,7 +65,7 @@ def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
 
 
 @pytest.mark.parametrize(
-    ("seed", "count"), [(1, 50), (5, 50), pytest.param(2, 2000, marks=pytest.mark.slow)]
+    ("seed", "count"), [(1, 25), (5, 25), pytest.param(2, 2000, marks=pytest.mark.slow)]
 )
 def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
     """The enclosure gives up at most a fiftieth of all of them, each with its reason."""
