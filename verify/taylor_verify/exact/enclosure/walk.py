@@ -71,15 +71,19 @@ class _Since:
 
     def at_row(self, flow: Flow | None, share: arb) -> arb_mat:
         """The derivative at a row, from which the next one counts."""
-        self.to(flow, share)
+        whole = self.to(flow, share)
         reached, self._steps = self._steps, identity(self._steps.nrows())
-        self._from = self._steps if flow is None else flow.whole(share)
+        self._from = self._steps if whole is None else whole
         return reached
 
-    def to(self, flow: Flow | None, share: arb) -> None:
-        if flow is not None:
-            self._steps = flow.whole(share) * inverted(self._from) * self._steps
-            self._from = identity(self._steps.nrows())
+    def to(self, flow: Flow | None, share: arb) -> arb_mat | None:
+        """Go on to a share of a step; the derivative since its beginning, None without a flow."""
+        if flow is None:
+            return None
+        whole = flow.whole(share)
+        self._steps = whole * inverted(self._from) * self._steps
+        self._from = identity(self._steps.nrows())
+        return whole
 
     def through(self, places: Sequence[int], slopes: arb_mat) -> None:
         """Go through an instant, at which some components become functions of all."""
