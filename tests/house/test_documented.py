@@ -243,3 +243,18 @@ def test_what_a_call_returns_is_in_the_reference(call: str) -> None:
         kind = getattr(importlib.import_module(module), last)
         within = classes_in(getattr(kind, "__annotations__", {}).values(), module)
         assert within - referenced() - WORDS_ELSEWHERE == set()
+
+
+REFERENCES = re.compile(r"^\.\. auto\w+:: ([\w.]+)[^\n]*((?:\n   [^\n]*)*)", re.MULTILINE)
+
+
+@pytest.mark.parametrize("page", sorted((DOCS / "reference").glob("*.md")), ids=lambda p: p.stem)
+def test_what_the_reference_names_exists(page: Path) -> None:
+    """Each function, class and member of the reference is there, so that `make docs` finds it."""
+    for path, options in REFERENCES.findall(page.read_text(encoding="utf-8")):
+        module, _, name = path.rpartition(".")
+        documented = getattr(importlib.import_module(module), name)
+        members = re.search(r":members:([^:]*)", options)
+        for member in re.findall(r"\w+", members[1] if members else ""):
+            known = {each.name for each in fields(documented)} if is_dataclass(documented) else ()
+            assert hasattr(documented, member) or member in known, f"{path}.{member}"

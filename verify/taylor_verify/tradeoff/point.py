@@ -40,11 +40,16 @@ class Point:
         assert self.timed.best is not None
         return self.timed.best
 
+    @property
+    def asked_digits(self) -> float | None:
+        """The digits of the requested tolerance; None for a step, which has none."""
+        setting = self.timed.setting
+        asks = setting.asked == TOLERANCE and setting.requested is not None
+        return digits(setting.requested or 0.0) if asks else None
+
     def on(self, scene: str) -> TradePoint:
         """Return the point in its stored form, without times."""
         setting, trajectory = self.timed.setting, self.timed.trajectory
-        # A step has no digits.
-        asks = setting.asked == TOLERANCE and setting.requested is not None
         return TradePoint(
             scene=scene,
             solver=setting.solver.name,
@@ -53,7 +58,7 @@ class Point:
             family=setting.family,
             asked=setting.asked,
             requested=setting.requested,
-            requested_digits=digits(setting.requested or 0.0) if asks else None,
+            requested_digits=self.asked_digits,
             achieved_digits=digits(self.error),
             error=finite(self.error),
             max={name: finite(value) for name, value in self.accuracy.max.items()},
