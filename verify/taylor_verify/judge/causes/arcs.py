@@ -143,6 +143,11 @@ class Evidence:
         """Return what each set of changed parameters leaves, (sets, n, rows), relative to the motion."""
         raise NotImplementedError
 
+    @property
+    def is_coarse(self) -> bool:
+        """True if derivatives need fewer steps than the defects themselves."""
+        return False
+
     def coarse(self, sets: Sequence[Changes]) -> Floats:
         """Return the defects as well as derivatives need them."""
         return self.defects(sets)
@@ -249,6 +254,10 @@ class Arcs(Evidence):
     def compared(self) -> int:
         """Number of components that are compared: v, and q where momenta do not tell the velocities."""
         return self.answer.n + 4 * (self.answer.keeps_momenta and self.answer.file.q is not None)
+
+    @property
+    def is_coarse(self) -> bool:
+        return self.few_steps < self.steps
 
     def coarse(self, sets: Sequence[Changes]) -> Floats:
         return self.defects(sets, self.few_steps)

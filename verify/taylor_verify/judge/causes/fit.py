@@ -26,6 +26,8 @@ _GAIN: Final = 0.95
 # One number is fitted in a few rounds, each far better than the last.
 _GAIN_OF_ONE: Final = 0.7
 _NOTHING: Final = 1e-13
+# Defects above this are measured with the few steps that derivatives take.
+_COARSE: Final = 1e-3
 # Factors of a clock that is not nearly right.
 _CLOCKS: Final = (*np.geomspace(1e-3, 8, 60), 0.0)
 _FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
@@ -164,15 +166,20 @@ class Fitted:
 def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
     """Return the best numbers of a family; of infinite size where they cannot be computed."""
     numbers = family.right if begin is None else begin
-    (defects,) = evidence.defects([family.changes(numbers)])
+    measured = evidence.coarse if evidence.is_coarse else evidence.defects
+    (defects,) = measured([family.changes(numbers)])
     first = size = float(np.linalg.norm(defects))
     for count in range(_ROUNDS):
+        if measured != evidence.defects and size <= _COARSE * np.sqrt(evidence.of_right.size):
+            measured = evidence.defects
+            (defects,) = measured([family.changes(numbers)])
+            size = float(np.linalg.norm(defects))
         slopes = family.slopes(evidence.coarse(family.around(numbers)))
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
         before = size
         for trials in _trial_steps(slopes, defects.ravel(), family.scale):
-            tried = evidence.defects([family.changes(numbers + step) for step in trials])
+            tried = measured([family.changes(numbers + step) for step in trials])
             sizes = _sizes(tried)
             best = int(np.argmin(sizes))
             if sizes[best] < size:
@@ -184,6 +191,8 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
         is_stuck = size > (_GAIN_OF_ONE if family.count == 1 else _GAIN) * before
         if is_hopeless or size < _NOTHING or (count > (family.count > 1) and is_stuck):
             break
+    if measured != evidence.defects:
+        size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
     return Fitted(numbers, size)
 
 
