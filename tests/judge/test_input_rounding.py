@@ -52,7 +52,7 @@ def test_the_derivative_tells_what_exact_motions_beside_tell(name: str) -> None:
 
 
 def test_a_free_body_has_its_absent_loads_once() -> None:
-    """One piece of time holds all rows where no loads are written: each piece costs a pass over texts."""
+    """A body without written loads has all its rows in one piece: each piece costs a pass over texts."""
     path = path_of_run(asked_at("kirchhoff/general-body", Fraction(1, 2), Fraction(1)))
     (piece,) = Along(path).pieces()
     assert len(piece.places) == len(path.elapsed) > 1

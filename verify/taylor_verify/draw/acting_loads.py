@@ -40,8 +40,8 @@ def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
     turns = quaternions(np.array(course["attitude"]), scene.initial.attitude)
     centre = [np.array(course["centre"])] if "centre" in course else []
     own = [np.array(course[s.name]) for s in loads.states if not isinstance(s, Held)]
-    held = [np.array(course[s.name]) for s in loads.states if isinstance(s, Held)]
-    taken = np.hstack(held) if held else None
+    held_states = [np.array(course[s.name]) for s in loads.states if isinstance(s, Held)]
+    taken = np.hstack(held_states) if held_states else None
     state = np.hstack([*moving, turns, *centre, *own])
     values = Acting(scene, loads).loads(course["t"], state, taken)
     return np.hstack(values) if isinstance(values, tuple) else values

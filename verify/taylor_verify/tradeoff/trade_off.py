@@ -71,9 +71,9 @@ def trade_off(
 ) -> TradeOff:
     """Measure the errors and the best times of the settings ``asked``, or of all.
 
-    There are ``repeats`` rounds, whose order ``seed`` draws. A setting that has
-    taken ``patience`` seconds is timed no further (see `solves.timed`). A setting that cannot run becomes a
-    point with the reason, and without an error.
+    There are ``repeats`` rounds, whose order ``seed`` draws. A setting that has taken ``patience`` seconds
+    is timed no further (see `solves.timed`). A setting that cannot run becomes a point with the reason, and
+    without an error.
     """
     asked = settings(scene) if asked is None else asked
     posed = {setting: _posed(scene, setting) for setting in asked}
