@@ -9,6 +9,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from taylor_verify.records.json_text import Count, Size, about
+from taylor_verify.records.observed_order import CLEAR
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 
@@ -168,6 +169,18 @@ class Order:
     suspect: str | None = None
     suspect_step: Size | None = None
     knob: str = "h"
+
+    @property
+    def clear(self) -> list[OrderPoint]:
+        """The points whose error is the method's own: far above roundoff, and before errors stall."""
+        level = 0.0 if self.stall is None else self.best_error or 0.0
+        return [
+            point
+            for point in self.points
+            if point.error
+            and point.error > CLEAR * max(point.attainable or 0.0, level)
+            and (self.stalls_at is None or point.step > self.stalls_at)
+        ]
 
 
 @dataclass(frozen=True)

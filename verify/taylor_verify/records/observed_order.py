@@ -10,11 +10,11 @@ so this file needs only the standard library.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import fsum, isfinite, log, sqrt
-from typing import Final
+from typing import Final, Protocol
 
 from taylor_verify.records.student import student
 
@@ -41,14 +41,13 @@ class Convergence:
     straight line in log-log; None if no range of steps has an order. ``steps`` are the steps used, in
     descending order. ``level`` is the smallest error that smaller steps reach, None if the error still
     falls. ``stalls_at`` is the step at which it stops falling, and ``by_rounding`` is True if rounding
-    explains that. ``reason`` says all this in words.
+    explains that.
     """
 
     order: float | None
     spread: float | None
     steps: tuple[float, ...]
     level: float | None
-    reason: str
     stalls_at: float | None = None
     by_rounding: bool = False
 
@@ -64,32 +63,34 @@ def convergence(
     perfect rounding would leave, for all steps or for each. Raises ValueError for different lengths and for
     steps that are not positive or not distinct.
     """
-    points, broken = _points(steps, errors, roundoff_floor)
+    points = _points(steps, errors, roundoff_floor)
     stop = _stop(points)
-    usable = [point for point in points[:stop] if point.is_clear]
-    chosen = _straight(usable)
+    chosen = _straight([point for point in points[:stop] if point.is_clear])
     least = min(points[stop:], key=lambda point: point.error, default=None)
     order, spread = (None, None) if chosen is None else _slope(chosen)
-    words = [
-        *_order_words(usable, chosen, order),
-        *([f"no answer with step {', '.join(f'{s:.3g}' for s in broken)}"] if broken else []),
-        *_floor_words(points, least),
-    ]
     return Convergence(
         order=order,
         spread=spread,
         steps=tuple(point.step for point in chosen or ()),
         level=least.error if least else None,
-        reason="; ".join(words),
         stalls_at=points[stop].step if least else None,
         by_rounding=least is not None and least.is_rounding,
     )
 
 
-def local_orders(steps: Sequence[float], errors: Sequence[float]) -> tuple[float, ...]:
-    """Return the order between neighbouring steps, of positive errors; the steps fall."""
-    points = [_Point(step, error, floor=0.0) for step, error in zip(steps, errors, strict=True)]
-    return tuple(_locals(points))
+class Measured(Protocol):
+    """An error at a step; one that is not known counts as none."""
+
+    @property
+    def step(self) -> float: ...
+
+    @property
+    def error(self) -> float | None: ...
+
+
+def local_orders(points: Sequence[Measured]) -> tuple[float, ...]:
+    """Return the order between neighbouring points; their steps fall."""
+    return tuple(_local(a, b) for a, b in pairwise(points))
 
 
 @dataclass(frozen=True)
@@ -111,8 +112,8 @@ class _Point:
 
 def _points(
     steps: Sequence[float], errors: Sequence[float | None], floors: float | Sequence[float]
-) -> tuple[list[_Point], list[float]]:
-    """Return the points from the largest step to the smallest, and the steps whose runs broke."""
+) -> list[_Point]:
+    """Return the points from the largest step to the smallest, without runs that broke."""
     floor_of_step = [floors] * len(steps) if isinstance(floors, int | float) else list(floors)
     if not len(steps) == len(errors) == len(floor_of_step):
         raise ValueError(
@@ -121,26 +122,19 @@ def _points(
         )
     if not all(step > 0 for step in steps) or len(set(steps)) < len(steps):
         raise ValueError(f"expected positive steps, no two the same, got {list(steps)}")
-    points, broken = [], []
-    for step, error, floor in sorted(
-        zip(steps, errors, floor_of_step, strict=True), key=lambda p: -p[0]
-    ):
-        if error is not None and isfinite(error):
-            points.append(_Point(float(step), float(error), float(floor)))
-        else:
-            broken.append(float(step))
-    return points, broken
+    points = zip(steps, errors, floor_of_step, strict=True)
+    return [
+        _Point(float(step), float(error), float(floor))
+        for step, error, floor in sorted(points, key=lambda p: -p[0])
+        if error is not None and isfinite(error)
+    ]
 
 
-def _local(a: _Point, b: _Point) -> float:
+def _local(a: Measured, b: Measured) -> float:
     """The order between two neighbours, of which the second has the smaller step."""
-    if not b.error > 0:
+    if not b.error:
         return float("inf")
-    return log(a.error / b.error) / log(a.step / b.step) if a.error > 0 else 0.0
-
-
-def _locals(points: Sequence[_Point]) -> list[float]:
-    return [_local(a, b) for a, b in pairwise(points)]
+    return log(a.error / b.error) / log(a.step / b.step) if a.error else 0.0
 
 
 def _stop(points: Sequence[_Point]) -> int:
@@ -159,7 +153,7 @@ def _stop(points: Sequence[_Point]) -> int:
 
 def _is_gaining(points: Sequence[_Point]) -> bool:
     """Return True if errors fall faster from step to step: then the first steps were too large."""
-    orders = _locals(points)
+    orders = local_orders(points)
     rises = all(before < after for before, after in pairwise(orders))
     return len(orders) >= 2 and orders[0] > 0 and rises and orders[-1] >= _STALLED
 
@@ -170,7 +164,7 @@ def _straight(points: Sequence[_Point]) -> Sequence[_Point] | None:
     for first in range(len(points)):
         for last in range(first + _FEWEST, len(points) + 1):
             run = points[first:last]
-            orders = _locals(run)
+            orders = local_orders(run)
             if max(orders) - min(orders) <= SAME and (best is None or len(run) >= len(best)):
                 best = run
     return best
@@ -191,37 +185,3 @@ def _centred(values: Sequence[float]) -> list[float]:
     """Return the values less their mean."""
     mean = fsum(values) / len(values)
     return [value - mean for value in values]
-
-
-# The words.
-
-
-def _order_words(
-    usable: Sequence[_Point], chosen: Sequence[_Point] | None, order: float | None
-) -> Iterator[str]:
-    """Yield the order and the steps that show it."""
-    if chosen is None or order is None:
-        lacking = f"{len(usable)} steps show an error of the method, and it takes {_FEWEST}"
-        if len(usable) >= _FEWEST:
-            listed = ", ".join(f"{local:.2f}" for local in _locals(usable))
-            lacking = f"from step to step it is {listed}, nowhere twice the same"
-        yield f"no order: {lacking}"
-        return
-    yield f"order {order:.2f}"
-    yield f"steps {chosen[0].step:.3g} to {chosen[-1].step:.3g}"
-    if any(point.step > chosen[0].step for point in usable):
-        yield "larger ones are not asymptotic yet"
-
-
-def _floor_words(points: Sequence[_Point], level: _Point | None) -> Iterator[str]:
-    """Yield the ``level`` at which errors stop falling, and whether it is rounding that stops them."""
-    if level is not None:
-        why = ""
-        if level.is_rounding:
-            why = ": rounding"
-        elif level.floor > 0:
-            times = f"{level.error / level.floor:.1g} times"
-            why = f": {times} what rounding leaves, so not by rounding"
-        yield f"errors stop falling at {level.error:.1g}{why}"
-    elif near := [point for point in points if not point.is_clear]:
-        yield f"errors reach rounding at {near[0].error:.1g}"

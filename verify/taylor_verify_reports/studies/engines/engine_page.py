@@ -80,11 +80,11 @@ def _cells(
 
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
     """Return a line with the observed orders of one setting; empty for a setting without steps."""
-    orders = {name: setting.order(scene, name) for name in states}
-    reasons = [f"{name}: {prose(order.reason)}" for name, order in orders.items() if order]
+    orders = [setting.order(scene, name) for name in states]
+    sentences = [prose(order.sentence) for order in orders if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
     named = prose(" ".join(filter(None, words)))
-    return f"{named}. {'. '.join(reasons)}." if reasons else ""
+    return f"{named}. {'. '.join(sentences)}." if sentences else ""
 
 
 def _not_judged(own: Iterable[EngineSetting]) -> Iterator[str]:

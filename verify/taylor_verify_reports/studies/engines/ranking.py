@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf, log10
 
-from taylor_verify.records.observed_order import Convergence, convergence
+from taylor_verify.judge.series.order import read_order
+from taylor_verify.records.answers import Order, OrderPoint
+from taylor_verify.records.json_text import finite
 from taylor_verify_reports.studies.engines.document import EngineRow, EnginesStudy
 
 
@@ -53,16 +55,21 @@ class EngineSetting:
         """Return the likely cause of the errors on a scene, which is looked for at one value alone."""
         return next((row.cause for row in self.on(scene) if row.cause), "")
 
-    def order(self, scene: str, quantity: str) -> Convergence | None:
+    def order(self, scene: str, quantity: str) -> Order | None:
         """Return the observed order of a quantity over the steps; None for a setting without steps."""
-        rows = [row for row in self.on(scene) if row.value and row.knob == "step"]
-        if not rows:
-            return None
-        return convergence(
-            [float(row.value) for row in rows],
-            [row.errors.get(quantity) for row in rows],
-            [row.floors.get(quantity, 0.0) for row in rows],
-        )
+        points = [
+            OrderPoint(
+                f"the row of step {row.value}",
+                float(row.value),
+                finite(row.errors.get(quantity)),
+                row.floors.get(quantity),
+            )
+            for row in self.on(scene)
+            if row.value and row.knob == "step"
+        ]
+        points.sort(key=lambda point: -point.step)
+        unit = "rad" if quantity == "attitude" else ""
+        return read_order(quantity, unit, points) if points else None
 
     def at(self, value: str, scenes: Iterable[str]) -> Score | None:
         """Return the worst row of several scenes at one step; None if one of them was not judged."""
