@@ -22,6 +22,7 @@ from taylor_verify.check import check
 from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
+from taylor_verify.judge.causes.quick_motion import QuickMotion
 from taylor_verify.judge.errors.passage import Passage
 from taylor_verify.judge.errors.shift import Shift, time_shifts
 from taylor_verify.judge.errors.shifted import Compared, Run
@@ -404,17 +405,20 @@ def test_the_angular_velocity_of_a_solid_in_a_fluid_is_late_by_one_constant(
     assert omega.residual == omega.remains <= 1e-13
 
 
-def fluid(late: Fraction, factor: float = 1.0) -> dict[str, Shift | None]:
-    """The shifts of a solid without closed form, all of its impulses late and multiplied."""
-    scene, exact = asked("kirchhoff/general-body")
+def of_all(name: str, late: Fraction, factor: float = 1.0) -> dict[str, Shift | None]:
+    """The shifts of an answer whose rows are all late and multiplied."""
+    scene, exact = asked(name)
     motion = exact.motion([t - late for t in scene.clock.elapsed], DIGITS)
     rows = {name: factor * rows for name, rows in motion.quantities.items()}
     return judged(scene, exact, Motion(rows, motion.radius))
 
 
+NO_CLOSED_FORM = "kirchhoff/general-body"
+
+
 def test_a_shift_is_exact_where_the_motion_was_searched_in_float64() -> None:
     """An error as large as the motion is searched in float64; what is found is settled by the enclosure."""
-    shift = fluid(Fraction(2, 5))["impulse"]
+    shift = of_all(NO_CLOSED_FORM, Fraction(2, 5))["impulse"]
     assert shift is not None
     assert shift.kind is Kind.CONSTANT
     assert shift.time_shift == pytest.approx(0.4, rel=1e-14)
@@ -422,10 +426,13 @@ def test_a_shift_is_exact_where_the_motion_was_searched_in_float64() -> None:
     assert shift.remains < 1e-15
 
 
-def test_where_the_motion_passes_too_far_no_enclosure_is_asked(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize(
+    ("name", "quantity"), [(NO_CLOSED_FORM, "impulse"), ("euler/generic", "omega")]
+)
+def test_where_the_motion_passes_too_far_no_exact_motion_is_asked(
+    name: str, quantity: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Impulses twice as large are near no point of the exact motion, and float64 tells that alone."""
+    """States twice as large are near no point of the exact motion, and float64 tells that alone."""
     asked_for, motion = list[Run](), Run.motion
 
     def noted(run: Run, elapsed: Any, digits: int) -> Any:
@@ -433,7 +440,7 @@ def test_where_the_motion_passes_too_far_no_enclosure_is_asked(
         return motion(run, elapsed, digits)
 
     monkeypatch.setattr(Run, "motion", noted)
-    shift = fluid(Fraction(0), 2.0)["impulse"]
+    shift = of_all(name, Fraction(0), 2.0)[quantity]
     assert shift is not None
     assert shift.kind is Kind.NONE
     assert not asked_for
@@ -444,16 +451,32 @@ def test_where_float64_does_not_follow_the_enclosure_is_asked(
 ) -> None:
     """NaN of the quick motion is neither an error nor a proof that no shift explains."""
 
-    def lost(scene: Scene, known: Any, since: Any, times: Any) -> Any:
-        return {
-            name: np.full((len(times), *rows.shape[1:]), np.nan) for name, rows in known.items()
-        }
+    def lost(quick: QuickMotion, times: Any) -> Any:
+        return {name: np.full_like(rows, np.nan) for name, rows in at(quick, times).items()}
 
-    monkeypatch.setattr("taylor_verify.judge.errors.shifted.quick_motion", lost)
-    shift = fluid(Fraction(1, 10))["impulse"]
+    at = QuickMotion.at
+    monkeypatch.setattr(QuickMotion, "at", lost)
+    shift = of_all(NO_CLOSED_FORM, Fraction(1, 10))["impulse"]
     assert shift is not None
     assert shift.kind is Kind.CONSTANT
     assert shift.time_shift == pytest.approx(0.1, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["euler/backward", "kirchhoff/whole-motion"])
+@pytest.mark.parametrize("rows", [[0], [0, 3], [2, 5, 9]])
+def test_float64_follows_the_motion_from_few_rows(name: str, rows: list[int]) -> None:
+    """Between rows that are many turns apart, and beyond them, it is the exact motion to five digits."""
+    scene, exact = asked(name)
+    known = exact.motion(scene.clock.elapsed, DIGITS).at(rows)
+    since = np.array([float(scene.clock.elapsed[k]) for k in rows])
+    quick = QuickMotion(scene, known.quantities, since)
+    end = scene.clock.elapsed[-1]
+    for share in (Fraction(-1, 7), Fraction(3, 10), Fraction(9, 8)):
+        times = [end * share, end * share / 3]
+        truth, near = exact.motion(times, DIGITS), quick.at(np.array([float(t) for t in times]))
+        for quantity, exactly in truth.quantities.items():
+            off = near[quantity] - exactly.astype(float)
+            assert np.max(np.abs(off)) < 1e-5 * max(1.0, np.max(np.abs(exactly.astype(float))))
 
 
 def test_a_distance_is_at_most_that_of_the_exact_motion() -> None:

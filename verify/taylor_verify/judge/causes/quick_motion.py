@@ -1,12 +1,12 @@
-"""The motion of a scene in float64: quick where an enclosure is slow, to try many times or many scenes.
+"""The motion of a scene in float64: quick where an exact one is slow, to try many times or many scenes.
 
 What is found by it is asked again of the exact motion.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any, Final, final
 
 import numpy as np
 
@@ -15,61 +15,113 @@ from taylor_verify.judge.causes.material import are_known, equations_of
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.conventions.meanings import rotations
 from taylor_verify.records.quantities import MOMENTA
+from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.scene import Scene
 
-# Steps of half a radian are doubled, as often as this, until the ends change by less than this part.
-_STEP: Final = 0.5
+# An arc turns by at most so many radians, and has so many steps. They are doubled, as often as this, until
+# the ends of some arcs, evenly chosen and the longest, change by less than this part.
+_ARC: Final = 2.0
+_STEPS: Final = 4
 _DOUBLINGS: Final = 3
 _SETTLED: Final = 1e-6
-_FEWEST: Final = 4
-_MOST: Final = 512
+_SAMPLED: Final = 16
+# Arcs one behind the other, from a row to the middle between two.
+MOST_ARCS: Final = 1024
 
 
-def quick_motion(
-    scene: Scene, known: Mapping[str, Any], since: Floats, times: Floats
-) -> dict[str, Floats] | None:
-    """Return the motion of a rounded scene at ``times``, each from the nearest of the rows at ``since``.
+@final
+class QuickMotion:
+    """The motion of a rounded scene in float64, in arcs from known rows.
 
-    ``known`` has the rows by quantity, as the motion that is returned. Times are since the start of the
-    scene. None where the body has loads or terms of its own; NaN where float64 does not follow.
+    ``known`` has the rows by quantity, as the motion that is returned, and ``since`` their times since the
+    start. Not more than ``most_arcs`` lead from a row to a time, one behind the other.
     """
-    names = MOMENTA[scene.model]
-    if scene.body.loads is not None or not are_known(scene.body) or not set(names) <= set(known):
-        return None
-    right = equations_of(scene, has_momenta=scene.model == "kirchhoff")
-    groups = (*names, "attitude", "centre")
-    rows = {name: np.asarray(known[name].astype(float)) for name in groups if name in known}
-    if "attitude" in rows:
-        q = quaternion_columns(rows["attitude"])
-        rows["attitude"] = q / np.linalg.norm(q, axis=1, keepdims=True)
-    nearest = np.argmin(np.abs(times[:, None] - since[None, :]), axis=1)
-    begin, begins = np.hstack([*rows.values()])[nearest].T[None], since[nearest]
-    omega, spans = right.velocities(begins, begin)[0, -3:], times - begins
-    turn = np.max(np.linalg.norm(omega, axis=0) * np.abs(spans))
-    if not turn < np.inf:
-        return None
-    with np.errstate(all="ignore"):
-        ends = _settled(
-            lambda steps: flow(right.rates, begin, begins, spans, steps)[0].T,
-            int(min(max(np.ceil(turn / _STEP), _FEWEST), _MOST)),
-        )
-    edges = np.cumsum([part.shape[1] for part in rows.values()])[:-1]
-    motion = dict(zip(rows, np.split(ends, edges, axis=1), strict=True))
-    if "attitude" in motion:
-        motion["attitude"] = rotations(motion["attitude"])
-    return motion
 
+    def __init__(
+        self,
+        scene: Scene,
+        known: Mapping[str, Any],
+        since: Floats,
+        most_arcs: int = MOST_ARCS,
+    ) -> None:
+        groups = (*MOMENTA[scene.model], "attitude", "centre")
+        rows = {name: np.asarray(known[name].astype(float)) for name in groups if name in known}
+        if "attitude" in rows:
+            q = quaternion_columns(rows["attitude"])
+            rows["attitude"] = q / np.linalg.norm(q, axis=1, keepdims=True)
+        self._right = equations_of(scene, has_momenta=scene.model == "kirchhoff")
+        self._names, self._most_arcs = [*rows], most_arcs
+        self._edges = np.cumsum([part.shape[1] for part in rows.values()])[:-1]
+        order = np.argsort(since)
+        self._begins, self._states = since[order], np.hstack([*rows.values()])[order]
+        self._is_dense = True
+        middles = (self._begins[1:] + self._begins[:-1]) / 2
+        self._extend(np.append(middles, self._begins[-1:]), np.insert(middles, 0, self._begins[0]))
 
-def _settled(ends: Callable[[int], Floats], steps: int) -> Floats:
-    """Return the ends of as many steps as they need; NaN where the most are too few."""
-    after = ends(steps)
-    has_settled = np.zeros(len(after), dtype=bool)
-    for _ in range(_DOUBLINGS):
-        steps, before = 2 * steps, after
-        after = ends(steps)
-        has_settled = np.all(
-            np.abs(after - before) <= _SETTLED * np.nanmax(np.abs(after), axis=0), axis=1
+    @staticmethod
+    def is_possible(scene: Scene, known: Mapping[str, Any]) -> bool:
+        """Return True for a body without written loads or terms of its own, whose momenta are known."""
+        has_momenta = set(MOMENTA[scene.model]) <= set(known)
+        return scene.body.loads is None and are_known(scene.body) and has_momenta
+
+    def at(self, times: Floats) -> dict[str, Floats] | None:
+        """Return the motion at times since the start; None where it takes too many arcs.
+
+        It is NaN where float64 does not follow.
+        """
+        ends = np.copy(self._begins), np.copy(self._begins)
+        ends[0][-1], ends[1][0] = (
+            max(np.max(times), self._begins[-1]),
+            min(np.min(times), self._begins[0]),
         )
-        if np.all(has_settled):
-            break
-    return np.where(has_settled[:, None], after, np.nan)
+        self._extend(*ends)
+        if not self._is_dense:
+            return None
+        begins, last = self._begins, len(self._begins) - 1
+        after = np.clip(np.searchsorted(begins, times), min(1, last), last)
+        before = np.maximum(after - 1, 0)
+        is_before = np.abs(times - begins[before]) <= np.abs(times - begins[after])
+        nearest = np.where(is_before, before, after)
+        rows = self._moved(begins[nearest], self._states[nearest], times - begins[nearest])
+        motion = dict(zip(self._names, np.split(rows, self._edges, axis=1), strict=True))
+        if "attitude" in motion:
+            motion["attitude"] = rotations(motion["attitude"])
+        return motion
+
+    def _extend(self, right: Floats, left: Floats) -> None:
+        """Follow each known state to the right and to the left until these times, less than an arc away."""
+        begins, rows = [self._begins], [self._states]
+        now, states = np.tile(self._begins, 2), np.tile(self._states, (2, 1))
+        until = np.concatenate([right, left])
+        for _ in range(self._most_arcs * self._is_dense):
+            omega = self._right.velocities(now, states.T[None])[0, -3:]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                arc = _ARC / np.linalg.norm(omega, axis=0)
+            goes_on = np.abs(until - now) > arc
+            if not np.any(goes_on):
+                break
+            now, states, until, arc = (part[goes_on] for part in (now, states, until, arc))
+            spans = np.copysign(arc, until - now)
+            now, states = now + spans, self._moved(now, states, spans)
+            begins.append(now)
+            rows.append(states)
+        else:
+            self._is_dense = False
+        together = np.concatenate(begins)
+        in_order = np.argsort(together, kind="stable")
+        self._begins, self._states = together[in_order], np.concatenate(rows)[in_order]
+
+    def _moved(self, begins: Floats, states: Floats, spans: Floats) -> Floats:
+        """Return the states after arcs, in as many steps as some of them need; NaN where none suffice."""
+        some = np.union1d(evenly(len(spans), _SAMPLED), np.argsort(np.abs(spans))[-_SAMPLED:])
+        with np.errstate(all="ignore"):
+            steps, ends = _STEPS, self._ends(begins[some], states[some], spans[some], _STEPS)
+            for _ in range(_DOUBLINGS):
+                finer = self._ends(begins[some], states[some], spans[some], 2 * steps)
+                if np.all(np.abs(finer - ends) <= _SETTLED * np.max(np.abs(finer), axis=0)):
+                    return self._ends(begins, states, spans, steps)
+                steps, ends = 2 * steps, finer
+        return np.full_like(states, np.nan)
+
+    def _ends(self, begins: Floats, states: Floats, spans: Floats, steps: int) -> Floats:
+        return np.asarray(flow(self._right.rates, states.T[None], begins, spans, steps)[0].T)

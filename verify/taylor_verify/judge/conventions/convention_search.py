@@ -26,7 +26,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.causes.quick_motion import quick_motion
+from taylor_verify.judge.causes.quick_motion import QuickMotion
 from taylor_verify.judge.conventions.axis_orders import AXES, Axes, Frames, renamings
 from taylor_verify.judge.conventions.fits import (
     AS_WELL,
@@ -258,7 +258,9 @@ class _Search:
             return True
         first = exact.evaluate([Fraction(0)], _DIGITS)
         elapsed = np.array([float(t) for t in given.clock.elapsed])
-        quick = quick_motion(given, first, np.zeros(1), elapsed)
+        if not QuickMotion.is_possible(given, first):
+            return True
+        quick = QuickMotion(given, first, np.zeros(1)).at(elapsed)
         if quick is None:
             return True
         known = list(range(len(self.rows))), self._with_velocities(given, quick)

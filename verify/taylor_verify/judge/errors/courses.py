@@ -120,11 +120,12 @@ def best_start(compared: Compared, fit: Shifted, course: Course) -> Shifted:
     pace = _SEARCH_STEP / fit.rate
     counts = sorted(range(-_SEARCH_STEPS, _SEARCH_STEPS + 1), key=abs)
     steps = [Fraction(k * pace) * fit.unit for k in counts]
-    tried = [tuple(step * Fraction(s) for s in shape.tolist()) for step in steps]
-    left = compared.left_by(tried)
+    left = compared.left_by(steps, shape)
     if left is None:
         return fit
     between = (pace / 2) ** 2 * float(np.mean(fit.weight))
-    best = next(k for k, error in enumerate(left) if error <= min(left) + between)
-    start = compared.evaluated(tried[best])
+    best = next(
+        step for step, error in zip(steps, left, strict=True) if error <= min(left) + between
+    )
+    start = compared.evaluated(tuple(best * Fraction(s) for s in shape.tolist()))
     return fit if start is None or not start.left < fit.left else start

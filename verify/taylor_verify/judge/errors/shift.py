@@ -122,20 +122,21 @@ def _start(compared: Compared) -> Shifted | None:
 
 
 def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
-    """Return the best shift; where the exact motion is dear, one in float64 is asked first."""
-    is_dear = compared.run.exact.route == "taylor" and compared.largest(start) > courses.FAR
-    if is_dear and passage.is_followed:
+    """Return the best shift; of a large error one in float64 is asked first, where that is quicker."""
+    if compared.largest(start) > courses.FAR and passage.is_followed:
         if courses.reach(start) <= passage.around and _passes_too_far(compared, start, passage):
             return _without_evaluation(compared, start)
         quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)
         if quick.kind is Kind.NONE:
             return quick
+        return _searched(compared, start, quick)
     return _searched(compared, start)
 
 
-def _searched(compared: Compared, start: Shifted) -> Shift:
+def _searched(compared: Compared, start: Shifted, near: Shift | None = None) -> Shift:
+    """Return the best shift, near one that float64 found if it did."""
     run = compared.run
-    fits = best = _Fits.of(compared, start)
+    fits = best = _Fits.of(compared, start, near=near)
     nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
     single = courses.fitted(compared, nearest, courses.single)
     if fits.kind is Kind.NONE:
@@ -199,12 +200,19 @@ class _Fits:
         start: Shifted,
         line: Shifted | None = None,
         strays: tuple[int, ...] = (),
+        near: Shift | None = None,
     ) -> _Fits:
         """Return the fits that begin at ``start``, without a shift; the drifting fit begins at ``line``.
 
         The constant fit must begin at a constant, because a fit contains the shift that it begins with.
         """
-        begin = courses.best_start(compared, start, courses.constant)
+        begin = None
+        if near is not None:
+            shift = np.full(len(start.shifts), near.time_shift)
+            begin = courses.at(compared, start, shift)
+            if near.kind is Kind.DRIFTING and not near.strays:
+                line = courses.at(compared, start, np.array(near.course))
+        begin = begin or courses.best_start(compared, start, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
         onward = line or courses.best_start(compared, constant, courses.linear)
         linear = courses.fitted(compared, onward, courses.linear)

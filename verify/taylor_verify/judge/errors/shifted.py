@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import accumulate, pairwise
-from math import frexp, inf
+from math import frexp, inf, isfinite
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +20,7 @@ from mpmath import mp
 
 from taylor_verify.exact.rates import Rates, rates
 from taylor_verify.exact.solution import Solution, Unsettled
-from taylor_verify.judge.causes.quick_motion import quick_motion
+from taylor_verify.judge.causes.quick_motion import MOST_ARCS, QuickMotion
 from taylor_verify.judge.errors.state import Errors
 from taylor_verify.judge.velocities import exact_matrix, velocity, velocity_forms
 from taylor_verify.numbers.precision import power_of_two
@@ -38,6 +38,8 @@ _FLOAT_NOISE: Final = 2.0**-48
 # Many shifts are tested on a few samples, to a few digits.
 _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
+# So many arcs in float64 one behind the other take less time than a closed form.
+_FEW_ARCS: Final = 32
 # A verdict has no numbers below 2^-1000; above 2^-960 a double keeps all 53 bits.
 _LEAST_EXPONENT: Final = -1000
 _LEAST: Final = 2.0**-960
@@ -158,19 +160,27 @@ class Run:
         return (Fraction(0),) * len(self.elapsed)
 
     def near(self, elapsed: Sequence[Fraction]) -> Mapping[str, Any] | None:
-        """Return the motion to a few digits; None if it cannot be computed.
-
-        An enclosure takes much longer than float64 from the exact rows, which is enough for a search.
-        """
-        quick = self.along(_floats(elapsed)) if self.exact.route == "taylor" else None
+        """Return the motion to the few digits of a search; None if it cannot be computed."""
+        quick = self.along(_floats(elapsed))
         if quick is not None:
             return quick
         motion = self.motion(elapsed, _SEARCH_DIGITS)
         return None if motion is None else motion.quantities
 
+    @cached_property
+    def quick(self) -> QuickMotion | None:
+        """The motion in float64; None if it has loads."""
+        if not QuickMotion.is_possible(self.scene, self.truth.quantities):
+            return None
+        most = MOST_ARCS if self.exact.route == "taylor" else _FEW_ARCS
+        return QuickMotion(self.scene, self.truth.quantities, _floats(self.elapsed), most)
+
     def along(self, times: Floats) -> Mapping[str, Any] | None:
-        """Return the motion in float64 at times since the start; None if it has loads."""
-        return quick_motion(self.scene, self.truth.quantities, _floats(self.elapsed), times)
+        """Return the motion in float64 at times since the start.
+
+        None if it has loads, or a closed form that takes less time.
+        """
+        return None if self.quick is None else self.quick.at(times)
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
@@ -228,7 +238,7 @@ class Compared:
         return fit if fit.is_finite else None
 
     def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
-        error, size = self._relative(truth.quantities, slice(None))
+        error, size = self._relative(truth.quantities)
         velocity, acceleration = (
             np.concatenate(
                 [self._rate(rows, derivatives.units, part) for part in self._scales], axis=1
@@ -259,23 +269,25 @@ class Compared:
         total: Floats = np.sum(parts, axis=0)
         return total
 
-    def left_by(self, tried: Sequence[Shifts]) -> list[float] | None:
-        """Return the mean square error after each of these shifts, on a few samples."""
-        run, count = self.run, len(self.run.elapsed)
-        rows = evenly(count, _SEARCH_SAMPLES)
-        elapsed = [run.elapsed[k] - shifts[k] for shifts in tried for k in rows]
-        motion = run.near(elapsed)
+    def left_by(self, steps: Sequence[Fraction], shape: Floats) -> list[float] | None:
+        """Return the mean square error of a few samples after shifts by each of the steps x ``shape``."""
+        run = self.run
+        rows = evenly(len(run.elapsed), _SEARCH_SAMPLES)
+        shares = [Fraction(shape[k]) for k in rows]
+        motion = run.near(
+            [
+                run.elapsed[k] - step * share
+                for step in steps
+                for k, share in zip(rows, shares, strict=True)
+            ]
+        )
         if motion is None:
             return None
-        left = []
-        for first in range(0, len(elapsed), len(rows)):
-            some = {name: each[first : first + len(rows)] for name, each in motion.items()}
-            if not is_finite(some):
-                left.append(inf)
-                continue
-            error, size = self._relative(some, rows)
-            left.append(float(np.mean(np.sum(error**2, axis=1))) * size**2)
-        return left
+        answer = self.over_scales({part: run.answer[part][rows] for part in self._scales})
+        with np.errstate(all="ignore"):
+            errors = self.over_scales(motion).reshape(len(steps), *answer.shape) - answer
+            left = np.mean(np.sum(errors**2, axis=2), axis=1)
+        return [error if isfinite(error) else inf for error in left.tolist()]
 
     def over_scales(self, motion: Mapping[str, Any]) -> Floats:
         """Return the rows of a motion over the scales of the errors, flattened, in float64."""
@@ -310,12 +322,10 @@ class Compared:
             return {self.errors.quantity: mp.sqrt(2)}
         return self.errors.parts
 
-    def _relative(
-        self, truth: Mapping[str, Any], rows: Sequence[int] | slice
-    ) -> tuple[Floats, float]:
-        """Return the error of these rows of the answer, in units of a power of two near the largest."""
+    def _relative(self, truth: Mapping[str, Any]) -> tuple[Floats, float]:
+        """Return the error of the answer, in units of a power of two near the largest."""
         parts = self._scales
-        errors = {p: self.run.answer[p][rows] - exact for p, exact in self._parts(truth).items()}
+        errors = {p: self.run.answer[p] - exact for p, exact in self._parts(truth).items()}
         errors = {p: error.reshape(len(error), -1) for p, error in errors.items()}
         with np.errstate(all="ignore"):  # overflow and underflow are handled below
             relative = np.concatenate(
