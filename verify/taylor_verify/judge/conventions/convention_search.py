@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import ceil, inf
 from operator import attrgetter
 from typing import Any, Final
@@ -45,6 +45,7 @@ from taylor_verify.models.problem import NotRepresentable, adopt
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.quantities import COLUMNS, GROUPS, TRACKED
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.files.stated_step import step_of_rows
@@ -86,6 +87,12 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
         return Conventions((), World(scene), {})
     # Shorter beginnings come first, and max takes the first of equal ranks.
     return max((search.conventions() for search in searches), key=attrgetter("rank"))
+
+
+@lru_cache(maxsize=8)
+def _solved(scene: Scene, rung: Rung) -> tuple[Scene, Solution]:
+    given = adopt(scene, rung, scene.clock.instants).given
+    return given, solution(given)
 
 
 def attitudes_at(file: TrajectoryFile, scene: Scene, rung: Rung, rows: tuple[int, ...]) -> Floats:
@@ -177,11 +184,16 @@ class _Search:
         """Return the rounded scene of a world at the file's rows, and its solution with the attitude."""
         track = {"attitude", *(GROUPS[group].quantity for group in self.file.groups)}
         track &= set(TRACKED[self.scene.model])
-        given = adopt(
-            world.scene, self.rung, world.times(self.file.times[k] for k in self.rows)
-        ).given
-        tracked = replace(given, track=frozenset(track))
-        return tracked, solution(tracked)
+        asked, times = (
+            replace(world.scene, track=frozenset(track)),
+            world.times(self.file.times[k] for k in self.rows),
+        )
+        if asked.body.loads is not None:
+            given = adopt(asked, self.rung, times).given
+            return given, solution(given)
+        # Of a body without written loads one solution serves all times.
+        given, exact = _solved(asked, self.rung)
+        return replace(given, clock=Clock(given.clock.start, times)), exact
 
     def _fits(self, world: World, known: _Truth, frames: Sequence[Frames] = ()) -> list[Fit]:
         """Return the best readings in a world whose motion is known, under each of ``frames``.

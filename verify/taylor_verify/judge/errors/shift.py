@@ -40,6 +40,11 @@ _FEWEST: Final = 3
 _UNUSUAL: Final = 10.0
 # The Theil-Sen line uses all pairs of at most this many samples.
 _MOST_PAIRED: Final = 201
+_COURSES: Final = {
+    Kind.CONSTANT: courses.constant,
+    Kind.DRIFTING: courses.linear,
+    Kind.WANDERING: courses.single,
+}
 # The square of this is still a double. No shift of time causes larger errors or NaN.
 _LARGEST_ERROR: Final = 2**500
 
@@ -129,14 +134,14 @@ def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
         quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)
         if quick.kind is Kind.NONE:
             return quick
-        return _searched(compared, start, quick)
+        if (exact := _settled(compared, start, quick)) is not None:
+            return exact
     return _searched(compared, start)
 
 
-def _searched(compared: Compared, start: Shifted, near: Shift | None = None) -> Shift:
-    """Return the best shift, near one that float64 found if it did."""
+def _searched(compared: Compared, start: Shifted) -> Shift:
     run = compared.run
-    fits = best = _Fits.of(compared, start, near=near)
+    fits = best = _Fits.of(compared, start)
     nearest = min(fits.constant, fits.linear, key=lambda fit: fit.left)
     single = courses.fitted(compared, nearest, courses.single)
     if fits.kind is Kind.NONE:
@@ -156,6 +161,32 @@ def _searched(compared: Compared, start: Shifted, near: Shift | None = None) -> 
         course=tuple(course.tolist()),
         strays=tuple(run.instants[k] for k in best.strays),
     )
+
+
+def _settled(compared: Compared, start: Shifted, quick: Shift) -> Shift | None:
+    """Return a shift that float64 found with the numbers of the exact motion; None if it explains nothing.
+
+    Numbers that do not belong to its course stay as they are.
+    """
+    run = compared.run
+    strays = tuple(k for k, t in enumerate(run.instants) if t in quick.strays)
+    shared = compared.without(strays) if strays else compared
+    unshifted = shared.fit(shared.run.truth, shared.run.rates, shared.run.unshifted)
+    near = courses.at(shared, unshifted, np.delete(quick.course, strays))
+    if near is None:
+        return None
+    fit = courses.fitted(shared, near, _COURSES[quick.kind])
+    fits = _Fits(shared, unshifted, fit, fit, strays)
+    if not fits.explains(fit):
+        return None
+    course = fit.shift if quick.kind is Kind.WANDERING else fits.line(run)
+    settled = replace(quick, remains=shared.largest(fit), course=tuple(course.tolist()))
+    match quick.kind:
+        case Kind.CONSTANT:
+            return replace(settled, time_shift=settled.course[0], residual=settled.remains)
+        case Kind.DRIFTING:
+            return replace(settled, trend=fits.trend)
+    return replace(settled, at_samples=settled.course)
 
 
 def _passes_too_far(compared: Compared, start: Shifted, passage: Passage) -> bool:
@@ -200,19 +231,12 @@ class _Fits:
         start: Shifted,
         line: Shifted | None = None,
         strays: tuple[int, ...] = (),
-        near: Shift | None = None,
     ) -> _Fits:
         """Return the fits that begin at ``start``, without a shift; the drifting fit begins at ``line``.
 
         The constant fit must begin at a constant, because a fit contains the shift that it begins with.
         """
-        begin = None
-        if near is not None:
-            shift = np.full(len(start.shifts), near.time_shift)
-            begin = courses.at(compared, start, shift)
-            if near.kind is Kind.DRIFTING and not near.strays:
-                line = courses.at(compared, start, np.array(near.course))
-        begin = begin or courses.best_start(compared, start, courses.constant)
+        begin = courses.best_start(compared, start, courses.constant)
         constant = courses.fitted(compared, begin, courses.constant)
         onward = line or courses.best_start(compared, constant, courses.linear)
         linear = courses.fitted(compared, onward, courses.linear)
@@ -246,6 +270,10 @@ class _Fits:
         """Return the shift of all samples of a run, including strays."""
         if self.kind is not Kind.DRIFTING:
             return np.full(len(run.instants), float(self.constant.shift[0]))
+        return self.line(run)
+
+    def line(self, run: Run) -> Floats:
+        """Return the drifting shift of all samples of a run."""
         since: Floats = np.array(run.instants) - self.compared.run.instants[0]
         line: Floats = self.linear.shift[0] + self.trend * since
         return line
