@@ -222,7 +222,10 @@ def written_out(loads: Loads) -> Loads:
 
 
 def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
-    """Return the force and the couple of a hung force; with ``is_in_body`` it is fixed in body axes."""
+    """Return the force and the couple of a hung force; with ``is_in_body`` it is fixed in body axes.
+
+    The couple is the moment of a rigid body, whose origin is held.
+    """
     force = [
         str(hung.force[i])
         if is_in_body
@@ -233,7 +236,7 @@ def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
     couple = [
         _sum([(f"({hung.at[j]})", force[k]), (f"({-hung.at[k]})", force[j])]) for j, k in places
     ]
-    return {"force": force, "couple": couple}
+    return {"force": force, "couple": couple, "moment": couple}
 
 
 def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:

@@ -119,7 +119,8 @@ class QuickMotion:
             for _ in range(_DOUBLINGS):
                 finer = self._ends(begins[some], states[some], spans[some], 2 * steps)
                 if np.all(np.abs(finer - ends) <= _SETTLED * np.max(np.abs(finer), axis=0)):
-                    return self._ends(begins, states, spans, steps)
+                    is_all = len(some) == len(spans)
+                    return finer if is_all else self._ends(begins, states, spans, steps)
                 steps, ends = 2 * steps, finer
         return np.full_like(states, np.nan)
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
@@ -38,6 +38,10 @@ from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
 from taylor_verify.scenes.scene import Scene
 
 Column = np.ndarray[Any, Any]
+# Digits of arcs beside rows that are far from the exact motion, and the part of its scale for each row that
+# a balance must be off by, to have four digits with such arcs.
+_FEW_DIGITS: Final = 8
+_CLEAR: Final = 1e-7
 
 
 class Drifts:
@@ -89,10 +93,11 @@ class Drifts:
         self._is_lost = self._is_lost or not (is_steady or _is_finite(answer))
         moved = in_mpfr(truth)
         has_arcs = not (is_steady or self._is_lost)
+        with precision():
+            self._widen(without_damping(scene, moved, elapsed))
         ends = self._arc_ends(elapsed, moved, quick, own) if has_arcs else None
         with precision():
             quick = without_damping(scene, quick, elapsed)
-            self._widen(without_damping(scene, moved, elapsed))
             assert self._largest is not None
             for invariant in self._invariants:
                 if invariant.name in self._worked:
@@ -150,7 +155,8 @@ class Drifts:
     ) -> Motion:
         """Return the exact motion at each sample that starts from the sample before, or from the start.
 
-        It is computed as a neighbour of the scene's exact motion if it is close to it, else enclosed.
+        It is computed as a neighbour of the scene's exact motion if it is close to it, or if every balance
+        is so far from zero that few digits tell it; else enclosed.
         """
         scene, end, last = self._arc_scene, self._end, [len(elapsed) - 1]
         begins = (end.time, *elapsed[:-1])
@@ -160,14 +166,15 @@ class Drifts:
                 joined(before, rows).at(range(len(elapsed)))
                 for before, rows in ((end.truth, truth), (end.answer, answer))
             )
-            arc_ends = neighbours(
-                scene,
-                spans,
-                (earlier, truth),
-                beside,
-                self._digits,
-                self._derivatives(begins, elapsed),
-            )
+            derivatives = self._derivatives(begins, elapsed)
+
+            def beside_exact(digits: int) -> Motion | None:
+                return neighbours(scene, spans, (earlier, truth), beside, digits, derivatives)
+
+            arc_ends = beside_exact(self._digits)
+            if arc_ends is None:
+                rough = beside_exact(_FEW_DIGITS)
+                arc_ends = rough if rough is not None and self._is_clear(answer, rough) else None
         if arc_ends is None:
             states = _states(scene, own)
             starts = [end.state, *states[:-1]]
@@ -175,6 +182,16 @@ class Drifts:
         (state,) = _states(scene, {name: rows[last] for name, rows in own.items()})
         self._end = _End(elapsed[-1], state, truth.at(last), answer.at(last))
         return arc_ends
+
+    def _is_clear(self, answer: Motion, ends: Motion) -> bool:
+        """Return True if every balance is far beyond the error of arcs of few digits."""
+        assert self._largest is not None
+        for invariant in filter(self._is_balanced, self._invariants):
+            sums = np.cumsum(invariant.value(answer) - invariant.value(ends), axis=0)
+            largest = max(abs(value) for value in sums.flat)
+            if not largest > _CLEAR * len(sums) * invariant.scale(self._largest):
+                return False
+        return True
 
     def _derivatives(self, begins: Sequence[Fraction], ends: Sequence[Fraction]) -> Floats | None:
         """Return the derivatives of the motion over arcs under written loads; None where none are known."""
