@@ -51,10 +51,14 @@ class Candidate:
     @property
     def text(self) -> str:
         """The name, with numbers where there are some."""
-        family = self.family
+        family, words, first = self.family, list[str](), 0
         if not self.count:
             return family.name
-        return with_numbers(family.name, family.labels, family.right, self.numbers)
+        for part in family.parts or (family,):
+            own = self.numbers[first : first + part.count]
+            words.append(with_numbers(part.name, part.labels, part.right, own))
+            first += part.count
+        return " and ".join(words)
 
     @property
     def is_nothing(self) -> bool:

@@ -43,8 +43,9 @@ class Equations:
     ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts; they are read
     ``late`` by so much time, their velocities are those of ``scene_mass``, and they read the values
     ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
-    omega'; ``clock`` multiplies all rates. ``in_world`` takes v for components in space axes, into which
-    the loads are turned. ``added`` is the part of ``mass`` that the scene calls added mass.
+    omega'; ``clock`` multiplies all rates, and the time that texts read. ``in_world`` takes v for
+    components in space axes, into which the loads are turned. ``added`` is the part of ``mass`` that the
+    scene calls added mass.
     """
 
     mass: Floats
@@ -93,7 +94,8 @@ class Equations:
     def switches(self) -> Floats:
         """The times between which the loads are smooth."""
         switches = np.array([] if self.loads is None else self.loads.switches, dtype=float)
-        return np.unique(switches[:, None] + np.ravel(self.late))
+        late, clock = np.broadcast_arrays(np.ravel(self.late), np.ravel(self.clock))
+        return np.unique((switches[:, None] + late) / np.where(clock > 0, clock, 1.0))
 
     @cached_property
     def current(self) -> Floats:
@@ -219,7 +221,7 @@ class Equations:
     def wheels(self, time: Floats, z: Floats) -> Floats:
         """Return the momentum of wheels that a text writes, of the scene's own states."""
         assert self.acting is not None
-        when = np.broadcast_to(self.start + time, (len(z), len(time)))
+        when = np.broadcast_to(self._times_of_texts(time), (len(z), len(time)))
         return self.acting.rotor(when, z.transpose(0, 2, 1)).transpose(0, 2, 1)
 
     def price(self, components: int, states: int) -> float:
@@ -278,8 +280,8 @@ class Equations:
 
     def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads, or the rates of own states, that the scene writes as texts."""
-        late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.states_of_texts(z, nu)
-        when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
+        state, when = self.states_of_texts(z, nu), self._times_of_texts(time)
+        when = np.broadcast_to(when, (max(len(when), len(state)), len(time)))
         state = np.broadcast_to(state, (*when.shape, state.shape[2]))
         taken = self.held
         if taken is not None:
@@ -287,6 +289,13 @@ class Equations:
         values = getattr(self.acting, what)(when, state, taken)
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
         return np.asarray(stacked).transpose(0, 2, 1)
+
+    def _times_of_texts(self, time: Floats) -> Floats:
+        """Return the times at which texts are read, (parameters or 1, arcs)."""
+        late, clock = (
+            np.asarray(each, dtype=float).reshape(-1, 1) for each in (self.late, self.clock)
+        )
+        return np.asarray(self.start + clock * time - late)
 
     def states_of_texts(self, z: Floats, nu: Floats) -> Floats:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""

@@ -8,17 +8,18 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_texts import names_inertia, with_inertia
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS
+from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
 _NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late"})
 _NOTHING: Final = 1e-10
 # Names in the texts of loads whose values are those of another body if the mass changes.
-_OF_MASS: Final = frozenset((*INERTIA, *(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))))
+_OF_MASS: Final = frozenset(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))
 
 
 def changed_scene(right: Equations, changes: Changes) -> str:
@@ -33,6 +34,10 @@ def changed_scene(right: Equations, changes: Changes) -> str:
     if not _is_written(other, changes):
         return ""
     if "mass" in changes:
+        if right.loads is not None and names_inertia(right.loads):
+            before = _entries_by_key(right.loads)
+            after = _entries_by_key(with_inertia(right.loads, right.mass))
+            lines |= {key: words for key, words in after.items() if before.get(key) != words}
         rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
         lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
     if "rotor" in changes and np.any([right.rotor, other.rotor]):

@@ -11,14 +11,16 @@ from dataclasses import replace
 from itertools import product
 from typing import Final
 
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import HANGING, Place, places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Hung, Loads
-from taylor_verify.scenes.loads.vocabulary import VECTORS, Entry
+from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
 
 NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _AXES: Final = (1, 2, 3)
 _PAIRS: Final = tuple(product(_AXES, repeat=2))
+_TENSOR: Final = frozenset(INERTIA)
 _Names = Mapping[str, str]
 _ALWAYS: Final[dict[str, _Names]] = {
     "the loads have R for R^T": {f"r{i}{k}": f"r{k}{i}" for i, k in _PAIRS},
@@ -66,6 +68,18 @@ def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Load
             same = next(each for each in places(loads) if each.key == place.key)
             loads = same.put(change(str(place.entry)))
     return loads
+
+
+def names_inertia(loads: Loads | None) -> bool:
+    """Return True if a text reads the tensor of inertia."""
+    texts = [] if loads is None else [str(place.entry) for place in places(loads)]
+    return any(not _TENSOR.isdisjoint(NAME.findall(text)) for text in texts)
+
+
+def with_inertia(loads: Loads, inertia: Floats) -> Loads:
+    """Return the loads with the numbers of a tensor for its names."""
+    values = {f"I{i}{k}": f"({float(inertia[i - 1, k - 1])!r})" for i, k in _PAIRS}
+    return rewritten(loads, lambda text: NAME.sub(lambda m: values.get(m[0], m[0]), text))
 
 
 def key_of(place: Place) -> str:

@@ -41,7 +41,8 @@ class Family:
     """Faults with numbers, or one without: ``right`` are the scene's, ``scale`` natural sizes of a change.
 
     ``kind`` is the class that a family belongs to; families of one kind are no alternatives.
-    ``labels`` name the numbers of a body, whose changes are said one by one.
+    ``labels`` name the numbers of a body, whose changes are said one by one. ``parts`` are the families of
+    which one is made.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Family:
     scale: Floats
     changes: Callable[[Floats], Changes]
     labels: tuple[str, ...] = ()
+    parts: tuple[Family, ...] = ()
 
     @property
     def count(self) -> int:
@@ -152,6 +154,7 @@ def both(equations: Equations, one: Family, other: Family) -> Family:
         np.concatenate([one.right, other.right]),
         np.concatenate([one.scale, other.scale]),
         changes,
+        parts=(one, other),
     )
 
 

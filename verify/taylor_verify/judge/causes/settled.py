@@ -12,9 +12,15 @@ import numpy as np
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.changed_texts import names_inertia
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import entries, nearest_factor, structure
+from taylor_verify.judge.causes.other_bodies import (
+    entries,
+    is_up_to_a_factor,
+    nearest_factor,
+    structure,
+)
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.words.causes import with_numbers
@@ -120,7 +126,9 @@ class Choice:
         if motion is None:
             return None
         leaves = self.answer.leaves(motion)
-        return _Proven(candidate, leaves, max(leaves.get(name, np.inf) for name in self.groups))
+        # Two faults at once explain whatever the motion has, or nothing.
+        names = {*self.groups, *(leaves if candidate.kind == "pair" else ())}
+        return _Proven(candidate, leaves, max(leaves.get(name, np.inf) for name in names))
 
     def _refitted(self, candidate: Candidate) -> _Proven | None:
         """Return a candidate whose numbers are fitted once more, on the whole answer."""
@@ -171,24 +179,31 @@ class Choice:
                     return short
         return candidate
 
-    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool]:
+    def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, int]:
         """Return how far a candidate is from the text of the scene: one without a number is nearer.
 
-        A clock, which no equation has, is the farthest.
+        What the scene does not have is farther, and a clock, which no equation has. Of two numbers the one
+        with fewer digits is nearer.
         """
         has_number = " = " in self._described(candidate)[0]
         is_written, is_clock = candidate.kind == WRITTEN, candidate.kind == "clock"
-        return candidate.count, not is_written, has_number, is_clock
+        is_new = bool(candidate.count) and not np.any(candidate.family.right)
+        digits = sum(len(f"{number:.6g}") for number in candidate.numbers)
+        return candidate.count, not is_written, is_new, has_number, is_clock, digits
 
     def _described(self, candidate: Candidate) -> tuple[str, Changes]:
         """Return a candidate in words, with its changes; a body has the factor that changes the least."""
         right, changes = self.answer.right, candidate.changes
         if candidate.kind == "body" and candidate.count > 1:
             mass = nearest_factor(right, changes["mass"])
-            words = with_numbers(candidate.family.name, *entries(right.mass, mass))
+            free = ", known up to a common factor" * is_up_to_a_factor(right)
+            words = with_numbers(candidate.family.name + free, *entries(right.mass, mass))
             return words, {"mass": mass}
         words = structure(candidate.family, candidate.numbers)
-        return ": ".join(filter(None, (words, candidate.text))), changes
+        named = ": ".join(filter(None, (words, candidate.text)))
+        if "mass" in changes and names_inertia(right.loads):
+            named += ", and not in the texts of the loads"
+        return named, changes
 
 
 def _settled_numbers(
