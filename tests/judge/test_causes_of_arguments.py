@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cache
 
 import numpy as np
@@ -57,6 +58,32 @@ angular_velocity = [0.1, 0.2, -0.3]
 end = 4
 samples = 31
 """
+TOP = """
+title = "Heavy top"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [2, 2.5, 1.5]
+weight = { force = [0, 0, -3], at = [0.2, 0.1, 0.5] }
+[initial]
+omega = [0.5, 0.4, 2]
+attitude = [0.8, 0.4, 0.2, 0.4]
+[time]
+end = 4
+samples = 31
+"""
+TIMED = """
+title = "A moment by the clock, and one that damps"
+model = "euler"
+[body]
+inertia = [2.6, 3.4, 1.9]
+moment = ["0.3*sin(0.7*t)", "-0.15*w2", "0.12"]
+[initial]
+omega = [0.4, -0.3, 0.5]
+[time]
+end = 15
+samples = 61
+"""
 
 
 @cache
@@ -64,10 +91,11 @@ def scene(text: str) -> Scene:
     return read(text, "loads")
 
 
-def names(changed: str, text: str) -> list[str]:
+def names(changed: str, text: str, clock: Fraction = Fraction(1)) -> list[str]:
     """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
     given = adopt(scene(text), rung("f64"), list(scene(text).clock.instants)).given
-    moved = ExactMotion(scene(changed), has_centre=False).at([*given.clock.elapsed], False)
+    elapsed = [clock * t for t in given.clock.elapsed]
+    moved = ExactMotion(scene(changed), has_centre=False).at(elapsed, False)
     assert moved.q is not None
     file = Motion(np.round(moved.v, 10), np.round(moved.q, 10))
     noise = (np.full(moved.v.shape[1], 0.5e-10), 0.5e-10, 0.0)
@@ -99,6 +127,7 @@ THRUST = [
 ]
 WEIGHT = "weight = { force = [0, 0, 20], at = [0, 0, 0.05] }"
 BUOYANCY = "buoyancy = { force = [0, 0, -20], at = [0.02, 0, 0] }"
+HEAVY = "weight = { force = [0, 0, -3], at = [0.2, 0.1, 0.5] }"
 FIXED = [(WEIGHT, ""), ('"-0.6*abs', '"20 - 0.6*abs')]
 F = ["0.4 - 0.3*abs(u1)*u1 - 0.1*u1", "-0.5*abs(u2)*u2 - 0.1*u2", "-0.6*abs(u3)*u3 - 0.1*u3"]
 C = ["-0.1*w1", "-0.1*w2", "-0.2*w3"]
@@ -167,6 +196,8 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (VEHICLE, THRUST, "terms of force without velocities in space axes"),
             (VEHICLE, IN_SPACE, "force and couple, but for weight and buoyancy, in space axes"),
             (VEHICLE, FIXED, "weight fixed in body axes"),
+            (TOP, [(HEAVY, "moment = [-0.3, 0.6, 0]")], "weight fixed in body axes"),
+            (TOP, [("-3]", "3]")], "moment with the other sign"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
         3,
@@ -198,3 +229,8 @@ def test_loads_that_do_so_here_and_there_have_no_name(
 ) -> None:
     """An argument that is another one in some places of a text is no exchange of names."""
     assert asked(text, pairs) == []
+
+
+def test_a_clock_takes_the_time_of_the_loads_with_it() -> None:
+    """Of a motion that runs by a clock of its own the clock is named, and no load of another pace."""
+    assert names(TIMED, TIMED, Fraction(101, 100)) == ["clock"]
