@@ -265,3 +265,37 @@ def test_the_load_between_rows_is_in_the_document(tmp_path: Path) -> None:
         middle = (each["t"] + each["until"]) / 2
         assert each["load"] == pytest.approx(wave(middle, Q, Q), abs=1e-4)
     assert len(document["missing_load"]) == len(TIMES) - 1
+
+
+def with_nothing_in(made: Columns, rows_: slice) -> Columns:
+    spoilt = {name: np.array(values, dtype=float) for name, values in made.items()}
+    for name in spoilt.keys() - {"t"}:
+        spoilt[name][rows_] = np.nan
+    return {name: values.tolist() for name, values in spoilt.items()}
+
+
+@pytest.mark.parametrize(
+    ("tensor", "nothing", "title", "note"),
+    by_turns(
+        [
+            (TENSOR, np.s_[30:31], [], "one row is not finite (t = 3); all others are right"),
+            (
+                TENSOR,
+                np.s_[50:],
+                [],
+                "all rows from t = 5 on are not finite; those before are right",
+            ),
+            (HEAVIER, np.s_[30:31], ["I_33"], "one row is not finite (t = 3)"),
+        ],
+        3,
+    ),
+)
+def test_rows_that_are_not_finite_are_a_fact_of_their_own(
+    tensor: Array, nothing: slice, title: list[str], note: str, tmp_path: Path
+) -> None:
+    """No load is missing beside them; the other rows are right, or have the cause that they have."""
+    path = write_csv(tmp_path / "mine.csv", with_nothing_in(rigid(tensor), nothing))
+    judged = file_judgement(path, read(RIGID.format(load=""), "scene"))
+    assert [cause.name.split(" ")[0] for cause in judged.causes] == title
+    assert note in judged.notes
+    assert not any("no cause is proven" in each for each in judged.notes)

@@ -118,3 +118,52 @@ def test_check_says_so(tmp_path: Path) -> None:
     assert [cause.name for cause in judged.causes if cause.quantity == "omega"] == [
         "explicit damping step"
     ]
+
+
+# Scenes without damping: an engine that has it once in each step, as many have by default.
+FREE, LOADED = "euler/with-attitude", "euler/constant-moment"
+C, H = 0.05, 0.05
+OF_ENGINES = {
+    "1 - c h": ("explicit", 1 - C * H),
+    "1/(1 + c h)": ("implicit", 1 / (1 + C * H)),
+    "(1 - c)^h": ("exponential", (1 - C) ** H),
+}
+
+
+def stepped(scene: str, factor: float, h: float = H, every: int = 4) -> dict[str, str]:
+    """The causes of the classical method with a factor of the momenta after each step."""
+    return causes(load(scene), runge_kutta(load(scene), h, every, factor=lambda _: factor))
+
+
+@pytest.mark.parametrize(
+    ("scene", "law"), by_turns([(scene, law) for law in OF_ENGINES for scene in (FREE, LOADED)], 2)
+)
+def test_damping_that_no_scene_has_is_named_with_its_step(scene: str, law: str) -> None:
+    """A factor once in a step has its law, h and c, which is short in one law alone, and explains all."""
+    name, factor = OF_ENGINES[law]
+    words = f"omega times {law} after the motion of each step of h = {H:g}, with c = {C:g}; "
+    assert any(
+        sentence.startswith(f"{name} damping step: {words}")
+        for sentence in stepped(scene, factor).values()
+    )
+
+
+def test_a_factor_that_is_short_in_no_law_is_that_of_any() -> None:
+    """What c is cannot be told: the sentence says so."""
+    assert any(
+        sentence.startswith("damping step: omega times 1 - c h, or 1/(1 + c h) or exp(-c h) by ")
+        for sentence in stepped(FREE, 1 - 0.0512345 * H).values()
+    )
+
+
+def damped_anew(n: Numbers) -> None:
+    n.damping = C
+
+
+@pytest.mark.parametrize("scene", [FREE, LOADED])
+def test_damping_in_the_rates_is_no_damping_of_steps(scene: str) -> None:
+    """Continuous damping, and steps of a method without any, have no factor of a step."""
+    names = causes(load(scene), simulated(load(scene), change=damped_anew))
+    assert set(names) == {"damping"}
+    coarse = causes(load(scene), runge_kutta(load(scene), 0.2, 1))
+    assert not any("damping" in name for name in coarse)

@@ -17,6 +17,8 @@ from taylor_verify.words.causes import with_numbers
 
 # A change below this part of its natural size is none.
 _SAME: Final = 1e-10
+# Nor is a step, or the damping of a step, below this part.
+_SLIGHT: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -62,13 +64,13 @@ class Candidate:
 
     @property
     def is_nothing(self) -> bool:
-        """True for the scene's own numbers, a factor that prints as 1, and a step back in time."""
+        """True for the scene's own numbers, a factor that prints as 1, and no step, or one back in time."""
         if not self.count:
             return False
         if np.all(np.abs(self.numbers - self.family.right) <= _SAME * self.family.scale):
             return True
         if self.kind == "damping step":
-            return not self.numbers[0] > 0
+            return not self.numbers[0] > _SLIGHT * self.family.scale[0]
         is_factor = self.kind == "clock" or self.family.name.startswith("factor")
         return is_factor and f"{self.numbers[0]:.6g}" == "1"
 

@@ -146,9 +146,15 @@ def _turns_too_little(answer: Answer) -> bool:
 
 def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
     is_stepped = cause is not None and cause.method is not None
-    changes = {} if cause is None or is_stepped else cause.changes
+    changes = {} if cause is None or (is_stepped and "loss" not in cause.changes) else cause.changes
     right = answer.right.changed(changes)
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
+    if cause is not None and is_stepped:
+        # The steps of the motion explain the attitude, or another update does, or the sentence says so.
+        left = cause.leaves.get("attitude", 1.0)
+        of_motion = {name: part for name, part in cause.leaves.items() if name != "attitude"}
+        leaves = of_motion if of_attitude else {**of_motion, "attitude": left}
+        causes = [replace(each, leaves=leaves) if each is cause else each for each in causes]
     if of_attitude is not None:
         return [*causes, of_attitude]
     # An attitude that no cause explains refutes a cause that does not explain it.

@@ -27,7 +27,7 @@ Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
 _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
-    ("damping", "clock", "ahead", "late"), 0
+    ("damping", "clock", "ahead", "late", "loss"), 0
 )
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
@@ -43,9 +43,9 @@ class Equations:
     ``load`` is the constant load of the scene; ``acting`` are those that it writes as texts; they are read
     ``late`` by so much time, their velocities are those of ``scene_mass``, and they read the values
     ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
-    omega'; ``clock`` multiplies all rates, and the time that texts read. ``in_world`` takes v for
-    components in space axes, into which the loads are turned. ``added`` is the part of ``mass`` that the
-    scene calls added mass.
+    omega'; ``clock`` multiplies all rates, and the time that texts read. A damped step of h takes the part
+    ``loss`` h of the velocities. ``in_world`` takes v for components in space axes, into which the loads
+    are turned. ``added`` is the part of ``mass`` that the scene calls added mass.
     """
 
     mass: Floats
@@ -58,6 +58,7 @@ class Equations:
     scene_mass: Floats | None = None
     start: float = 0.0
     damping: Any = 0.0
+    loss: Any = 0.0
     clock: Any = 1.0
     turns: Floats | None = None
     ahead: Any = 0.0

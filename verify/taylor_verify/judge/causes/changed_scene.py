@@ -16,7 +16,7 @@ from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
-_NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late"})
+_NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late", "loss"})
 _NOTHING: Final = 1e-10
 # Names in the texts of loads whose values are those of another body if the mass changes.
 _OF_MASS: Final = frozenset(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))

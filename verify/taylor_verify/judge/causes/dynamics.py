@@ -16,6 +16,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.fit import (
     DIFFERENCE,
     Family,
@@ -216,6 +217,10 @@ class Search:
                 stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
                 candidates += replays(self.answer, stride)
             has_methods = True
+        if not is_stepped and not any(map(self._is_exact, candidates)):
+            budget = self.answer.budget
+            with suppress(Spent), budget.at_most(budget.left / 4):
+                candidates += damped_steps(self.answer, stride)
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped:
             return cause

@@ -343,8 +343,11 @@ def _quaternions(turns: Floats) -> Floats:
 
 
 def steady_signs(q: Floats) -> Floats:
-    """Return unit quaternions whose signs do not jump from row to row."""
-    unit = q / np.linalg.norm(q, axis=1, keepdims=True)
-    signs = np.sign(np.sum(unit[1:] * unit[:-1], axis=1))
+    """Return unit quaternions whose signs do not jump from row to row, whatever rows are not finite."""
+    unit = np.asarray(q / np.linalg.norm(q, axis=1, keepdims=True))
+    is_finite = np.all(np.isfinite(unit), axis=1)
+    own = unit[is_finite]
+    signs = np.sign(np.sum(own[1:] * own[:-1], axis=1))
     steady = np.cumprod(np.concatenate([[1.0], np.where(signs == 0, 1.0, signs)]))
-    return np.asarray(unit * steady[:, None])
+    unit[is_finite] = own * steady[: len(own), None]
+    return unit

@@ -19,6 +19,7 @@ _DOUBLE: Final = 2.0**-53
 _SINGLE: Final = 2.0**-24
 # Decimals with so many significant digits are not shorter than a double.
 _LONG: Final = 16
+_NOT_FINITE: Final = frozenset({"nan", "inf", "infinity"})
 
 
 def half_units(file: TrajectoryFile) -> dict[str, float]:
@@ -62,6 +63,8 @@ def _longest(entries: Iterable[Any]) -> tuple[int, int]:
             return 0, 0
         mantissa, _, exponent = entry.strip().lower().partition("e")
         plain = mantissa.lstrip("+-")
+        if plain in _NOT_FINITE:
+            continue
         if not plain.replace(".", "").isdigit():
             return 0, 0
         digits = max(digits, len(plain.replace(".", "").lstrip("0")))

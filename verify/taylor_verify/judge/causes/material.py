@@ -157,7 +157,7 @@ def _noise(noise: Floats, v: Floats, truth: Floats) -> Floats:
 
 
 def _rows(elapsed: Floats, file: Motion) -> list[int]:
-    """Return the rows of the longer side of the start, in the order away from it, up to the first flaw."""
+    """Return the rows of the longer side of the start, in the order away from it, without flawed ones."""
     later, earlier = np.flatnonzero(elapsed >= 0), np.flatnonzero(elapsed <= 0)
     side = later if len(later) >= len(earlier) else earlier
     side = side[np.argsort(np.abs(elapsed[side]), kind="stable")]
@@ -165,8 +165,7 @@ def _rows(elapsed: Floats, file: Motion) -> list[int]:
     for part in (file.v, file.q, file.c):
         if part is not None:
             flawed |= ~np.all(np.isfinite(part) & (np.abs(part) < 1e100), axis=1)
-    bad = np.flatnonzero(flawed[side])
-    return [int(k) for k in (side[: bad[0]] if len(bad) else side)]
+    return [int(k) for k in side if not flawed[k]]
 
 
 def material_of_file(

@@ -140,25 +140,28 @@ def _of_fixed_size(equations: Equations, time: Floats, v: Floats, h: Floats) -> 
     return _velocity(equations, after * sizes[0] / sizes[1])
 
 
+def _runge_kutta(order: int, weights: Sequence[float], *rows: Sequence[float]) -> Method:
+    """Return an explicit method that leads the attitude as it leads the motion."""
+    return Method(order, _explicit(weights, *rows), has_frame=True)
+
+
 METHODS: Final[Mapping[str, Method]] = {
     "explicit Euler": Method(1, _explicit([1])),
     "backward Euler": Method(1, _backward(_NEWTON), is_dear=True),
     "one Newton step of backward Euler": Method(1, _backward(1), is_dear=True),
     "components updated in place": Method(1, _in_place),
-    "midpoint": Method(2, _explicit([0, 1], [1 / 2])),
-    "Heun": Method(2, _explicit([1 / 2, 1 / 2], [1])),
-    "Ralston": Method(2, _explicit([1 / 4, 3 / 4], [2 / 3])),
-    "implicit midpoint": Method(2, _iterated(_midpoint), is_dear=True),
-    "trapezoid": Method(2, _iterated(_trapezoid), is_dear=True),
-    "RK3 (Kutta)": Method(3, _explicit([1 / 6, 2 / 3, 1 / 6], [1 / 2], [-1, 2])),
-    "RK3 (SSP)": Method(3, _explicit([1 / 6, 1 / 6, 2 / 3], [1], [1 / 4, 1 / 4])),
-    "RK4": Method(4, _explicit([1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1])),
-    "RK4 with its fourth stage at h/2": Method(
-        1, _explicit([1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1 / 2])
+    "midpoint": _runge_kutta(2, [0, 1], [1 / 2]),
+    "Heun": _runge_kutta(2, [1 / 2, 1 / 2], [1]),
+    "Ralston": _runge_kutta(2, [1 / 4, 3 / 4], [2 / 3]),
+    "implicit midpoint": Method(2, _iterated(_midpoint), is_dear=True, has_frame=True),
+    "trapezoid": Method(2, _iterated(_trapezoid), is_dear=True, has_frame=True),
+    "RK3 (Kutta)": _runge_kutta(3, [1 / 6, 2 / 3, 1 / 6], [1 / 2], [-1, 2]),
+    "RK3 (SSP)": _runge_kutta(3, [1 / 6, 1 / 6, 2 / 3], [1], [1 / 4, 1 / 4]),
+    "RK4": _runge_kutta(4, [1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1]),
+    "RK4 with its fourth stage at h/2": _runge_kutta(
+        1, [1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1 / 2]
     ),
-    "RK4 (3/8)": Method(
-        4, _explicit([1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1])
-    ),
+    "RK4 (3/8)": _runge_kutta(4, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1]),
 }
 # The loads of a scene, taken once in a step.
 HELD: Final = Method(1, _held_loads, is_dear=True, has_frame=True)

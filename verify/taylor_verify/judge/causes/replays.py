@@ -237,17 +237,32 @@ def _fine(method: Method) -> int:
 
 def _motion(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
+    return moved_by(steps, steps.step(answer), answer, answer.right)
+
+
+def moved_by(steps: Steps, h: float, answer: Answer, equations: Equations) -> Motion | None:
+    """Return the motion of the equations in steps of h."""
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
-    components = max(answer.right.coupled, answer.n + frame * steps.method.has_frame)
-    return whole(stepped(answer, steps), answer.right, components)
+    components = max(equations.coupled, answer.n + frame * steps.method.has_frame)
+    return whole(_in_steps(answer, steps, h), equations, components)
 
 
 def stepped(answer: Answer, steps: Steps) -> Answer:
     """Return the answer with arcs that are stepped from row to row."""
-    h = steps.step(answer)
+    return _in_steps(answer, steps, steps.step(answer))
 
+
+def _in_steps(answer: Answer, steps: Steps, h: float) -> Answer:
     def ends(equations: Equations, begin: Floats, since: Floats, spans: Floats) -> Floats:
-        count = max(1, round(float(np.median(np.abs(spans))) / h))
-        return replay(answer, steps.method, count, equations, begin, since, spans)
+        counts = np.maximum(1, np.rint(np.abs(spans) / h)).astype(int)
+        parts = []
+        for count in np.unique(counts):
+            some = counts == count
+            own = begin[:, :, some], since[some], spans[some]
+            parts.append((some, replay(answer, steps.method, int(count), equations, *own)))
+        out = np.empty((*parts[0][1].shape[:2], len(spans)))
+        for some, each in parts:
+            out[:, :, some] = each
+        return out
 
     return replace(answer, stepping=ends)
