@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.float_answer import (
 from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.paths import contradicts
 from taylor_verify.judge.causes.proof import may_leave, whole
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
@@ -35,6 +36,7 @@ from taylor_verify.judge.causes.stamps import other_times
 # An attitude so many times better than omega refutes every equation.
 _CONTRADICTED: Final = 1e-3
 _PROVEN: Final = 0.1
+_SLIGHT: Final = 1e-6
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
 _SHORTEST: Final = 12
@@ -58,8 +60,13 @@ def causes_of(answer: Answer) -> list[Cause]:
     undone = _undone(answer, by_group)
     if undone:
         return undone
-    left = [name for name in answer.failed if name not in by_group]
+    largest = max((answer.worst[name] for name in by_group), default=0.0)
+    # The vectors of one quantity fail together, also where the error is that of one of them.
+    slight = {name for name in answer.groups if answer.worst[name] < _SLIGHT * largest}
+    left = [name for name in answer.failed if name not in (*by_group, *slight)]
     causes = _each_once(by_group)
+    if left == ["centre"]:
+        causes += _some(contradicts(answer))
     if not left:
         return causes
     moving = [name for name in left if name in answer.groups]

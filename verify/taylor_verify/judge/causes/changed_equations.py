@@ -9,7 +9,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -24,6 +24,8 @@ from taylor_verify.models.frame import attitude_rate, rotation
 from taylor_verify.scenes.loads.loads import Loads
 
 Changes = Mapping[str, Any]
+# The rate of the centre by R, the linear velocity and the current.
+Path = Callable[[Any, Floats, Floats], Floats]
 
 # The number of axes that a parameter has without an axis of parameter sets.
 _AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
@@ -36,6 +38,10 @@ _TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
 
 
+def _over_ground(R: Any, U: Floats, current: Floats) -> Floats:
+    return to_space(R, U) + current
+
+
 @dataclass(frozen=True)
 class Equations:
     """Parameters of the equations of motion.
@@ -45,7 +51,8 @@ class Equations:
     ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
     omega'; ``clock`` multiplies all rates, and the time that texts read. A damped step of h takes the part
     ``loss`` h of the velocities. ``in_world`` takes v for components in space axes, into which the loads
-    are turned. ``added`` is the part of ``mass`` that the scene calls added mass.
+    are turned. ``added`` is the part of ``mass`` that the scene calls added mass. ``path`` is another rate
+    of the centre.
     """
 
     mass: Floats
@@ -65,6 +72,7 @@ class Equations:
     late: Any = 0.0
     in_world: bool = False
     added: Floats | None = None
+    path: Path | None = None
 
     @property
     def size(self) -> int:
@@ -200,7 +208,7 @@ class Equations:
         if z.shape[1] > n:
             out[:, n : n + 4] = self._turned(z[:, n : n + 4], nu[:, -3:], moving)
         if has_centre:
-            out[:, n + 4 : n + 7] = to_space(R, nu[:, :3]) + self.current[:, None]
+            out[:, n + 4 : n + 7] = (self.path or _over_ground)(R, nu[:, :3], self.current[:, None])
         if self.own and z.shape[1] > n + 4:
             out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)

@@ -6,7 +6,7 @@ roundings of the file, or the millionth part of the error: the simulator has err
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 from typing import Final
@@ -16,7 +16,9 @@ import numpy as np
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer, angles, conjugate, matrices
 from taylor_verify.judge.causes.float_answer import product as times
+from taylor_verify.judge.causes.lateness import late_rows
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.paths import paths
 from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 
@@ -46,14 +48,21 @@ FACTORS: Final = {
     "thousands": 1e-3,
     "feet": 1 / 0.3048,
 }
+_THAT_TURNS: Final = "relative to a frame that turns, in space axes, at"
 _FRAMES: Final = {
     "velocity": "is relative to a moving frame, with the velocity",
-    "omega": "is relative to a frame that turns, in space axes, at",
+    "omega": f"is {_THAT_TURNS}",
 }
+_OF_RIGID_BODY: Final = "is that of the rigid body alone, without the added mass"
 _ONCE_MORE: Final = "is turned by R^T once more: the file has it in body axes already"
 _OF_ANGLES: Final = "is the rates of Euler angles, roll' pitch' yaw', and no body rates"
 _TURNED: Final = "turned by a fixed rotation"
-_NOUNS: Final = {"velocity": "the linear velocity", "centre": "the centre"}
+_NOUNS: Final = {
+    "velocity": "the linear velocity",
+    "centre": "the centre",
+    "x": "the impulse x",
+    "y": "the impulse y",
+}
 
 
 @dataclass(frozen=True)
@@ -94,32 +103,63 @@ def readings(answer: Answer) -> dict[str, Cause]:
     if omega is not None and is_alone and "turned by a fixed" in omega.name:
         # An axisymmetric body of the other sign looks like a turn.
         del causes["omega"]
-    return _one_turn(answer, causes) or causes
+    for one in (_one_turn, _one_frame, _one_body):
+        causes |= one(answer, causes)
+    return causes
 
 
-def _one_turn(answer: Answer, causes: dict[str, Cause]) -> dict[str, Cause]:
+def _one_turn(answer: Answer, causes: Mapping[str, Cause]) -> dict[str, Cause]:
     """Return one cause for velocities and attitude if the same turn of the body's axes explains them."""
-    vectors = answer.moving
-    is_one = answer.has_rates and vectors and {*vectors, "attitude"} <= causes.keys()
-    if not is_one or not all(_TURNED in causes[name].name for name in (*vectors, "attitude")):
+    q, truth, names = answer.file.q, answer.truth.q, (*answer.moving, "attitude")
+    if not (answer.has_rates and answer.moving and _all(causes, names, _TURNED)):
         return {}
-    q, truth = answer.file.q, answer.truth.q
     assert q is not None
     assert truth is not None
     turn = _mean(times(conjugate(truth), q))
-    left = {"attitude": _left(answer, "attitude", times(truth, turn))}
-    for name in vectors:
-        left[name] = _left(answer, name, _group(answer, name)[1] @ matrices(turn)[0])
+    rows = {name: _group(answer, name)[1] @ matrices(turn)[0] for name in answer.moving}
+    words = f"the body's axes are {_TURNED} of {_degrees(turn[0]):.4g} degrees"
+    nouns = " and ".join(_NOUNS.get(name, name) for name in names)
+    return _one(
+        answer, f"{words}, in {nouns} alike", {"attitude": times(truth, turn), **rows}, _PART
+    )
+
+
+def _one_frame(answer: Answer, causes: Mapping[str, Cause]) -> dict[str, Cause]:
+    """Return one cause for omega and attitude if both are relative to the same frame that turns."""
+    q, truth = answer.file.q, answer.truth.q
+    if not (answer.has_rates and _all(causes, ("omega", "attitude"), _THAT_TURNS)):
+        return {}
+    assert q is not None
+    assert truth is not None
+    rate, turned = _frame_that_turns(answer, q, truth)
+    omega = _group(answer, "omega")[1] - matrices(truth).transpose(0, 2, 1) @ rate
+    words = f"omega and attitude are {_THAT_TURNS} {numbers(rate)}"
+    return _one(answer, words, {"omega": omega, "attitude": turned}, LEAVES)
+
+
+def _one_body(answer: Answer, causes: Mapping[str, Cause]) -> dict[str, Cause]:
+    """Return one cause for both impulses if they are those of the body without its added mass."""
+    if not _all(causes, ("x", "y"), _OF_RIGID_BODY):
+        return {}
+    leaves = {**causes["x"].leaves, **causes["y"].leaves}
+    words = "the impulses x and y are those of the rigid body alone, without the added mass"
+    return dict.fromkeys(leaves, Cause(words, "convention", leaves))
+
+
+def _all(causes: Mapping[str, Cause], names: Sequence[str], words: str) -> bool:
+    return all(name in causes and words in causes[name].name for name in names)
+
+
+def _one(answer: Answer, words: str, rows: Mapping[str, Floats], part: float) -> dict[str, Cause]:
+    """Return a cause for several groups by their rows; none if one of them is not explained."""
+    left = {name: _left(answer, name, own) for name, own in rows.items()}
     if any(
-        part > max(_ROUNDINGS * answer.roundings[name], _PART * answer.worst[name])
-        for name, part in left.items()
+        each > max(_ROUNDINGS * answer.roundings[name], part * answer.worst[name])
+        for name, each in left.items()
     ):
         return {}
-    leaves = {name: part / answer.worst[name] for name, part in left.items()}
-    words = f"the body's axes are {_TURNED} of {_degrees(turn[0]):.4g} degrees"
-    nouns = " and ".join(_NOUNS.get(name, name) for name in (*vectors, "attitude"))
-    cause = Cause(f"{words}, in {nouns} alike", "convention", leaves)
-    return {**causes, **dict.fromkeys(leaves, cause)}
+    leaves = {name: each / answer.worst[name] for name, each in left.items()}
+    return dict.fromkeys(leaves, Cause(words, "convention", leaves))
 
 
 def _left(answer: Answer, name: str, rows: Floats) -> float:
@@ -171,6 +211,13 @@ def _vectors(answer: Answer, name: str) -> Iterator[Reading]:
         yield Reading(_ONCE_MORE, 0, once_more)
         for unit, factor in FACTORS.items():
             yield Reading(f"{_ONCE_MORE}, and in another unit: {unit}", 0, factor * once_more)
+    if name == "velocity":
+        yield from _by_current(answer.right.current, truth, R)
+    if name in ("x", "y") and answer.right.added is not None:
+        dry = answer.right.inverse.T @ (answer.right.mass - answer.right.added).T
+        yield Reading(_OF_RIGID_BODY, 0, (answer.truth.v @ dry)[:, answer.groups[name]])
+    for words, rows in paths(answer) if is_centre else ():
+        yield Reading(words, 0, rows)
     for unit, factor in FACTORS.items():
         yield Reading(f"is in another unit: {unit}", 0, factor * truth)
     if name == "omega" and answer.n == 3:
@@ -178,6 +225,21 @@ def _vectors(answer: Answer, name: str) -> Iterator[Reading]:
     if name == "omega":
         yield Reading(_OF_ANGLES, 0, _rates_of_angles(truth, R))
     yield from _fitted(answer, name, file, truth, R)
+
+
+def _by_current(current: Floats, truth: Floats, R: Floats) -> Iterator[Reading]:
+    """Yield the velocities of a body that are not relative to the fluid, or are so twice."""
+    if not any(current):
+        return
+    ground = np.einsum("nji,j->ni", R, current)
+    in_space = np.einsum("nij,nj->ni", R, truth)
+    over = "is over ground, not relative to the fluid"
+    yield Reading(f"{over}: the current is added to it", 0, truth + ground)
+    yield Reading(f"{over}, and in space axes: it is the rate of the centre", 0, in_space + current)
+    yield Reading(f"{over}, and the current is not turned into body axes", 0, truth + current)
+    yield Reading(
+        "has the current taken off, though it is relative to the fluid", 0, truth - ground
+    )
 
 
 def _rates_of_angles(omega: Floats, R: Floats) -> Floats:
@@ -226,6 +288,8 @@ def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -
         p, rows = _best(file - truth, [np.cross(omega, axis) for axis in unit])
         yield Reading(f"is that of another point of the body, at {numbers(p)}", 3, truth + rows)
     yield from _turned(file, truth, R, is_centre)
+    for words, rows in late_rows(answer, name):
+        yield Reading(words, 3, rows)
 
 
 def _turned(file: Floats, truth: Floats, R: Floats, is_centre: bool) -> Iterator[Reading]:
@@ -276,7 +340,10 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     # A quaternion with one component in the wrong place is that of other frames too, for no other reason.
     if not any(_is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
-    yield _frame_that_turns(answer, q, truth)
+    rate, seen = _frame_that_turns(answer, q, truth)
+    yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, seen)
+    for words, rows in late_rows(answer, "attitude"):
+        yield Reading(words, 3, rows)
 
 
 def _other_columns(truth: Floats) -> dict[str, Floats]:
@@ -325,8 +392,8 @@ def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
             yield Reading(name, 0 if known else 3, unit)
 
 
-def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
-    """Return the attitude relative to a frame that turns at a constant rate, by Newton's method."""
+def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> tuple[Floats, Floats]:
+    """Return the constant rate of a frame, by Newton's method, and the attitudes relative to it."""
     elapsed = answer.times - answer.begins
     early = np.argsort(np.abs(elapsed))[1 : max(3, len(elapsed) // 10)]
     rate = _rate(_small_turns(times(q, conjugate(truth)))[early], elapsed[early])
@@ -338,7 +405,8 @@ def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> Reading:
         turned = times(frame, truth)
         rest = _small_turns(times(q, conjugate(turned)))
         rate = rate + _rate(rest, elapsed)
-    return Reading(f"is relative to a space frame that turns at {numbers(rate)}", 3, turned)
+    # The frame turns as much one way as what is seen from it turns the other way.
+    return -rate, turned
 
 
 def _rate(turns: Floats, elapsed: Floats) -> Floats:

@@ -8,7 +8,8 @@ import numpy as np
 
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
-from taylor_verify.judge.causes.many_flows import Floats, flow
+from taylor_verify.judge.causes.lateness import at_other_times, true_states
+from taylor_verify.judge.causes.many_flows import Floats
 
 _ROUNDS: Final = 5
 _MOST_ROWS: Final = 6.0
@@ -25,7 +26,7 @@ _SCATTER: Final = "times scatter"
 
 def other_times(answer: Answer) -> Cause | None:
     """Return the cause of rows that are exact at other times; the factor of a clock is another question."""
-    if answer.right.acting is not None:
+    if answer.has_states:
         return None
     late, left = _offsets(answer)
     errors = [
@@ -49,17 +50,18 @@ def other_times(answer: Answer) -> Cause | None:
 def _offsets(answer: Answer) -> tuple[Floats, Floats]:
     """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
     right, truth, file = answer.right, answer.truth, answer.file
-    z, rows = truth.v.T, file.v.T
-    scale = answer.sizes[:, None]
+    rows, scale = file.v.T, answer.sizes[:, None]
     if file.q is not None and truth.q is not None:
         signs = np.sign(np.sum(file.q * truth.q, axis=1))
-        z, rows = np.vstack([z, truth.q.T]), np.vstack([rows, file.q.T * signs])
+        rows = np.vstack([rows, file.q.T * signs])
         scale = np.vstack([scale, np.ones((4, 1))])
+    compared = np.s_[: len(rows)]
+    z = true_states(answer, len(rows))
     spacing = float(np.median(np.abs(np.diff(answer.times))))
-    late, at = np.zeros(answer.count), z[None]
+    late, at = np.zeros(answer.count), z
     for _ in range(_ROUNDS):
-        slopes = right.rates(answer.times, at)[0] / scale
-        apart = (rows - at[0]) / scale
+        slopes = right.rates(answer.times + late, at)[0, compared] / scale
+        apart = (rows - at[0, compared]) / scale
         square = np.sum(slopes**2, axis=0)
         step = np.sum(slopes * apart, axis=0) / np.where(square > 0, square, np.inf)
         late = np.clip(
@@ -67,9 +69,8 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats]:
             -_MOST_ROWS * spacing,
             _MOST_ROWS * spacing,
         )
-        answer.budget.spend(4000 + 0.5 * z.size)
-        at = flow(right.rates, z[None], answer.times, late, 4)
-    return late, np.linalg.norm((rows - at[0]) / scale, axis=0)
+        at = at_other_times(answer, z, late)
+    return late, np.linalg.norm((rows - at[0, compared]) / scale, axis=0)
 
 
 def _pattern(answer: Answer, late: Floats) -> str | None:

@@ -1,0 +1,93 @@
+"""The true motion at other times than those of the rows, and single quantities that are late or early."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.arcs import moved
+from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats
+
+_STEPS: Final = 4
+_ROUNDS: Final = 5
+# A shift leaves less of the error than this to first order, and spans no more rows.
+_FITS: Final = 0.7
+_MOST_ROWS: Final = 6.0
+_WHOLE: Final = 1e-4
+
+
+def true_states(answer: Answer, count: int) -> Floats:
+    """Return the true states at the rows, with so many components or all that the loads read."""
+    truth = replace(answer, file=answer.truth)
+    return truth.states(max(count, answer.right.coupled)).T[None]
+
+
+def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
+    """Return the true motion so much later than at the rows, from the states there."""
+    own = replace(answer, stepping=None)
+    return moved(own, answer.right, states, answer.times, late, _STEPS)
+
+
+def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
+    """Yield the rows of a quantity that is late or early by a constant while another one is right."""
+    if answer.has_states or len(answer.failed) == len(answer.error):
+        return
+    part, scale = _part(answer, name)
+    states = true_states(answer, part.stop)
+    file = _file(answer, name).T
+    if name == "attitude":
+        file = file * np.sign(np.sum(file * states[0, part], axis=0))
+    spacing = float(np.median(np.abs(np.diff(answer.times))))
+    first = answer.begins - answer.times
+    for is_held in (True, False):
+        late, at, shifts = 0.0, states, np.zeros(answer.count)
+        for place in range(_ROUNDS):
+            # Rows that are held at the start do not move.
+            slopes = (
+                answer.right.rates(answer.times + shifts, at)[0, part] * (shifts == late) / scale
+            )
+            apart = (file - at[0, part]) / scale
+            square = float(np.sum(slopes**2))
+            step = float(np.sum(slopes * apart)) / square if square > 0 else 0.0
+            if not place and np.linalg.norm(apart - step * slopes) > _FITS * np.linalg.norm(apart):
+                return
+            late = float(np.clip(late + step, -_MOST_ROWS * spacing, _MOST_ROWS * spacing))
+            # Before the start a simulator may have nothing but the start.
+            is_before = np.abs(first) < abs(late)
+            shifts = np.where(is_held & is_before & (first * late >= 0), first, late)
+            at = at_other_times(answer, states, shifts)
+        yield _words(late, spacing / abs(answer.stride)), at[0, part].T
+
+
+def _part(answer: Answer, name: str) -> tuple[slice, float]:
+    n = answer.n
+    if name == "attitude":
+        return slice(n, n + 4), 1.0
+    if name == "centre":
+        return slice(n + 4, n + 7), answer.reach
+    return answer.groups[name], float(answer.sizes[answer.groups[name]][0])
+
+
+def _file(answer: Answer, name: str) -> Floats:
+    file = answer.file
+    rows = {"attitude": file.q, "centre": file.c}.get(
+        name, file.v[:, answer.groups.get(name, slice(0))]
+    )
+    assert rows is not None
+    return rows
+
+
+def _words(late: float, spacing: float) -> str:
+    """Return how late the rows are: the rows hold the motion at a time ``late`` after theirs."""
+    rows = abs(late) / spacing
+    count = round(rows)
+    of_rows = (
+        f", {'one row' if count == 1 else f'{count} rows'}"
+        if abs(rows - count) < _WHOLE and count
+        else ""
+    )
+    return f"is {'late' if late < 0 else 'early'} by {abs(late):.6g}{of_rows}"
