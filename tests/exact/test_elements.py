@@ -136,7 +136,8 @@ def test_a_motion_recurs_after_its_period_and_not_after_half(name: str, quantity
         [
             *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
             *("beside-a-stable-spin", "planar-turn"),
-        ]
+        ],
+        6,
     ),
 )
 def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) -> None:
@@ -287,7 +288,8 @@ def test_an_axis_of_symmetry_precesses_about_H() -> None:
         [
             *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
             *("beside-a-stable-spin", "onto-the-axis", "algebraic", "half-turn"),
-        ]
+        ],
+        8,
     ),
 )
 def test_x3_stays_between_two_roots_and_reaches_them(name: str) -> None:

@@ -30,7 +30,7 @@ from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 30
-TIMES = [Fraction(-3, 2), Fraction(0), Fraction(7, 2)]
+TIMES = [Fraction(-1), Fraction(0), Fraction(2)]
 WHOLE = frozenset({"attitude", "centre"})
 GENERIC = vector("0.6", "-0.4", "0.5"), vector("0.2", "0.3", "0.8")
 # p p' q q' r r' about the axis.
@@ -132,7 +132,9 @@ def degenerate() -> Iterator[tuple[str, Fraction, Fraction, Vector, Vector]]:
     )
 
 
-@pytest.mark.parametrize(("kind", "l", "s", "x", "y"), list(degenerate()))
+@pytest.mark.parametrize(
+    ("kind", "l", "s", "x", "y"), by_turns(degenerate(), 9, lambda kind, *_: kind)
+)
 def test_degenerate_motions_about_an_irrational_axis_are_decided_and_solved(
     kind: str, l: Fraction, s: Fraction, x: Vector, y: Vector
 ) -> None:

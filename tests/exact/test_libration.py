@@ -7,6 +7,7 @@ from fractions import Fraction
 import pytest
 from builders.numbers import apart
 from builders.routes import closed_routes
+from builders.turns import by_turns
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -16,7 +17,7 @@ from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
-TIMES = [Fraction(1, 3), Fraction(7), Fraction(-5, 2)]
+TIMES = [Fraction(1, 3), Fraction(5), Fraction(-3, 2)]
 
 
 def orbiting(**changed: str) -> Scene:
@@ -52,7 +53,7 @@ PITCHING = {
 }
 
 
-@pytest.mark.parametrize("name", PITCHING)
+@pytest.mark.parametrize("name", by_turns(PITCHING, 9, lambda name: PITCHING[name][0]))
 def test_closed_routes_are_the_enclosed_motion(name: str) -> None:
     """Angular velocity and attitude, in every regime, about each end and each axis."""
     word, changed = PITCHING[name]

@@ -27,12 +27,12 @@ from taylor_verify.scenes.mpfr import in_mpfr, precision, to_mpf
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
-TIMES = (Fraction(0), Fraction(1, 3), Fraction(3, 2))
-ENDS = (Fraction(2, 5), Fraction(1), Fraction(13, 4))
+TIMES = (Fraction(0), Fraction(1, 3), Fraction(3, 4))
+ENDS = (Fraction(2, 5), Fraction(1), Fraction(3, 2))
 SPANS = [end - begin for begin, end in zip(TIMES, ENDS, strict=True)]
 LOADED = replace(
     kirchhoff(["-u1/4", "c2/9", "-r33/3"], ["-w1/5", "x1*r21", "sin(t)/4"], "4"),
-    clock=Clock(Fraction(0), (Fraction(0), Fraction(1), Fraction(13, 4))),
+    clock=Clock(Fraction(0), (Fraction(0), Fraction(1), Fraction(3, 2))),
 )
 # Of the exact motion.
 DIGITS = 90

@@ -20,7 +20,7 @@ from taylor_verify.scenes.motion import Clock, Impulse
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
-TIMES = [Fraction(1, 3), Fraction(5), Fraction(-7, 2), Fraction(9)]
+TIMES = [Fraction(1, 3), Fraction(3), Fraction(-2), Fraction(5)]
 BROAD = ("1", "3/2", "3/4")
 TURN = ("1", "2", "1/2")
 # x along the two axes of the plane in cyclic order, y across it, and the regime where p_i < p_j.

@@ -38,7 +38,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 42
-TIMES = [Fraction(0), Fraction(1, 3), Fraction(-7, 2), Fraction(6)]
+TIMES = [Fraction(0), Fraction(1, 3), Fraction(-3, 2), Fraction(3)]
 
 
 def shipped() -> Scene:

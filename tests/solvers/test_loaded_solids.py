@@ -103,7 +103,7 @@ def error_of(scene: str, method: str, step: float) -> float:
     """The largest error of the attitude of a vehicle script, which needs numpy alone."""
     script = SCRIPTS / "with_vehicle.py"
     solver = f"process:{sys.executable} {script} method={method} step={step}"
-    errors = {v.quantity: v.max for v in run(scene, solver, "f64").verdicts}
+    errors = {v.quantity: v.max for v in run(scene, solver, "f64", causes=False).verdicts}
     assert errors["attitude"] is not None
     return errors["attitude"]
 
@@ -111,9 +111,9 @@ def error_of(scene: str, method: str, step: float) -> float:
 def test_only_the_turned_sign_comes_near_the_exact_motion() -> None:
     """gz-sim's arithmetic converges to the exact motion, as first order does, with the sign of its Coriolis
     force turned; as it is it does not. reports/upstream/engines/gz_coriolis_sign.py reports that."""
-    turned = [error_of("loads/gz-added-mass", "gz_turned", step) for step in (0.02, 0.005)]
+    turned = [error_of("loads/gz-added-mass", "gz_turned", step) for step in (0.04, 0.01)]
     assert turned[1] <= turned[0] / 3
-    as_it_is = [error_of("loads/gz-added-mass", "gz", step) for step in (0.02, 0.005)]
+    as_it_is = [error_of("loads/gz-added-mass", "gz", step) for step in (0.04, 0.01)]
     assert as_it_is[1] > 10 * turned[1]
     assert as_it_is[1] > as_it_is[0] / 2
 
@@ -121,7 +121,5 @@ def test_only_the_turned_sign_comes_near_the_exact_motion() -> None:
 @pytest.mark.parametrize("method", ["mss", "pvs"])
 def test_zeroed_entries_are_no_matter_of_the_step(method: str) -> None:
     """A published vehicle stays away from the exact motion by what it leaves out, at any step."""
-    first, second = (
-        error_of("loads/vehicle-weight-low", method, step) for step in (0.005, 0.00125)
-    )
+    first, second = (error_of("loads/vehicle-weight-low", method, step) for step in (0.02, 0.005))
     assert second > first / 2

@@ -164,8 +164,8 @@ def test_text_that_nobody_asked_for_is_not_read(
 
 
 def liar(file: Path) -> None:
-    """A text of 128 MB, of which the footer says that it has a hundred bytes."""
-    texts = pa.array(["0", "1", "0" * 2**27])
+    """A text of 32 MB, of which the footer says that it has a hundred bytes."""
+    texts = pa.array(["0", "1", "0" * 2**25])
     numbers = dict.fromkeys(("w1", "w2", "w3"), pa.array([1.0, 1.0, 1.0]))
     plain = {"use_dictionary": False, "write_statistics": False}
     parquet.write_table(pa.table({"t": texts, **numbers}), file, compression="brotli", **plain)
@@ -177,12 +177,12 @@ def liar(file: Path) -> None:
 
 
 def refused_by_memory(file: Path) -> None:
-    """Read the file where 64 MB more than now are allowed, and look at the limits afterwards."""
+    """Read the file where 16 MB more than now are allowed, and look at the limits afterwards."""
     before = resource.getrlimit(resource.RLIMIT_DATA)
-    limit = Limit(2**26, "bytes of memory", "a reason")
+    limit = Limit(2**24, "bytes of memory", "a reason")
     with (
         patch.object(memory, "MEMORY", limit),
-        pytest.raises(Refused, match="expected at most 67108864 bytes of memory, got more @"),
+        pytest.raises(Refused, match="expected at most 16777216 bytes of memory, got more @"),
     ):
         read(file)
     assert resource.getrlimit(resource.RLIMIT_DATA) == before

@@ -75,7 +75,7 @@ def _file_of(spelling: Spelling) -> list[str]:
 @pytest.mark.parametrize(
     "spelling",
     # Those of programs stand in test_programs.py, with files.
-    [s for s in SPELLINGS if not (s.doubt or s.unless or s.whose)],
+    by_turns((s for s in SPELLINGS if not (s.doubt or s.unless or s.whose)), 4, lambda s: s.group),
     ids=lambda s: "-".join(s.keys[:2]),
 )
 def test_every_spelling_of_the_table_is_taken_in_any_order(spelling: Spelling) -> None:
