@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from fractions import Fraction
 from random import Random
 
 import pytest
@@ -15,8 +16,6 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.motion import Motion
 
 DIGITS = 16
-# Columns of the table of the other integrator: so few where they leave far less than a radius.
-FEW, MANY = 5, 7
 # What may be refused or given up.
 MOST_GIVEN_UP = 0.02
 
@@ -42,27 +41,26 @@ def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
     return far
 
 
-def end_by(case: Drawn, columns: int) -> End:
-    return end_of(case.scene, case.elapsed, DIGITS, 1, case.switches, columns=columns)
-
-
-def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
-    """Count what became of drawn scenes; a motion outside its radius fails with its scene."""
+def answers(
+    seed: int, count: int, share: Fraction, columns: int, with_states: bool = False
+) -> Counter[str]:
+    """Count what became of drawn scenes, each followed for a share of its span; a motion outside its
+    radius fails with its scene."""
     random, reasons = Random(seed), Counter[str]()
     while reasons.total() < count:
         case = drawn(random, with_states)
         if case.scene.body.loads is None:
             # Every entry happens to be zero.
             continue
-        end = end_by(case, FEW)
-        if end.error > mpf(10) ** -(DIGITS + 4):
-            end = end_by(case, MANY)
+        elapsed, start = share * case.elapsed, case.scene.clock.start
+        switches = [time for time in case.switches if abs(time - start) < abs(elapsed)]
+        end = end_of(case.scene, elapsed, DIGITS, 1, switches, columns)
         if end.crosses or end.error > mpf(10) ** -(DIGITS - 2):
             # The other integrator does not end its steps at kinks, or would need more of them.
             reasons["left out"] += 0
             continue
         try:
-            motion = solution(case.scene).motion([case.elapsed], DIGITS)
+            motion = solution(case.scene).motion([elapsed], DIGITS)
         except Unsettled as refused:
             reasons[str(refused)] += 1
             continue
@@ -72,17 +70,29 @@ def answers(seed: int, count: int, with_states: bool = False) -> Counter[str]:
     return reasons
 
 
+# Half of a span needs a column less in the table of the other integrator.
+HALF, WHOLE = (Fraction(1, 2), 6), (Fraction(1), 7)
+slow = pytest.mark.slow
+
+
 @pytest.mark.parametrize(
-    ("seed", "count"), [(1, 27), (5, 27), pytest.param(2, 2000, marks=pytest.mark.slow)]
+    ("seed", "count", "along"),
+    [(1, 30, HALF), (5, 30, HALF), pytest.param(2, 2000, WHOLE, marks=slow)],
 )
-def test_drawn_motions_are_within_their_radii(seed: int, count: int) -> None:
+def test_drawn_motions_are_within_their_radii(
+    seed: int, count: int, along: tuple[Fraction, int]
+) -> None:
     """The enclosure gives up at most a fiftieth of all of them, each with its reason."""
-    reasons = answers(seed, count)
+    reasons = answers(seed, count, *along)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
 
 
-@pytest.mark.parametrize(("seed", "count"), [(3, 6), pytest.param(4, 200, marks=pytest.mark.slow)])
-def test_drawn_motions_with_own_states_are_within_their_radii(seed: int, count: int) -> None:
+@pytest.mark.parametrize(
+    ("seed", "count", "along"), [(3, 8, HALF), pytest.param(4, 200, WHOLE, marks=slow)]
+)
+def test_drawn_motions_with_own_states_are_within_their_radii(
+    seed: int, count: int, along: tuple[Fraction, int]
+) -> None:
     """Wheels, lags, integrals and held values that jump: the other integrator has other equations."""
-    reasons = answers(seed, count, with_states=True)
+    reasons = answers(seed, count, *along, with_states=True)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons

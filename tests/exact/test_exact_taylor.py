@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -78,27 +77,6 @@ def test_motion_obeys_the_equations(scene: Scene) -> None:
             slope = (motion[name][2] - motion[name][0]) / (2 * mp.convert(step))
             # The difference's own error is step^2/6 times a third derivative of some tens.
             assert largest(slope - rate) <= mpf(10) ** -37
-
-
-def test_motion_agrees_with_odefun() -> None:
-    """mpmath's own integrator, given the same equations, arrives at the same state."""
-    scene = kirchhoff(LOADED)
-
-    def right(_: mpf, z: Sequence[mpf]) -> list[mpf]:
-        row = {"linear_impulse": np.array([z[:3]]), "angular_impulse": np.array([z[3:]])}
-        row["attitude"] = np.array([np.eye(3, dtype=int)])
-        derivatives = rates(scene, Motion(row, np.zeros(1)), 0)
-        return [*derivatives["linear_impulse"], *derivatives["angular_impulse"]]
-
-    initial = scene.initial
-    assert isinstance(initial, Impulse)
-    truth = TaylorSolution(scene).motion([Fraction(1)], 25)
-    with mp.workdps(20):
-        start = [mp.convert(entry) for entry in initial.linear + initial.angular]
-        end = mp.odefun(right, 0, start)(1)
-        impulses = [*truth["linear_impulse"][0], *truth["angular_impulse"][0]]
-        # odefun asks eight guard digits of itself; two digits are left to it.
-        assert largest(np.array(impulses) - np.array(end)) <= mpf(10) ** -18
 
 
 @pytest.mark.parametrize("span", [Fraction(3, 2), Fraction(-3, 2)], ids=["later", "earlier"])

@@ -500,13 +500,6 @@ def test_text_between_many_elements_is_read_once(tmp_path: Path) -> None:
     assert time.process_time() - start < PATIENCE
 
 
-def test_a_pipe_is_never_opened(tmp_path: Path) -> None:
-    """A pipe would wait for a writer."""
-    os.mkfifo(tmp_path / "pipe.urdf")
-    with pytest.raises(Refused, match="got a FIFO"):
-        import_scene(tmp_path / "pipe.urdf")
-
-
 # Plugins: what acts on a link beside its inertia
 
 
