@@ -42,7 +42,7 @@ def outside(case: Drawn, motion: Motion, end: End) -> list[str]:
 
 
 def answers(
-    seed: int, count: int, share: Fraction, columns: int, with_states: bool = False
+    seed: int, count: int, share: Fraction, columns: int, with_states: bool
 ) -> Counter[str]:
     """Count what became of drawn scenes, each followed for a share of its span; a motion outside its
     radius fails with its scene."""
@@ -72,27 +72,23 @@ def answers(
 
 # Half of a span needs a column less in the table of the other integrator.
 HALF, WHOLE = (Fraction(1, 2), 6), (Fraction(1), 7)
-slow = pytest.mark.slow
 
 
 @pytest.mark.parametrize(
-    ("seed", "count", "along"),
-    [(1, 30, HALF), (5, 30, HALF), pytest.param(2, 2000, WHOLE, marks=slow)],
+    ("seed", "count", "along", "with_states"),
+    [
+        *((1, 30, HALF, False), (5, 30, HALF, False), (3, 8, HALF, True)),
+        pytest.param(2, 2000, WHOLE, False, marks=pytest.mark.slow),
+        pytest.param(4, 200, WHOLE, True, marks=pytest.mark.slow),
+    ],
 )
 def test_drawn_motions_are_within_their_radii(
-    seed: int, count: int, along: tuple[Fraction, int]
+    seed: int, count: int, along: tuple[Fraction, int], with_states: bool
 ) -> None:
-    """The enclosure gives up at most a fiftieth of all of them, each with its reason."""
-    reasons = answers(seed, count, *along)
-    assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons
+    """The enclosure gives up at most a fiftieth of all of them, each with its reason.
 
-
-@pytest.mark.parametrize(
-    ("seed", "count", "along"), [(3, 8, HALF), pytest.param(4, 200, WHOLE, marks=slow)]
-)
-def test_drawn_motions_with_own_states_are_within_their_radii(
-    seed: int, count: int, along: tuple[Fraction, int]
-) -> None:
-    """Wheels, lags, integrals and held values that jump: the other integrator has other equations."""
-    reasons = answers(seed, count, *along, with_states=True)
+    Wheels, lags, integrals and held values that jump are among them: the other integrator has other
+    equations for these.
+    """
+    reasons = answers(seed, count, *along, with_states)
     assert reasons["right"] >= (1 - MOST_GIVEN_UP) * count, reasons

@@ -36,7 +36,7 @@ def test_a_kink_that_is_only_touched_is_not_followed() -> None:
     """1 + sin t touches zero at 3 pi/2: the rows before it are proven, and the time is said."""
     scene = about_axes('["cos(t)", "abs(1 + w1)", 0]')
     with pytest.raises(Unsettled) as refusal:
-        solution(scene).motion([Fraction(4), Fraction(5)], 10)
+        solution(scene).motion([Fraction(4), Fraction(5)], 20)
     assert refusal.value.motion is not None
     assert len(refusal.value.motion["omega"]) == 1
 

@@ -122,7 +122,10 @@ def test_every_path_that_is_named_exists(page: Path) -> None:
 
 @pytest.mark.parametrize(
     "page",
-    ["columns.md", "command-line.md", "enclosure.md", "errors.md", "regimes.md", "sweeps.md"],
+    [
+        *("columns.md", "command-line.md", "errors.md", "regimes.md", "sweeps.md"),
+        pytest.param("enclosure.md", marks=pytest.mark.slow),
+    ],
 )
 def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
     """The blocks that a page executes print what it shows."""

@@ -89,15 +89,8 @@ def test_angular_velocities_are_turned_into_the_body(
 
 def in_space(columns: Columns) -> Any:
     """R w by the matrix of the quaternion."""
-    q0, q1, q2, q3 = (np.array(columns[name]) for name in QUATERNION)
-    R = np.array(
-        [
-            [1 - 2 * (q2**2 + q3**2), 2 * (q1 * q2 - q0 * q3), 2 * (q1 * q3 + q0 * q2)],
-            [2 * (q1 * q2 + q0 * q3), 1 - 2 * (q1**2 + q3**2), 2 * (q2 * q3 - q0 * q1)],
-            [2 * (q1 * q3 - q0 * q2), 2 * (q2 * q3 + q0 * q1), 1 - 2 * (q1**2 + q2**2)],
-        ]
-    )
-    return np.einsum("ijn,jn->ni", R, np.array([columns[name] for name in OMEGA]))
+    q, omega = (np.array([columns[n] for n in names]).T for names in (QUATERNION, OMEGA))
+    return np.einsum("nij,nj->ni", rotations(q), omega)
 
 
 # Text. The library writes the scalar first in text of version 2, where the standard has it last.
