@@ -394,6 +394,7 @@ def test_a_body_at_rest_stays_there() -> None:
 # Names.
 
 
+@pytest.mark.slow
 def test_the_command_says_what_the_error_means(capsys: pytest.CaptureFixture[str]) -> None:
     """The midpoint rule is a clock that runs slow; splitting leaves the orbit too, as no clock does."""
 

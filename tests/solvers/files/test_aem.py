@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -297,7 +296,7 @@ def test_velocities_of_an_orbit_are_judged(spoiled: int | None, tmp_path: Path) 
     assert failed == ({"centre"} if spoiled == 1 else {"velocity"} if spoiled else set())
 
 
-FAULTS: Mapping[str, tuple[str, str]] = {
+FAULTS: dict[str, tuple[str, str]] = {
     "spin": (
         text(ATTITUDE_TYPE="SPIN", REF_FRAME_A="SC_BODY", REF_FRAME_B="ICRF"),
         "expected SC_BODY as REF_FRAME_B of SPIN, got SC_BODY as REF_FRAME_A",
@@ -345,32 +344,26 @@ FAULTS: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_faults_of_a_message_are_refused(fault: str, tmp_path: Path) -> None:
-    """A fault against the standard, or against the scene, is refused with its place."""
-    content, expected = FAULTS[fault]
-    with pytest.raises(Refused, match=expected):
-        read(written(tmp_path, content))
-
-
-XML_FAULTS: Mapping[str, tuple[str, str]] = {
+XML_FAULTS: dict[str, tuple[str, str]] = {
     "bomb": (
         '<!DOCTYPE a [<!ENTITY b "c">]><aem>&b;</aem>',
         "expected XML without a document type",
     ),
-    "cut": ("<aem><body>", "expected an XML document, got a fault in it"),
+    "cut in XML": ("<aem><body>", "expected an XML document, got a fault in it"),
     "another message": ("<opm/>", "expected an attitude or orbit ephemeris .*got <opm>"),
     "no metadata": ("<aem><attitudeState/></aem>", "expected metadata before the states"),
     "empty": ("<aem></aem>", "expected a segment with states, got none"),
 }
 
 
-@pytest.mark.parametrize("fault", XML_FAULTS)
-def test_faults_of_xml_are_refused(fault: str, tmp_path: Path) -> None:
-    """Entities, and elements that are missing, are refused."""
-    content, expected = XML_FAULTS[fault]
+@pytest.mark.parametrize("fault", [*FAULTS, *XML_FAULTS])
+def test_faults_of_a_message_are_refused(fault: str, tmp_path: Path) -> None:
+    """A fault against the standard, or against the scene, is refused with its place; so are entities of
+    XML, and elements that are missing."""
+    content, expected = (FAULTS | XML_FAULTS)[fault]
+    name = "run.xml" if fault in XML_FAULTS else "run.aem"
     with pytest.raises(Refused, match=expected):
-        read(written(tmp_path, content, "run.xml"))
+        read(written(tmp_path, content, name))
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
