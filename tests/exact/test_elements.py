@@ -137,7 +137,7 @@ def test_a_motion_recurs_after_its_period_and_not_after_half(name: str, quantity
             *("four-real-roots", "two-real-roots", "cubic", "trigonometric", "through-the-pole"),
             *("beside-a-stable-spin", "planar-turn"),
         ],
-        6,
+        7,
     ),
 )
 def test_x3_recurs_after_the_period_of_nutation_and_not_after_half(name: str) -> None:

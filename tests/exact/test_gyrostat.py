@@ -80,7 +80,7 @@ EXTREMES = {
     "slow body": FreeGyrostat(TRIAXIAL, ROTOR, tensors.scaled(TINY, OMEGA)),
 }
 
-of_each_regime = pytest.mark.parametrize("name", by_turns(MOTIONS, 4, REGIMES.get))
+of_each_regime = pytest.mark.parametrize("name", by_turns(MOTIONS, 12, REGIMES.get))
 
 SMALL = st.integers(-20, 20)
 # Of every kind that is hard, in its own axes or in turned ones.

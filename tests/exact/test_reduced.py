@@ -120,8 +120,16 @@ def unreduced(x: Vector) -> Motion:
     return TaylorSolution(whole(GENERAL, x=x)).motion(TIMES, DIGITS)
 
 
+# All of them in turn are quick, and so are those that the others do not have.
 @pytest.mark.parametrize(
-    ("name", "x"), [*((name, X) for name in REDUCTIONS), ("less b", vector(0, 0, 0))]
+    ("name", "x"),
+    [
+        *(("moved", X), ("all", X), ("less b", vector(0, 0, 0))),
+        *(
+            pytest.param(name, X, marks=pytest.mark.slow)
+            for name in ("centred", "less b", "less p")
+        ),
+    ],
 )
 def test_the_way_back_leads_to_the_motion_of_the_scene(name: str, x: Vector) -> None:
     """A body of 21 coefficients, reduced, integrated and carried back, moves as it does unreduced.

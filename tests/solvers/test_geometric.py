@@ -15,7 +15,7 @@ from builders.scenes import asked_at
 from builders.steps import by_step, has_order
 from builders.turns import by_turns
 from builders.verdicts import by_quantity
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.cli import main
@@ -189,6 +189,7 @@ def bodies(draw: st.DrawFn) -> Body:
 # Longer momenta at longer steps have no Moser-Veselov step: h |H| is bounded by the body.
 momenta = st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda H: np.linalg.norm(H) > 0.1)
 steps = st.floats(0.001, 0.1)
+few = settings(max_examples=30)
 
 
 def stepping(name: str, body: Body, H: Vector, h: float) -> Step:
@@ -203,6 +204,7 @@ def matrix(q: Quaternion) -> Any:
 
 
 @pytest.mark.parametrize("name", METHODS)
+@few
 @given(bodies(), momenta, steps)
 def test_the_frame_and_the_momentum_turn_alike(name: str, body: Body, H: Vector, h: float) -> None:
     """A step takes H to F^T H, with F the turn of the frame: the momentum in space stays."""
@@ -213,6 +215,7 @@ def test_the_frame_and_the_momentum_turn_alike(name: str, body: Body, H: Vector,
 
 
 @pytest.mark.parametrize("name", SYMMETRIC)
+@few
 @given(bodies(), momenta, steps)
 def test_a_symmetric_step_is_undone_by_its_reverse(
     name: str, body: Body, H: Vector, h: float
@@ -232,6 +235,7 @@ def test_a_step_of_lie_rk4_is_not_undone() -> None:
     assert np.linalg.norm(np.subtract(back, H)) > 1e-6
 
 
+@few
 @given(bodies(), momenta, steps)
 def test_moser_veselov_solves_its_own_equation(body: Body, H: Vector, h: float) -> None:
     """The turn F satisfies h [m]x = F D - D F^T with D = tr(I)/2 - I, as the paper has it."""
@@ -245,6 +249,7 @@ def test_moser_veselov_solves_its_own_equation(body: Body, H: Vector, h: float) 
     assert np.linalg.norm(F @ D - D @ F.T - skew) <= 300 * U * np.linalg.norm(D)
 
 
+@few
 @given(bodies(), momenta, steps)
 def test_moser_veselov_is_the_midpoint_rule_at_a_longer_step(
     body: Body, H: Vector, h: float

@@ -163,7 +163,7 @@ def swing(moment: str) -> Problem:
 def test_kinks_are_crossed_at_full_precision(scene: str, name: str) -> None:
     """Forwards and backwards, and from a start that lies on the kink. A length with one part is a kink:
     as a root its series would be wrong by 2e-8 on the other side, without any sign."""
-    kinked = (KINKED | LENGTHS)[scene]
+    kinked = {**KINKED, **LENGTHS}[scene]
     assert error(kinked, "taylor", name) < 50 * mpf(2) ** -rung(name).bits
 
 
