@@ -12,7 +12,7 @@ from time import process_time
 import pytest
 from builders.trajectories import MATRIX, Columns, exact_columns, file_judgement, write_csv
 from builders.turns import by_turns
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
@@ -166,6 +166,7 @@ def test_rows_are_a_sequence() -> None:
 # Files are judged alike.
 
 
+@settings(max_examples=40)
 @given(st.data())
 def test_any_usual_names_in_any_order_are_the_same_file(data: st.DataObject) -> None:
     """Spellings drawn for each group, in any order: times and numbers are those of the plain file."""
