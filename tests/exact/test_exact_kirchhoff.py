@@ -338,7 +338,7 @@ TWINS: list[tuple[Twin, str, str, str | None]] = [
 ]
 
 
-@pytest.mark.parametrize(("twin", "route", "name", "unseen"), by_turns(TWINS, 2))
+@pytest.mark.parametrize(("twin", "route", "name", "unseen"), by_turns(TWINS, 3))
 def test_a_broken_twin_is_noticed(
     twin: Twin, route: str, name: str, unseen: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:

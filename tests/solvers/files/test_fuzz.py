@@ -196,6 +196,7 @@ def judged_alone(file: TrajectoryFile, groups: frozenset[str]) -> FileJudgement:
         return judge_file(file, scene(), rung("f64"), **asked)
 
 
+@pytest.mark.slow
 def test_the_sound_files_pass(tmp_path: Path) -> None:
     """Files that are damaged next are right: their rows are the answer, and an answer of others fails."""
     for name in sound(tmp_path):
