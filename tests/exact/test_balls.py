@@ -9,7 +9,7 @@ from typing import Any, final
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
@@ -225,6 +225,7 @@ def test_a_radius_too_small_by_half_a_digit_is_noticed(
     assert not encloses(measured(enclosure), truth)
 
 
+@settings(max_examples=40)
 @given(st.lists(cornered(), min_size=1, max_size=4), st.integers(-900, 900))
 def test_widths_of_rows_are_those_of_each(
     cases: list[tuple[Enclosure, dict[str, Any]]], exponent: int

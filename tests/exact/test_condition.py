@@ -77,7 +77,7 @@ def _shear(momentum: Array, time: float) -> Array:
 
 def test_place_moves_with_the_path() -> None:
     """A turn stays a turn, a shift a shift, and a turn at the start swings c by |c - c(0)|."""
-    instants = times(0, "0.5", 2, 5)
+    instants = times(0, "0.5", 2)
     flow = transition(LOADED_KIRCHHOFF, instants)
     path = TaylorSolution(LOADED_KIRCHHOFF).motion(instants, 30)["centre"].astype(float)
     distances = np.linalg.norm(path - path[0], axis=1)
@@ -175,7 +175,7 @@ def test_variational_equations_agree_with_differences(start: Scene) -> None:
 
     To four digits: that is what the variational equations are integrated to.
     """
-    instants = times(0, "0.5", "1.25", 3, 10)
+    instants = times(0, "0.5", "1.25", 4)
     steps = integrated(start, instants)
     assert steps is not None
     by_steps = Path(start, instants, steps)
@@ -218,12 +218,12 @@ def test_steps_that_cannot_hold_what_shrinks_are_told_apart() -> None:
 
 
 def test_growth_whose_cube_is_beyond_float64_is_known() -> None:
-    """A start 1e-150 from the unstable axis: errors grow by about the inverse of that, and no more."""
-    saddle = sample_scene(RigidBody(diagonal(vector(1, 2, 3))), start=Spin(vector("1e-150", 1, 0)))
-    saddle = replace(saddle, clock=Clock(Fraction(0), times(0, 500, 1000)))
+    """A start 1e-110 from the unstable axis: errors grow by about the inverse of that, and no more."""
+    saddle = sample_scene(RigidBody(diagonal(vector(1, 2, 3))), start=Spin(vector("1e-110", 1, 0)))
+    saddle = replace(saddle, clock=Clock(Fraction(0), times(0, 400, 500)))
     condition = path(saddle)
-    assert condition.exponent > 400
-    assert 1e149 < condition.growth.max() < 1e151
+    assert condition.exponent > 300
+    assert 1e109 < condition.growth.max() < 1e111
 
 
 def test_the_first_differences_tell_how_small_the_next_must_be() -> None:
@@ -245,7 +245,7 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     turned = product(product(turn, diagonal(vector(1, 2, 3))), transpose(turn))
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
-    assert integrated(saddle, times(0, 400)) is None
+    assert integrated(saddle, times(0, 250)) is None
 
 
 @pytest.mark.parametrize("heavier", [Fraction(2) ** 20, Fraction(2) ** -20])

@@ -130,7 +130,7 @@ def test_in_a_vacuum_no_mass_is_added(fluid: int) -> None:
     assert all({a, b} - linear for each in products for _, a, b in each.products) is (fluid == 0)
 
 
-@pytest.mark.parametrize("name", by_turns(SHAPES))
+@pytest.mark.parametrize("name", by_turns(SHAPES, 8))
 def test_the_motion_is_that_of_the_ellipsoid_at_any_digits(name: str) -> None:
     """At 150 digits it is not that of the rationals that a scene holds."""
     scene, later = shaped(name), [LATER[name]]

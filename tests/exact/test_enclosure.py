@@ -133,6 +133,7 @@ def test_a_vector_that_vanishes_has_an_absolute_radius() -> None:
     assert motion.radii["omega"][0] <= mpf(10) ** -80
 
 
+@pytest.mark.slow
 def test_a_vector_that_cancels_for_ever_has_an_absolute_radius() -> None:
     """Drifting along an axis of A, a solid without spin has y = 0, though no term of y' is zero."""
     turned = tensors.product(

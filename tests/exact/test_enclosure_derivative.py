@@ -46,7 +46,7 @@ BY_DIFFERENCES = {
     "kirchhoff/whole-motion": 5,
     "kirchhoff/weber": 1,
     "kirchhoff/chaplygin": 2,
-    "kirchhoff/general-body": 3,
+    "kirchhoff/general-body": 1,
     "extremes/kirchhoff-nearly-clebsch": 3,
 }
 BY_STEPS = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from typing import Final
 
@@ -24,6 +25,11 @@ GENERIC: Final = load("euler/generic")
 def touch(first: EventTime, second: EventTime) -> bool:
     with mp.workdps(2 * DIGITS):
         return bool(abs(first.t - second.t) <= first.radius + second.radius)
+
+
+@cache
+def of_generic(text: str, until: int = 12) -> Events:
+    return events(GENERIC, text, until, DIGITS)
 
 
 def same(first: Events, second: Events) -> bool:
@@ -71,7 +77,7 @@ def test_every_change_of_sign_is_an_event(
 )
 def test_equal_events_have_equal_times(first: str, second: str) -> None:
     """An identity of the equations, or a monotone function, changes no time of an event."""
-    assert same(*(events(GENERIC, text, 12, DIGITS) for text in (first, second)))
+    assert same(*map(of_generic, (first, second)))
 
 
 def test_flips_come_at_equal_intervals() -> None:
@@ -84,7 +90,7 @@ def test_flips_come_at_equal_intervals() -> None:
 
 def test_a_zero_that_is_touched_is_undecided() -> None:
     """The square of a component touches zero where that crosses it; near zeros are two."""
-    crossed, touched = (events(GENERIC, text, 8, DIGITS) for text in ("w2 = 0", "w2^2 = 0"))
+    crossed, touched = (of_generic(text, 8) for text in ("w2 = 0", "w2^2 = 0"))
     assert same(crossed, Events("", Fraction(8), DIGITS, touched.undecided))
     assert not touched.times
     assert not touched.passed

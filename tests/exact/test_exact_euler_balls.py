@@ -83,7 +83,7 @@ def test_extremes_agree_with_mpmath(name: str) -> None:
     agrees_with_mpmath(EXTREMES[name], times("7/3", -LONG))
 
 
-@pytest.mark.parametrize("name", by_turns(SPINS))
+@pytest.mark.parametrize("name", by_turns(SPINS, 8))
 def test_agrees_with_taylor(name: str) -> None:
     """The Taylor route, which knows no elliptic function, finds the same motion."""
     at = times("7/3", "-5/2", 11)

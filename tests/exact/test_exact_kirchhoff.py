@@ -63,7 +63,7 @@ ASIDE = vector(1, -2, "1/2")
 
 
 of_each_regime = pytest.mark.parametrize(
-    "name", by_turns(MOTIONS, 12, lambda name: MOTIONS[name][2])
+    "name", by_turns(MOTIONS, len(MOTIONS), lambda name: MOTIONS[name][2])
 )
 
 
@@ -101,7 +101,7 @@ def is_taylors(asked: Scene, route: str, times: Sequence[Fraction]) -> bool:
         return False
 
 
-@pytest.mark.parametrize("name", by_turns(MOTIONS, 3, lambda name: MOTIONS[name][2]))
+@pytest.mark.parametrize("name", by_turns(MOTIONS, 8, lambda name: MOTIONS[name][2]))
 def test_begins_as_it_is_told(name: str) -> None:
     """The regime is named, and at time zero all is as stated; a centre at the origin included."""
     asked = scene(name)
@@ -126,7 +126,7 @@ def test_begins_as_it_is_told(name: str) -> None:
 @of_each_regime
 def test_agrees_with_taylor(name: str) -> None:
     """Impulses, attitude and centre, both ways in time and beside the start, by every closed route."""
-    asked, times = scene(name), vector("3/2", 4, "-7/3", 0, "1/1000000007")
+    asked, times = scene(name), vector(1, "-2/3", 0, "1/1000000007")
     assert all(is_taylors(asked, route, times) for route in closed_routes(asked))
 
 
@@ -221,12 +221,12 @@ ADVERSARIAL: dict[str, tuple[Clebsch, State]] = {
 }
 
 
-@pytest.mark.parametrize("name", by_turns(ADVERSARIAL))
+@pytest.mark.parametrize("name", by_turns(ADVERSARIAL, 8))
 def test_difficult_bodies_are_solved(name: str) -> None:
     """Closed routes find what Taylor finds, and find the same after 1e6 units of time."""
     asked = whole(*ADVERSARIAL[name])
     routes = closed_routes(asked)
-    assert all(is_taylors(asked, route, vector("3/2", -3)) for route in routes)
+    assert all(is_taylors(asked, route, vector("3/2", -1)) for route in routes)
     times = vector("17/3", -100 if "falling" in name else -(10**6))
     balls = motion_by(asked, "arb", times)
     assert all(overlap(balls, motion_by(asked, route, times)) for route in routes[1:])
@@ -338,12 +338,12 @@ TWINS: list[tuple[Twin, str, str, str | None]] = [
 ]
 
 
-@pytest.mark.parametrize(("twin", "route", "name", "unseen"), by_turns(TWINS, 2))
+@pytest.mark.parametrize(("twin", "route", "name", "unseen"), by_turns(TWINS, 3))
 def test_a_broken_twin_is_noticed(
     twin: Twin, route: str, name: str, unseen: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Beyond a nutation each is; within half a turn some cannot be, and only a long time tells."""
-    asked, times = scene(name), vector(3, 8, 20)
+    asked, times = scene(name), vector(3) if unseen is None else vector(3, 8)
     assert is_taylors(asked, route, times)
     twin(monkeypatch)
     assert not is_taylors(asked, route, times)

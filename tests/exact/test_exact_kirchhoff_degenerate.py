@@ -102,8 +102,8 @@ def test_a_double_root_anywhere(place: str) -> None:
     If p' >= p, f has one real root, or infinity, beyond each pole, so that only at a pole can one
     of them meet a turning point.
     """
-    times = [Fraction(2), Fraction(-5)]
-    for solid, start in random_double_roots(place, 4):
+    times = [Fraction(2), Fraction(-1)]
+    for solid, start in random_double_roots(place, 3):
         n, root = nutation(solid, start), repeated_root(nutation(solid, start).f)
         assert root is not None
         assert root**2 == n.F2 or solid.p_prime < solid.p

@@ -20,7 +20,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.scene import Scene
 
 HANGING = 'weight = { force = [1, 2, -2], at = [0, 0, "1/4"] }'
-HEAVY = kirchhoff(["0", "0", "0"], ["-w1/5 - w2*r33/9", "0", "sin(t)/8"], more=HANGING)
+HEAVY = kirchhoff(["0", "0", "0"], ["-w1/5 - w2*r33/9", "0", "sin(t)/8"], "1/2", more=HANGING)
 # The rule of the trapezium over some hundred times.
 WORK_DIGITS = 1e-5
 

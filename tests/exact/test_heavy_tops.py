@@ -76,7 +76,7 @@ OTHERS = {
     "about to fall": ("unstable-top", heavy(*ERECT, "[0, 0, 2]", UPRIGHT)),
 }
 TOPS = {name: ("nutating-top", scene) for name, scene in NUTATING.items()} | OTHERS
-by_top = pytest.mark.parametrize("name", TOPS)
+by_top = pytest.mark.parametrize("name", by_turns(TOPS, 3, lambda name: TOPS[name][0]))
 
 
 def rows(scene: Scene, route: str, digits: int = DIGITS) -> list[dict[str, object]]:

@@ -61,7 +61,7 @@ def test_a_free_motion_conserves_them(scene: Scene, names: str) -> None:
     """Each quantity that the tracking allows is there, and constant to the digits of the truth."""
     invariants_of = named(scene)
     assert list(invariants_of) == names.split()
-    motion = sampled(scene, [Fraction(0), Fraction(3), Fraction(-2), Fraction(11, 2)])
+    motion = sampled(scene, [Fraction(0), Fraction(2), Fraction(-1)])
     with mp.workdps(60):
         for invariant in invariants_of.values():
             value = invariant.value(motion)

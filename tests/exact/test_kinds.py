@@ -10,7 +10,7 @@ import pytest
 from builders.scenes import IMPULSE, LOADED, MOMENT, OMEGA, SPIN, TENSOR
 
 from taylor_verify.exact.quadratic_forms import Equations, exact
-from taylor_verify.exact.registry import KINDS, function_at, kind_of
+from taylor_verify.exact.registry import KINDS, kind_of
 from taylor_verify.numbers.tensors import apply, dot
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.library import names
@@ -48,11 +48,3 @@ def test_the_momentum_has_the_equations_of_the_state(model: str) -> None:
     assert (by_momentum.spin @ exact(p) == by_state.spin @ exact(z)).all()
     energy = dot(z, apply(kind.energy(body), z))
     assert dot(p, apply(kind.momentum_energy(body), p)) == energy
-
-
-@pytest.mark.parametrize("model", SAMPLES)
-def test_what_is_imported_late_is_there(model: str) -> None:
-    """The elements and both closed forms are functions."""
-    kind = kind_of(SAMPLES[model][0])
-    late = ("closed:enclosed", "closed:closed_form", "elements:elements")
-    assert all(callable(function_at(f"{kind.room}.{place}")) for place in late)

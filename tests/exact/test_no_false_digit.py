@@ -195,6 +195,7 @@ def test_a_spheroid_in_degrees_has_two_hundred_digits(route: str) -> None:
         assert_equal(row["angular_impulse"], precession(H, *moments, mpf(20)), 200)
 
 
+@pytest.mark.slow
 def test_velocities_of_an_ellipsoid_have_two_hundred_digits() -> None:
     """Without a closed form too: two hundred digits are the beginning of three hundred."""
     body = "ellipsoid = { semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }"

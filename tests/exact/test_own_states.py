@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -326,6 +327,11 @@ def reached(name: str, signs: tuple[int, ...] | None, bits: int) -> Row:
     return row
 
 
+@cache
+def corners(name: str) -> list[Row]:
+    return [reached(name, signs, 160) for signs in CORNERS]
+
+
 def is_contained(name: str, corners: list[Row]) -> bool:
     row = reached(name, None, 80)
     with ctx.workprec(200):
@@ -339,13 +345,12 @@ def is_contained(name: str, corners: list[Row]) -> bool:
 @pytest.mark.parametrize("name", ["wheel of a text", "sampled"])
 def test_motions_from_a_box_of_starts_stay_in_its_balls(name: str) -> None:
     """Through instants and with omega as an image; H is at most twice as wide as omega here."""
-    corners = [reached(name, signs, 160) for signs in CORNERS]
-    assert is_contained(name, corners)
+    assert is_contained(name, corners(name))
 
 
 def test_the_dependence_of_a_value_on_the_state_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without its slopes a corner leaves the box at once."""
-    corners = [reached("sampled", signs, 160) for signs in CORNERS]
+    ends = corners("sampled")
     outputs = Image.outputs
 
     def flat(self: Image) -> Functions:
@@ -353,7 +358,7 @@ def test_the_dependence_of_a_value_on_the_state_is_needed(monkeypatch: pytest.Mo
         return Functions(values, slopes * 0)
 
     monkeypatch.setattr(Image, "outputs", flat)
-    assert not is_contained("sampled", corners)
+    assert not is_contained("sampled", ends)
 
 
 def test_the_derivative_goes_through_instants() -> None:

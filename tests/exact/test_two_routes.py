@@ -206,14 +206,8 @@ def test_on_starts_beside_a_pole_that_is_passed(e: int, p: int, p_prime: Fractio
         assert agree(scene, [Fraction(-7, 3), Fraction(5)])
 
 
+@pytest.mark.parametrize("count", [12, pytest.param(1200, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("scenes", [spins(), nutations()], ids=["euler", "kirchhoff"])
-def test_on_bodies_drawn_at_random(scenes: st.SearchStrategy[Scene]) -> None:
+def test_on_bodies_drawn_at_random(scenes: st.SearchStrategy[Scene], count: int) -> None:
     """Nearly equal moments, ratios to 10^12, zero components, turned axes, poles, |t| to 10^14."""
-    _overlap(20, scenes)()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scenes", [spins(), nutations()], ids=["euler", "kirchhoff"])
-def test_on_thousands_of_bodies(scenes: st.SearchStrategy[Scene]) -> None:
-    """The same for twelve hundred bodies of each kind."""
-    _overlap(1200, scenes)()
+    _overlap(count, scenes)()

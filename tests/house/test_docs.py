@@ -97,24 +97,14 @@ def test_the_pages_are_short() -> None:
     [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "README.md"],
     ids=lambda page: page.relative_to(ROOT).as_posix(),
 )
-def test_every_file_that_is_linked_exists(page: Path) -> None:
-    """Every link and picture of a page leads to a file of the checkout."""
-    links = re.findall(r"\]\((?!https?:)([^)#]+)", page.read_text(encoding="utf-8"))
-    included = re.findall(r"^```\{include\} (\S+)", page.read_text(encoding="utf-8"), re.MULTILINE)
-    links += included
+def test_every_file_that_is_linked_or_named_exists(page: Path) -> None:
+    """Every link and picture of a page leads to a file of the checkout, and every path that is marked as
+    one of the checkout is there; a capital NAME stands for any."""
+    text = page.read_text(encoding="utf-8")
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", text)
+    links += re.findall(r"^```\{include\} (\S+)", text, re.MULTILINE)
     assert [link for link in links if not (page.parent / link).exists()] == []
-
-
-@pytest.mark.parametrize(
-    "page",
-    [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "README.md"],
-    ids=lambda page: page.relative_to(ROOT).as_posix(),
-)
-def test_every_path_that_is_named_exists(page: Path) -> None:
-    """Every path that is marked as one of the checkout is there; a capital NAME stands for any."""
-    marked = re.findall(
-        r"`((?:verify|tests|cases|reports|docs)/[\w./-]+)`", page.read_text(encoding="utf-8")
-    )
+    marked = re.findall(r"`((?:verify|tests|cases|reports|docs)/[\w./-]+)`", text)
     made = ("reports/local", "reports/paper", "reports/site", "docs/_build")
     paths = [path for path in marked if "NAME" not in path and not path.startswith(made)]
     assert [path for path in paths if not (ROOT / path).exists()] == []
@@ -122,7 +112,10 @@ def test_every_path_that_is_named_exists(page: Path) -> None:
 
 @pytest.mark.parametrize(
     "page",
-    ["columns.md", "command-line.md", "enclosure.md", "errors.md", "regimes.md", "sweeps.md"],
+    [
+        *("columns.md", "command-line.md", "errors.md", "regimes.md"),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("enclosure.md", "sweeps.md")),
+    ],
 )
 def test_what_a_page_shows_is_what_happens(page: str, tmp_path: Path) -> None:
     """The blocks that a page executes print what it shows."""

@@ -44,9 +44,10 @@ OTHERS = {
 
 def opening(path: Path) -> list[str]:
     """The calls by which a module opens or reads a file; our own `read_bytes` is a plain name."""
-    calls = [
-        node.func for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
-    ]
+    text = path.read_text()
+    if not any(f"{word}(" in text for word in READING):
+        return []
+    calls = [node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
     methods = [call.attr for call in calls if isinstance(call, ast.Attribute)]
     names = [call.id for call in calls if isinstance(call, ast.Name) and call.id == "open"]
     return [name for name in (*methods, *names) if name in READING]

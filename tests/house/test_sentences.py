@@ -19,6 +19,8 @@ SIZES = {
 
 def written_sizes(text: str) -> Iterator[str]:
     """Yield the sizes of a verdict that a text of Python lays out in digits itself, as {v.max:.2g}."""
+    if not any(f".{size}" in text for size in SIZES):
+        return
     for part in ast.walk(ast.parse(text)):
         if isinstance(part, ast.FormattedValue) and part.format_spec is not None:
             inside = (node for node in ast.walk(part.value) if isinstance(node, ast.Attribute))

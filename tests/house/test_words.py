@@ -23,6 +23,10 @@ BEGINNING: Final = re.compile(
 )
 # Participles, pronouns and verbs that do not say what a variable has. Held values are a term of the field.
 NAMELESS: Final = re.compile(r"_*(found|told|kept|seen|looks|said|gone|begun|it)_*")
+# Strings and comments, in which such words may stand.
+PROSE: Final = re.compile(
+    r'''"""(?:\\.|.)*?"""|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|\#[^\n]*''', re.DOTALL
+)
 # Parts of sentences that readers had to read twice.
 READ_TWICE: Final = (
     "as far as it is large",
@@ -55,6 +59,8 @@ def bad_beginnings(source: str) -> Iterator[str]:
 
 def nameless(source: str) -> Iterator[str]:
     """Yield the place of every variable, argument, function, class and import called by such a word."""
+    if not re.search(rf"\b{NAMELESS.pattern}\b", PROSE.sub("", source)):
+        return
     keys = set[ast.AST]()
     # A class comes before its fields.
     for node in ast.walk(ast.parse(source)):

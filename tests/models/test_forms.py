@@ -84,7 +84,7 @@ def assert_same_equations(problem: Problem, seed: int) -> None:
 # Every body is posed on one rung, and some on a second one.
 @pytest.mark.parametrize(
     ("name", "rung_name"),
-    by_turns(product(SCENES, ["f64", "f32", "mp237"]), 8, lambda name, rung_name: name),
+    by_turns(product(SCENES, ["f64", "f32", "mp237"]), 24, lambda name, rung_name: name),
 )
 def test_chosen_equations_are_the_general_ones(name: str, rung_name: str) -> None:
     """In rationals, whatever was left out or put together, of every shipped body on three rungs."""

@@ -196,7 +196,9 @@ def wheels(problem: Problem) -> Vector:
     )
 
 
-@pytest.mark.parametrize(("name", "rung_name"), by_turns(product(names(), LADDER)))
+@pytest.mark.parametrize(
+    ("name", "rung_name"), by_turns(product(names(), LADDER), 12, lambda name, _: name)
+)
 def test_posed_data_are_numbers_of_the_rung_and_an_exact_body(name: str, rung_name: str) -> None:
     """Every number handed to a solver is held by its rung, and `given` is the body they define."""
     problem = pose(load(name), rung(rung_name))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from taylor_verify.records.faults import Refused
@@ -400,6 +400,7 @@ def test_an_unknown_family_is_refused_with_a_near_one() -> None:
         family("satelites")
 
 
+@settings(max_examples=30)
 @given(st.lists(st.floats(0, 1), min_size=7, max_size=7))
 def test_near_separatrix_is_near_it(place: list[float]) -> None:
     """H^2 differs from 2 T I2 by a part of order `off`, and the moments are in their order."""

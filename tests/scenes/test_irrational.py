@@ -78,7 +78,7 @@ def value(number: Any) -> mpf:
     return above / below
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER, NUMBER, NUMBER)
 def test_the_laws_of_a_field_hold_exactly(a: Any, b: Any, c: Any) -> None:
     """Sums and products commute, associate and distribute; every number but zero has an inverse."""
@@ -102,7 +102,7 @@ OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(NUMBER, NUMBER | COEFFICIENT | st.integers(-9, 9))
 def test_arithmetic_is_that_of_mpmath(operation: Callable[..., Any], a: Any, b: Any) -> None:
     """Results agree to 60 digits of the larger operand, with rationals on either side too."""
@@ -117,7 +117,7 @@ def test_arithmetic_is_that_of_mpmath(operation: Callable[..., Any], a: Any, b: 
             assert abs(value(result) - expected) <= room
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER, NUMBER)
 def test_the_order_is_that_of_mpmath(a: Any, b: Any) -> None:
     """Two different numbers compare as their values do, either way round; equal ones are equal."""
@@ -150,7 +150,7 @@ def test_equality_is_structural() -> None:
         1 / (PI - PI)
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER, NUMBER)
 def test_equal_numbers_have_equal_hashes(a: Any, b: Any) -> None:
     """A number that is formed in two ways is one key of a dictionary."""
@@ -223,7 +223,7 @@ def test_a_decimal_of_pi_is_not_pi(digits: int) -> None:
     assert cut != PI
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER.filter(lambda number: isinstance(number, Irrational)))
 def test_values_are_near_the_number(number: Irrational) -> None:
     """mpmath gets it to the last bit at any precision, and `near` and `float` are as near as they say."""
@@ -237,7 +237,7 @@ def test_values_are_near_the_number(number: Irrational) -> None:
             assert abs(float(number) - expected) <= mp.ldexp(abs(expected), -52)
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER.filter(lambda number: isinstance(number, Irrational)), st.sampled_from([10, 300]))
 def test_enclosures_contain_the_number(number: Irrational, bits: int) -> None:
     """A ball of the relative width that was asked for, which contains a sharper one."""
@@ -249,7 +249,7 @@ def test_enclosures_contain_the_number(number: Irrational, bits: int) -> None:
         assert finer.overlaps(ball(exact_value(value(number))))
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(NUMBER)
 def test_numbers_go_to_another_process(number: Any) -> None:
     """A pickled number comes back equal, with its hash, in its field, and computes as before."""

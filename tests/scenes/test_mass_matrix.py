@@ -65,7 +65,7 @@ def positive(factor: list[list[Fraction]]) -> Matrix:
 
 
 @given(FACTOR, VECTOR, VECTOR)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=10, deadline=None)
 def test_the_matrix_is_inverted_and_the_impulses_formed_exactly(
     factor: list[list[Fraction]], velocity: Vector, turning: Vector
 ) -> None:

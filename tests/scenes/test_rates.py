@@ -79,15 +79,6 @@ def test_the_regime_is_that_of_the_numbers_without_their_unit(bare: str, degrees
     assert regime == solution(body(bare, "[2, 3, 6]"), "arb").regime
 
 
-def test_the_separatrix_is_met_exactly_in_degrees() -> None:
-    """2T J2 = H^2 in rationals."""
-    J = (2, 3, 6)
-    w = rate('["3 deg/s", "7 deg/s", "1 deg/s"]')
-    assert sum((a * b) ** 2 for a, b in zip(J, w, strict=True)) == J[1] * sum(
-        a * b**2 for a, b in zip(J, w, strict=True)
-    )
-
-
 def test_explain_says_how_degrees_were_formed() -> None:
     """The shipped satellite is told with its unit, the exact motion, and the bits that a solver gets."""
     scene = load("euler/satellite-degrees")

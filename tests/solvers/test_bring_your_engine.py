@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.acted import acted
+from builders.turns import by_turns
 from builders.worked import DOCS
 
 from taylor_verify.judge.judgement import Judgement
@@ -245,7 +246,7 @@ def test_a_template_answers_every_scene(command: str, name: str) -> None:
     assert {v.verdict for v in judged(name, command, 50).verdicts} in right
 
 
-@pytest.mark.parametrize("end", [8, -5])
+@pytest.mark.parametrize("end", by_turns([8, -5]))
 def test_a_template_evaluates_loads(command: str, end: int) -> None:
     """Texts, a table, a switch, damping and wheels reach the engine, forwards and backwards in time."""
     scene = read(LOADED.replace("END", str(end)), "all")

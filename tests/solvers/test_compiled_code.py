@@ -91,12 +91,12 @@ print(*(value for row in rows for value in row))
 
 
 def test_code_for_mpfr_numbers_is_found_by_another_process(folder: Path) -> None:
-    """Three processes store one piece of code, and it computes the same numbers in each."""
+    """Two processes store one piece of code, and it computes the same numbers in each."""
     answers = {
         subprocess.run(
             [sys.executable, "-c", _SOLVED_IN_MPFR], check=True, capture_output=True, text=True
         ).stdout
-        for _ in range(3)
+        for _ in range(2)
     }
     of_mpfr = {file.name for file in files(folder)}
     compile_afresh("f64")

@@ -73,6 +73,7 @@ answer(solve)
 PUSHED = (
     TWIN.replace("loads = false", 'loads = "written"')
     .replace('["f32"]', '["f64"]')
+    .replace("STEP = 0.0625 / 8", "STEP = 0.0625 / 4")
     .replace("principal, stepped", "pushed_body, stepped")
     .replace("def rates(s):", "def rates(s, later):")
     .replace(

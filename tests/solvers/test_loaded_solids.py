@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
@@ -103,7 +104,7 @@ def error_of(scene: str, method: str, step: float) -> float:
     """The largest error of the attitude of a vehicle script, which needs numpy alone."""
     script = SCRIPTS / "with_vehicle.py"
     solver = f"process:{sys.executable} {script} method={method} step={step}"
-    errors = {v.quantity: v.max for v in run(scene, solver, "f64").verdicts}
+    errors = {v.quantity: v.max for v in run(scene, solver, "f64", causes=False).verdicts}
     assert errors["attitude"] is not None
     return errors["attitude"]
 
@@ -111,14 +112,14 @@ def error_of(scene: str, method: str, step: float) -> float:
 def test_only_the_turned_sign_comes_near_the_exact_motion() -> None:
     """gz-sim's arithmetic converges to the exact motion, as first order does, with the sign of its Coriolis
     force turned; as it is it does not. reports/upstream/engines/gz_coriolis_sign.py reports that."""
-    turned = [error_of("loads/gz-added-mass", "gz_turned", step) for step in (0.02, 0.005)]
+    turned = [error_of("loads/gz-added-mass", "gz_turned", step) for step in (0.04, 0.01)]
     assert turned[1] <= turned[0] / 3
-    as_it_is = [error_of("loads/gz-added-mass", "gz", step) for step in (0.02, 0.005)]
+    as_it_is = [error_of("loads/gz-added-mass", "gz", step) for step in (0.04, 0.01)]
     assert as_it_is[1] > 10 * turned[1]
     assert as_it_is[1] > as_it_is[0] / 2
 
 
-@pytest.mark.parametrize("method", ["mss", "pvs"])
+@pytest.mark.parametrize("method", by_turns(["pvs", "mss"]))
 def test_zeroed_entries_are_no_matter_of_the_step(method: str) -> None:
     """A published vehicle stays away from the exact motion by what it leaves out, at any step."""
     first, second = (

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from builders.programs import is_alive
+from builders.turns import by_turns
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
@@ -57,12 +58,17 @@ def fake(monkeypatch: pytest.MonkeyPatch, users_cache: Path) -> Iterator[Made]:
     end_sessions()
 
 
+def kind(scene: str) -> str:
+    return load(scene).model
+
+
 def posed(scene: str) -> Problem:
     return pose(load(scene), rung("f64"))
 
 
 @pytest.mark.parametrize(
-    "scene", ["euler/backward", "kirchhoff/listed-times", "kirchhoff/general-body"]
+    "scene",
+    by_turns(["euler/backward", "kirchhoff/listed-times", "kirchhoff/general-body"], 3, kind),
 )
 def test_a_peer_is_asked_the_problem_that_heyoka_is_asked(scene: str, fake: Made) -> None:
     """Its states, at the samples and in the problem's own form, are the exact motion."""

@@ -113,7 +113,7 @@ def test_a_key_with_two_meanings_is_caught() -> None:
     assert Counter(keys(document))["start"] == 2
 
 
-@pytest.mark.parametrize("name", by_turns(one_of_each_kind().values(), 5))
+@pytest.mark.parametrize("name", by_turns(one_of_each_kind().values(), 10))
 def test_the_template_filled_in_passes(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cache
 
 import pytest
 from hypothesis import given
@@ -19,6 +20,7 @@ SCENES = (
 )
 
 
+@cache
 def problem_of(scene: str) -> Problem:
     return pose(load(scene), rung("f64"))
 

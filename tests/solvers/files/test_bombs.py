@@ -164,8 +164,8 @@ def test_text_that_nobody_asked_for_is_not_read(
 
 
 def liar(file: Path) -> None:
-    """A text of 128 MB, of which the footer says that it has a hundred bytes."""
-    texts = pa.array(["0", "1", "0" * 2**27])
+    """A text of 32 MB, of which the footer says that it has a hundred bytes."""
+    texts = pa.array(["0", "1", "0" * 2**25])
     numbers = dict.fromkeys(("w1", "w2", "w3"), pa.array([1.0, 1.0, 1.0]))
     plain = {"use_dictionary": False, "write_statistics": False}
     parquet.write_table(pa.table({"t": texts, **numbers}), file, compression="brotli", **plain)
@@ -177,12 +177,12 @@ def liar(file: Path) -> None:
 
 
 def refused_by_memory(file: Path) -> None:
-    """Read the file where 64 MB more than now are allowed, and look at the limits afterwards."""
+    """Read the file where 16 MB more than now are allowed, and look at the limits afterwards."""
     before = resource.getrlimit(resource.RLIMIT_DATA)
-    limit = Limit(2**26, "bytes of memory", "a reason")
+    limit = Limit(2**24, "bytes of memory", "a reason")
     with (
         patch.object(memory, "MEMORY", limit),
-        pytest.raises(Refused, match="expected at most 67108864 bytes of memory, got more @"),
+        pytest.raises(Refused, match="expected at most 16777216 bytes of memory, got more @"),
     ):
         read(file)
     assert resource.getrlimit(resource.RLIMIT_DATA) == before
@@ -193,14 +193,16 @@ def refused_by_memory(file: Path) -> None:
 )
 def test_a_page_that_is_larger_than_the_footer_says_is_refused(tmp_path: Path) -> None:
     """The memory of the reader has a bound, and that of the process none afterwards."""
-    # In processes of their own: what others took, and have no more use for, would serve for reading.
+    # In a process of its own: what others took, and have no more use for, would serve for reading.
     paths = os.pathsep.join([str(Path(__file__).parent), *sys.path])
-    file = str(tmp_path / "liar.parquet")
-    for name in ("liar", "refused_by_memory"):
-        call = f"import sys, pathlib, test_bombs; test_bombs.{name}(pathlib.Path(sys.argv[1]))"
-        environment = {**os.environ, "PYTHONPATH": paths}
-        subprocess.run([sys.executable, "-c", call, file], env=environment, check=True)
-    assert Path(file).stat().st_size < 5000
+    file = tmp_path / "liar.parquet"
+    liar(file)
+    call = (
+        "import sys, pathlib, test_bombs; test_bombs.refused_by_memory(pathlib.Path(sys.argv[1]))"
+    )
+    environment = {**os.environ, "PYTHONPATH": paths}
+    subprocess.run([sys.executable, "-c", call, str(file)], env=environment, check=True)
+    assert file.stat().st_size < 5000
 
 
 def number(value: int, length: int = 0) -> bytes:

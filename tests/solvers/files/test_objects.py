@@ -201,7 +201,7 @@ def test_judgement_is_that_of_the_file() -> None:
     assert not taylor_verify.check(SCENE, table, columns=mapping).passed
 
 
-@pytest.mark.parametrize("scene", [SCENE, WHOLE])
+@pytest.mark.parametrize("scene", [SCENE, pytest.param(WHOLE, marks=pytest.mark.slow)])
 def test_our_own_results_are_answers(scene: str) -> None:
     """`check` takes the arrays of `exact`, which pass; the groups of a Trajectory are its own."""
     times = load(scene).times

@@ -90,13 +90,14 @@ def test_a_broken_twin_is_not_read_as_the_sound_file(entry: Mapping[str, str]) -
     """A column with another sign, place or unit changes what is read, is refused, or is named as left."""
     table = read_table(FOLDER / f"{entry['file']}.csv")
     numbers = [np.array(column.values, dtype=float) for column in table.columns]
+    scene = load(entry["scene"])
     for k, (column, own) in enumerate(zip(table.columns, numbers, strict=True)):
         spoiled = SPOILED[k % len(SPOILED)](own, numbers[(k + 1) % len(numbers)])
         if np.allclose(spoiled, own, atol=1e-3):
             continue
         twin = [c._replace(values=spoiled) if c is column else c for c in table.columns]
         try:
-            file = from_columns(twin, "twin", scene=load(entry["scene"]))
+            file = from_columns(twin, "twin", scene=scene)
         except Refused:
             continue
         left = " ".join(note for note in file.notes if "not taken" in note or "ignored" in note)

@@ -58,13 +58,25 @@ def verdict_rows(scene: str, file: Path) -> list[dict[str, Any]]:
 # The same motion.
 
 
+@pytest.fixture(scope="module")
+def of_csv(columns: Columns, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """The rows of the motion as CSV, in decimals and with all bits of its doubles."""
+    file = tmp_path_factory.mktemp("csv") / "run.csv"
+    spelled = {"decimal": repr, "binary": hexadecimal}
+    return {
+        name: verdict_rows(SCENE, Path(write_csv(file, columns, spell)))
+        for name, spell in spelled.items()
+    }
+
+
 @pytest.mark.parametrize("name", WRITERS)
-def test_verdicts_are_those_of_the_csv(name: str, columns: Columns, tmp_path: Path) -> None:
+def test_verdicts_are_those_of_the_csv(
+    name: str, columns: Columns, of_csv: dict[str, Any], tmp_path: Path
+) -> None:
     """A motion in any format gives the rows that it gives as CSV, and passes."""
     WRITERS[name](tmp_path / name, columns)
-    csv = write_csv(tmp_path / "run.csv", columns, repr if name in DECIMAL else hexadecimal)
     rows = verdict_rows(SCENE, tmp_path / name)
-    assert rows == verdict_rows(SCENE, Path(csv))
+    assert rows == of_csv["decimal" if name in DECIMAL else "binary"]
     assert {row["verdict"] for row in rows if row["quantity"] != "complete"} == {"pass"}
 
 

@@ -104,7 +104,7 @@ print(json.dumps({"t": times, **columns}))
             ("np.float32", "lambda v: f'{v:.9g}'"),
             ("np.float64", "lambda v: float(f'{v:.9g}')"),
         ],
-        2,
+        3,
     ),
 )
 def test_a_program_in_float32_has_the_hint(
