@@ -50,7 +50,8 @@ class Equations:
     ``late`` by so much time, their velocities are those of ``scene_mass``, and they read the values
     ``held``. ``turns`` (b, a) are the weights of q' = (b W q + a q W)/2, where W is omega + ``ahead``
     omega'; ``clock`` multiplies all rates. ``in_world`` takes v for components in space axes, into which
-    the loads are turned. ``added`` is the part of ``mass`` that the scene calls added mass. ``path`` is another rate of the centre.
+    the loads are turned. ``added`` is the part of ``mass`` that the scene calls added mass.
+    ``path`` is another rate of the centre than R U + current.
     """
 
     mass: Floats

@@ -16,6 +16,8 @@ _STEPS: Final = 4
 _ROUNDS: Final = 5
 # A shift leaves less of the error than this to first order, and spans no more rows.
 _FITS: Final = 0.7
+# The quantity that is right has so much less of an error.
+_RIGHT: Final = 1e-3
 _MOST_ROWS: Final = 6.0
 _WHOLE: Final = 1e-4
 
@@ -34,7 +36,8 @@ def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
     """Yield the rows of a quantity that is late or early by a constant while another one is right."""
-    if answer.has_states or len(answer.failed) == len(answer.error):
+    others = [error for group, error in answer.worst.items() if group != name]
+    if answer.has_states or not others or min(others) > _RIGHT * answer.worst[name]:
         return
     part, scale = _part(answer, name)
     states = true_states(answer, part.stop)
@@ -47,7 +50,9 @@ def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
         late, at, shifts = 0.0, states, np.zeros(answer.count)
         for place in range(_ROUNDS):
             # Rows that are held at the start do not move.
-            slopes = answer.right.rates(answer.times + shifts, at)[0, part] * (shifts == late) / scale
+            slopes = (
+                answer.right.rates(answer.times + shifts, at)[0, part] * (shifts == late) / scale
+            )
             apart = (file - at[0, part]) / scale
             square = float(np.sum(slopes**2))
             step = float(np.sum(slopes * apart)) / square if square > 0 else 0.0
@@ -72,7 +77,9 @@ def _part(answer: Answer, name: str) -> tuple[slice, float]:
 
 def _file(answer: Answer, name: str) -> Floats:
     file = answer.file
-    rows = {"attitude": file.q, "centre": file.c}.get(name, file.v[:, answer.groups.get(name, slice(0))])
+    rows = {"attitude": file.q, "centre": file.c}.get(
+        name, file.v[:, answer.groups.get(name, slice(0))]
+    )
     assert rows is not None
     return rows
 
@@ -81,5 +88,9 @@ def _words(late: float, spacing: float) -> str:
     """Return how late the rows are: the rows hold the motion at a time ``late`` after theirs."""
     rows = abs(late) / spacing
     count = round(rows)
-    of_rows = f", {'one row' if count == 1 else f'{count} rows'}" if abs(rows - count) < _WHOLE and count else ""
+    of_rows = (
+        f", {'one row' if count == 1 else f'{count} rows'}"
+        if abs(rows - count) < _WHOLE and count
+        else ""
+    )
     return f"is {'late' if late < 0 else 'early'} by {abs(late):.6g}{of_rows}"
