@@ -57,7 +57,7 @@ def titles(path: Path, scene: str, made: Columns) -> list[str]:
 
 
 def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
-    asked, known = read(scene, "scene"), ("omega", "impulse", "attitude")
+    asked, known = read(scene, "scene"), ("omega", "impulse", "attitude", "centre")
     file = read_file(str(write_csv(path / "mine.csv", made)))
     plain = Conventions((), World(asked), {})
     failures = [failure(asked, quantity) for quantity in known]

@@ -45,7 +45,7 @@ def plain() -> TrajectoryFile:
     ("angles", "words"),
     [
         (np.degrees(ZYX), "are in degrees"),
-        (ZYX * [1, -1, 1], "have the other sign in angle 2"),
+        (ZYX * [1, -1, 1], "have the other sign in angle 2 (pitch)"),
         (ZYX[:, ::-1], "stand in the order 3 2 1"),
         (TURNS.as_euler("zyx"), "are about axes that stay fixed"),
         (TURNS.as_euler("ZXZ"), "are of the sequence zxz"),

@@ -323,11 +323,15 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     q, truth = answer.file.q, answer.truth.q
     assert q is not None
     assert truth is not None
-    yield Reading("is the conjugate: it takes space to body axes", 0, conjugate(truth))
+    yield Reading(
+        "is transposed, as a conjugate quaternion is: it takes space to body axes",
+        0,
+        conjugate(truth),
+    )
     columns = _other_columns(truth)
     for words, rows in columns.items():
         yield Reading(words, 0, rows)
-    for words, rows in (("", truth), ("is the conjugate, and ", conjugate(truth))):
+    for words, rows in (("", truth), ("is transposed, and ", conjugate(truth))):
         for side, turn in (
             ("space", times(q, conjugate(rows))),
             ("body", times(conjugate(rows), q)),
@@ -340,8 +344,8 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     # A quaternion with one component in the wrong place is that of other frames too, for no other reason.
     if not any(_is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
-    rate, seen = _frame_that_turns(answer, q, truth)
-    yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, seen)
+    rate, relative = _frame_that_turns(answer, q, truth)
+    yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, relative)
     for words, rows in late_rows(answer, "attitude"):
         yield Reading(words, 3, rows)
 

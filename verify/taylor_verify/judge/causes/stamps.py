@@ -88,10 +88,24 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
             f"the clock is late by {-mean:.6g}" if mean < 0 else f"the clock is early by {mean:.6g}"
         )
     return (
-        _decimals(answer, late, size)
-        or _single_precision(times, times + late, size)
+        _every_so_many(answer, late, size)
+        or _decimals(answer, late, size)
+        or _single_precision(times, times + late, size, abs(answer.stride))
         or _factor_or_jumps(answer, late, size, spacing)
     )
+
+
+def _every_so_many(answer: Answer, late: Floats, size: float) -> str | None:
+    """Return the words for times that are wrong at every so many rows, by one number."""
+    wrong = np.flatnonzero(np.abs(late) > size / 2)
+    apart, others = np.diff(wrong), np.delete(late, wrong)
+    if len(apart) < 2 or apart[0] < 2 or np.ptp(apart) or not len(others):
+        return None
+    if max(np.ptp(late[wrong]), np.max(np.abs(others))) > _PATTERN * size:
+        return None
+    off, every = float(np.mean(late[wrong])), int(apart[0]) * abs(answer.stride)
+    how = "late" if off < 0 else "early"
+    return f"of every {every} rows one has a time that is {how} by {abs(off):.6g}; all others are right"
 
 
 def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
@@ -119,12 +133,14 @@ def _is_line(times: Floats, late: Floats, size: float) -> bool:
     return bool(np.max(np.abs(late - line(times))) < _STRAIGHT * size)
 
 
-def _single_precision(times: Floats, exact: Floats, size: float) -> str | None:
+def _single_precision(times: Floats, exact: Floats, size: float, every: int) -> str | None:
+    """Return the words for a running sum, of which these are every so many times."""
     if not _are_equal_steps(exact, _PATTERN * size):
         return None
-    count = len(times) - 1
+    count = every * (len(times) - 1)
     h = (exact[-1] - exact[0]) / count
     sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
+    sums = sums[every - 1 :: every]
     is_sum = np.max(np.abs(times[1:] - times[0] - sums)) < _PATTERN * size
     return "times are a running sum in float32" if is_sum else None
 
@@ -137,9 +153,7 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
     if 0 < len(jumps) <= max(3, len(times) // 50) and answer.stride > 0:
         rows = np.diff(late)[jumps] / spacing * answer.stride
         if np.max(np.abs(rows - np.rint(rows))) < _PATTERN:
-            first, off = answer.places[jumps[0] + 1] + 1, round(float(rows[0]))
-            return (
-                f"rows dropped or doubled: from row {first} on, a row holds the state of row "
-                f"k{off:+d}"
-            )
+            firsts, off = answer.places[jumps + 1] + 1, np.cumsum(np.rint(rows)).astype(int)
+            told = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
+            return f"rows dropped or doubled: row k holds the state {', '.join(told)}"
     return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"

@@ -39,6 +39,7 @@ _UNITS: Final = {
     DEGREE: "are in degrees",
     1 / DEGREE: "are in radians",
 }
+_TURNS: Final = {"z": "yaw", "y": "pitch", "x": "roll"}
 _NOISE: Final = 64 * FLOAT64
 # Quaternions that are integrated without restoring their length stay as near to it.
 _UNIT: Final = 0.1
@@ -60,12 +61,18 @@ class Angles:
         words += [f"are of the sequence {self.sequence}"] if self.sequence != own else []
         if self.places != _PLAIN:
             words.append(f"stand in the order {' '.join(str(k + 1) for k in self.places)}")
-        flipped = [str(k + 1) for k, factor in enumerate(self.factors) if factor < 0]
+        flipped = [self._name(k) for k, factor in enumerate(self.factors) if factor < 0]
         if self.is_fixed and len(flipped) == len(_PLAIN):
             return [*words, "take space to body axes"]
         words += ["are about axes that stay fixed"] if self.is_fixed else []
         words += [f"have the other sign in angle {' and '.join(flipped)}"] if flipped else []
         return words
+
+    def _name(self, k: int) -> str:
+        """Return the place of an angle in a row, and its turn: the columns may stand in another order."""
+        axis = self.sequence[self.places.index(k)]
+        turn = _TURNS[axis] if self.sequence == "zyx" else f"about {axis}"
+        return f"{k + 1} ({turn})"
 
     def quaternion(self, angles: Sequence[Fraction]) -> Sequence[Value]:
         """Return the exact quaternion of a row."""

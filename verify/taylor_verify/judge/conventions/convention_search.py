@@ -166,7 +166,9 @@ class _Search:
 
     @cached_property
     def frames(self) -> tuple[Frames, ...]:
-        """Renamings of axes that can be seen in the file."""
+        """Renamings of axes that can be seen in the file; none under written loads, which have axes."""
+        if self.scene.body.loads is not None:
+            return (Frames(),)
         active: dict[str, set[int]] = {"body": set(), "space": set()}
         vectors = [group for group in self.values if not GROUPS[group].is_frame]
         for group in vectors:

@@ -67,7 +67,13 @@ class World:
 
 
 def worlds(scene: Scene, times: Sequence[Fraction]) -> list[World]:
-    """Return every world except the scene's own, for a file with rows at these times."""
+    """Return every world except the scene's own, for a file with rows at these times.
+
+    Under written loads a motion that begins at another time, or of another body, is another motion: there
+    are units of time alone.
+    """
+    if scene.body.loads is not None:
+        return [clock for clock in _clocks(scene, times) if clock.scale != 1 and not clock.shift]
     every = [
         replace(clock, scene=other, body_words=words)
         for other, words in [(scene, ""), *_other_bodies(scene)]

@@ -56,8 +56,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
 NO_CONVENTIONS: Final = (
-    "shifts of time are not looked for, and no convention is corrected: under the loads of this scene a "
-    "motion at another time, or in other axes, is another motion"
+    "no convention and no shift of time is corrected: under the loads of this scene a motion at another "
+    "time, or in other axes, is another motion"
 )
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
@@ -151,7 +151,8 @@ def judge_file(
             if in_body:
                 explained = causes_of_file(searched, rung, known, judged)
             is_open = accept_conventions or not explained.is_motion
-            if in_body and scene.body.loads is None and is_open:
+            # Under loads a unit of time alone is looked for: without one such a file is too far.
+            if in_body and is_open and (scene.body.loads is None or judged is None):
                 known = conventions(searched, scene, rung)
                 known = replace(known, readings={**along_space, **known.readings})
             if angles:
@@ -175,7 +176,7 @@ def judge_file(
             explained = causes_of_file(searched, rung, known, judged)
         notes += explained.notes
         notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
-        notes += () if scene.body.loads is None else (NO_CONVENTIONS,)
+        notes += () if scene.body.loads is None or known.findings else (NO_CONVENTIONS,)
         stored = storing(file, rung)
         notes += () if stored is None else (stored.note,)
     else:
