@@ -30,6 +30,7 @@ from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.values import as_mpf, exact
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 ROWS = 61
 BLOCK = 7
 # The exact motion of few instants has other roundings than that of many. Each is proven to forty bits more

@@ -86,29 +86,39 @@ tab = { times = [0, 2, 4, 6], values = [0.1, -0.05, 0.08, 0.02] }"""
 
 @pytest.mark.parametrize(
     ("load", "moment", "edges", "words"),
-    [
-        ("", window(3, 6, [0.05, 0.02, -0.04]), (3, 6), ["from t = 3 to 6: moment in body axes"]),
-        ("", window(0, 4, [0.05, 0.02, -0.04]), (4,), ["up to t = 4: moment in body axes"]),
-        ("", window(3.05, 9, [0.05, 0, 0.04]), (3.05,), ["right up to t = 3, then: moment in"]),
-        (
-            "moment = [0.1, -0.05, 0.08]",
-            window(0, 5, [0.1, -0.05, 0.08]),
-            (5,),
-            ["right up to t = 5, then: moment left out"],
-        ),
-        (
-            "",
-            lambda t, w, q: DAMPED(t, w, q) * (3 <= t < 6) + np.array([0.04, 0, 0.03]) * (t >= 6),
-            (3, 6),
-            ["from t = 3 to 6: damping = 0.07", "from t = 6 on: moment in body axes"],
-        ),
-        (
-            KNOTS,
-            lambda t, w, q: np.array([[0.1, -0.05, 0.08, 0.02][min(int(t / 2), 3)], 0, 0]),
-            (2, 4, 6),
-            ["table tab is hold, where the scene has linear"],
-        ),
-    ],
+    by_turns(
+        [
+            (
+                "",
+                window(3, 6, [0.05, 0.02, -0.04]),
+                (3, 6),
+                ["from t = 3 to 6: moment in body axes"],
+            ),
+            ("", window(0, 4, [0.05, 0.02, -0.04]), (4,), ["up to t = 4: moment in body axes"]),
+            ("", window(3.05, 9, [0.05, 0, 0.04]), (3.05,), ["right up to t = 3, then: moment in"]),
+            (
+                "moment = [0.1, -0.05, 0.08]",
+                window(0, 5, [0.1, -0.05, 0.08]),
+                (5,),
+                ["right up to t = 5, then: moment left out"],
+            ),
+            (
+                "",
+                lambda t, w, q: (
+                    DAMPED(t, w, q) * (3 <= t < 6) + np.array([0.04, 0, 0.03]) * (t >= 6)
+                ),
+                (3, 6),
+                ["from t = 3 to 6: damping = 0.07", "from t = 6 on: moment in body axes"],
+            ),
+            (
+                KNOTS,
+                lambda t, w, q: np.array([[0.1, -0.05, 0.08, 0.02][min(int(t / 2), 3)], 0, 0]),
+                (2, 4, 6),
+                ["table tab is hold, where the scene has linear"],
+            ),
+        ],
+        5,
+    ),
 )
 def test_a_part_of_the_run_has_its_cause(
     load: str, moment: Law, edges: Sequence[float], words: Sequence[str], tmp_path: Path
@@ -186,7 +196,7 @@ WHEELS = np.array([0.4, -0.3, 0.5])
             (lambda t, w, q: -0.05 * w**3, None),
             (lambda t, w, q: 0.5 * np.cross(WHEELS, w) - 0.05 * w**3, None),
         ],
-        3,
+        4,
         lambda moment, words: words is None,
     ),
 )
@@ -200,10 +210,12 @@ def test_wheels_that_are_missing_beside_steps_are_named(
 
 @pytest.mark.parametrize(
     ("moment", "words"),
-    [
-        (lambda t, w, q: -0.4 * q[1:], "all terms with velocities (drag) left out"),
-        (lambda t, w, q: (-0.4 * q[1:] - 0.1 * w) * [1, -1, 1], "moment 2 with the other sign"),
-    ],
+    by_turns(
+        [
+            (lambda t, w, q: (-0.4 * q[1:] - 0.1 * w) * [1, -1, 1], "moment 2 with the other sign"),
+            (lambda t, w, q: -0.4 * q[1:], "all terms with velocities (drag) left out"),
+        ]
+    ),
 )
 def test_a_text_reads_the_quaternion_with_its_sign(moment: Law, words: str, tmp_path: Path) -> None:
     """A load of q1 q2 q3 has the sign of the scene's start, of which the scalar is negative here."""

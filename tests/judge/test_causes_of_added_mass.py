@@ -49,14 +49,23 @@ def body(factor: float = 1.0) -> tuple[Array, Array]:
 
 @pytest.mark.parametrize(
     ("entries", "factor", "of_mass", "words"),
-    [
-        ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
-        ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
-        ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
-        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
-        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
-        ("every", 0.0, 0.0, "added mass left out"),
-    ],
+    by_turns(
+        [
+            ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
+            ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
+            (
+                [(5, 1), (5, 3), (6, 1), (6, 2)],
+                0.0,
+                1.0,
+                "entries C_51 C_53 C_61 C_62 of the added",
+            ),
+            ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
+            ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
+            ("every", 0.0, 0.0, "added mass left out"),
+        ],
+        6,
+        lambda entries, *_: entries == "every",
+    ),
 )
 def test_an_added_mass_that_a_scene_names_is_named(
     entries: Any, factor: float, of_mass: float, words: str, tmp_path: Path

@@ -89,7 +89,7 @@ def names(changed: str) -> list[str]:
             ),
             (BODY.replace('kp = "0.8"', 'kp = "0.81"'), "kp"),
         ],
-        4,
+        8,
     ),
     ids=[
         "rate",

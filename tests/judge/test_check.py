@@ -44,6 +44,7 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.values import as_mpf, exact
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 F64 = rung("f64")
 SCENE = "euler/with-attitude"
 OMEGA = VECTORS["omega"]

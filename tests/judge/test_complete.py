@@ -22,6 +22,7 @@ from taylor_verify.scenes.reading.reader import load
 
 SCENE = "euler/with-attitude"
 OMEGA = ("t", "w1", "w2", "w3")
+pytestmark = pytest.mark.usefixtures("without_causes")
 Captured = pytest.CaptureFixture[str]
 
 

@@ -33,11 +33,6 @@ def failed(seed: int) -> list[str]:
     return [v.quantity for v in judged.verdicts if v.verdict is Status.FAIL]
 
 
-def test_a_value_that_is_held_from_the_start_is_rounded_once() -> None:
-    """The value taken at the start is wrong by a rounding until the next one is taken."""
-    assert failed(2) == []
-
-
 def test_an_answer_is_judged_whose_first_row_takes_more_digits() -> None:
     """The derivative of the whole motion stays where the start alone is computed again."""
     assert failed(134) == []

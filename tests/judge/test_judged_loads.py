@@ -170,7 +170,7 @@ CAUSES = {
 )
 def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
     """Rows that are right to the last digit pass the bounds of the arithmetic, balances among them."""
-    scene = with_rows(scene)
+    scene = with_rows(scene, 3)
     with mp.workdps(40):
         rows = [Evaluated(scene).start()]
         rows += [end_of(scene, time, 20, 4).state for time in scene.clock.elapsed[1:]]

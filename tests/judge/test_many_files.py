@@ -36,6 +36,7 @@ from taylor_verify.solvers.files.stated_step import (
     step_of_rows,
 )
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 Floats = np.ndarray[Any, Any]
 Method = Callable[..., tuple[Floats, Floats]]
 Captured = pytest.CaptureFixture[str]

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import VECTORS, columns_at, write_csv
+from builders.turns import by_turns
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -43,6 +44,7 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.taylor.driver import Taylor
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 Course = Callable[[float], Fraction]
 DIGITS = 25
 # Every quantity and every model, closed forms and none, loads, and a time that runs backward.
@@ -122,7 +124,7 @@ def test_rates_are_the_slopes_of_the_exact_motion(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("text", ["0.0005", "-0.0005"])
+@pytest.mark.parametrize("text", by_turns(["0.0005", "-0.0005"]))
 def test_half_a_millisecond_late_is_found_and_nothing_remains(name: str, text: str) -> None:
     """Every quantity of exact(t - c) is late by c, constantly, and the truth's width remains."""
     for shift in shifts_of(name, lambda t: Fraction(text)).values():

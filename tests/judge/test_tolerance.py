@@ -27,6 +27,7 @@ from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
 from taylor_verify.testing.plugin import SolverGate
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 Captured = pytest.CaptureFixture[str]
 COARSE = "scipy:RK45?rtol=1e-6"
 SCENE = "euler/with-attitude"
