@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from taylor_verify import run, run_many
+from taylor_verify import chain, run, run_many
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.sums import with_sum
@@ -17,6 +17,12 @@ SCENE = "euler/rest"
 COARSE = "euler/generic"
 # It passes by a wide tolerance, and by no bound that follows from the arithmetic.
 ASKED: dict[str, Any] = {"solver": "scipy:RK45?rtol=1e-6&atol=1e-6", "tolerance": 1e-2}
+
+
+@pytest.fixture(autouse=True)
+def _without_causes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No cause is looked for, which takes most of the time of a run that fails."""
+    monkeypatch.setattr(chain, "with_causes", lambda judged, *_: judged)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -419,14 +418,6 @@ def test_a_geometric_method_has_no_cause(name: str) -> None:
     assert not false_words(cause.name for cause in judgement.causes)
 
 
-def test_what_passes_has_no_cause(tmp_path: Path) -> None:
-    """The exact motion has no cause."""
-    scene = load(FREE)
-    judgement = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
-    assert judgement.passed
-    assert judgement.causes == ()
-
-
 def test_two_rows_name_nothing() -> None:
     """Two rows have no cause: a single step may agree with anything by chance."""
     columns = simulated(load(FREE), damped, times=np.array([0.0, 0.5]))
@@ -452,20 +443,6 @@ def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> 
 
 
 # Solvers.
-
-
-def without_gyroscopic_term(problem: Any) -> Array:
-    states = [float(v) for v in problem.scene.initial.omega]
-    return np.array([states] * len(problem.times))
-
-
-def test_a_callable_is_given_its_cause() -> None:
-    """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
-    judgement = taylor_verify.check("euler/generic", without_gyroscopic_term)
-    (cause,) = judgement.causes
-    assert (cause.name, cause.scene, cause.rung) == ("no gyroscopic term", "euler/generic", "f64")
-    with pytest.raises(AssertionError, match="likely cause: no gyroscopic term"):
-        judgement.raise_for_failure()
 
 
 def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

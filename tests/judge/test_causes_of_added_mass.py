@@ -111,7 +111,7 @@ def munk(matrix: Array, nu: Array, part: float = 1.0, coupling: float = 0.0) -> 
             (FULL, FULL, partial(munk, coupling=1.0), "no Munk moment"),
             (FULL, FULL, partial(munk, part=0.9), None),
         ],
-        3,
+        6,
     ),
 )
 def test_parts_of_an_added_mass_are_named(

@@ -22,8 +22,6 @@ from builders.trajectories import (
     write_csv,
 )
 from builders.verdicts import by_quantity
-from hypothesis import given
-from hypothesis import strategies as st
 from mpmath import mp
 
 import taylor_verify
@@ -42,7 +40,7 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.values import as_mpf, exact
+from taylor_verify.solvers.values import exact
 
 pytestmark = pytest.mark.usefixtures("without_causes")
 F64 = rung("f64")
@@ -297,16 +295,6 @@ def test_response_to_the_input_is_that_of_differences() -> None:
 # Numbers.
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_every_double_survives_its_texts(value: float) -> None:
-    """Hexadecimal text is the double; decimal text is the decimal, not the double near it."""
-    assert exact(value.hex()) == Fraction(value)
-    assert exact(value) == Fraction(value)
-    assert exact(repr(value)) == Fraction(repr(value))
-    mpf = as_mpf(Fraction(value), 53)
-    assert Fraction(*map(int, mpf.as_integer_ratio())) == Fraction(value)
-
-
 @pytest.mark.parametrize(
     ("text", "value"),
     [
@@ -376,10 +364,7 @@ def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
         ("t,w1,w2,w3\n", "expected at least one row, got none"),
         ("", "got an empty file"),
         ("1,2,3,4\n2,3,4,5\n", "expected a header line that names the columns"),
-        ("t,w1,w2,w3\n0,1,2\n", "expected 4 values as in the header, got 3 @ .* line 2"),
         ("t,w1,w2,w3\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column w2"),
-        ("t,w1,w2,w3\n0,1,,3\n", "got '' @ .* row 1, column w2"),
-        ("t,w1,w2,w3\n0,1,2,3\n0,1,2,4\n", "expected no time twice, got 0 again @ .* row 2"),
         ("t,w1,w2,w3\n0,1,2,3\n2,1,2,3\n1,1,2,3\n", "keep increasing, got 1 after 2 @ .* row 3"),
         ("t,w1,w2,w3\n5,1,2,3\n1,1,2,3\n2,1,2,3\n", "keep decreasing, got 2 after 1 @ .* row 3"),
         ("t,w1,w2,w3\nnan,1,2,3\n", "expected a finite time, got nan @ .* row 1"),
@@ -509,7 +494,9 @@ def test_command_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert [row["time_shift"] for row in states] == pytest.approx([5e-4] * 2, rel=1e-9)
     assert all(row["residual"] < 1e-12 < row["max"] for row in states)
     assert [row["verdict"] for row in document["verdicts"]] == ["fail"] * 2 + ["pass"] * 3
-    assert document["conventions"][0]["found"] == "t is late by 0.0005"
+    (convention,) = document["conventions"]
+    assert (convention["found"], convention["corrected"]) == ("t is late by 0.0005", False)
+    assert convention["error_with"] < 1e-6 * convention["error_without"]
     assert set(document["verdicts"][0]) == set(Verdict(*[""] * 5, Status.PASS, "").row())
     assert document["file"]["columns"][:4] == ["t", *OMEGA]
 

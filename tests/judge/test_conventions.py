@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.first_order import engine, explicit, none
+from builders.first_order import engine, explicit
 from builders.trajectories import (
     MATRIX,
     QUATERNION,
@@ -345,16 +345,6 @@ def test_the_first_rows_of_an_engine_decide(
     assert all(finding.is_certain for finding in findings)
 
 
-@pytest.mark.slow
-def test_an_engine_without_the_gyroscopic_term_shows_its_conventions(tmp_path: Path) -> None:
-    """The start and the first step are right to a hundredth even where omega never changes."""
-    scene = "euler/with-attitude"
-    columns = scalar_last(in_space_axes(engine(scene, none, 0.01, 101)))
-    judgement = judged(tmp_path, scene, columns)
-    assert [finding.subject for finding in judgement.conventions] == ["omega", "quaternion"]
-    assert [cause.name for cause in judgement.causes] == ["no gyroscopic term"]
-
-
 @cache
 def first_order(scene: str, rows: int) -> Columns:
     return engine(scene, explicit, 0.01, rows)
@@ -394,17 +384,6 @@ def test_first_reading_is_the_scenes_own() -> None:
         assert costs[0] == 0
     q = np.array([[2.0, 0.0, 0.0, 0.0]])
     assert np.array_equal(readings("quaternion")[0].read(q, q), q)
-
-
-def test_nothing_is_corrected_unasked(tmp_path: Path) -> None:
-    """The file fails, and the document lists what was found, with both errors, as not corrected."""
-    scene = "euler/with-attitude"
-    judgement = judged(tmp_path, scene, in_degrees(exact_columns(scene)))
-    assert Status.FAIL in statuses(judgement)
-    (entry,) = judgement.document()["conventions"]
-    assert entry["about"] == "omega"
-    assert entry["corrected"] is False
-    assert entry["error_with"] < EXPLAINS * entry["error_without"]
 
 
 @pytest.mark.usefixtures("without_causes")

@@ -100,7 +100,7 @@ def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str])
     return path
 
 
-@pytest.mark.parametrize("form", [repr, "{:.17g}".format], ids=["shortest", "seventeen digits"])
+@pytest.mark.parametrize("form", by_turns([repr, "{:.17g}".format]), ids=["shortest", "17 digits"])
 def test_a_row_on_an_instant_is_one_however_its_time_is_written(
     form: Callable[[float], str], tmp_path: Path
 ) -> None:

@@ -152,16 +152,6 @@ def test_an_attitude_of_a_lower_order_is_seen(scene: Path, tmp_path: Path) -> No
     )
 
 
-def test_a_file_with_a_wrong_step_is_named(scene: Path, files: list[str]) -> None:
-    """A file whose step is told wrong is named with the step it has, since no order fits all files."""
-    steps = (STEPS[0], 0.09, *STEPS[2:])
-    omega = order_of(ample(scene, files, steps), "omega")
-    assert omega.order is None
-    assert omega.suspect == files[1]
-    assert omega.suspect_step == pytest.approx(STEPS[1], rel=0.03)
-    assert "no one order fits" in omega.sentence
-
-
 # The steps.
 
 
@@ -481,10 +471,8 @@ def test_a_ci_tells_the_files_apart(
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["--steps", "0.1"], "expected a step for each of 2 files, got 1"),
         (["--steps", "0.1,x"], "expected a number such as 10, 1e9 or 1/3, got 'x' @ --steps"),
         (["--steps", "0.1,-1"], "expected a positive step, got '-1' @ --steps"),
-        (["--steps", "0.1,0.1"], "expected steps no two of which are the same, got 0.1 again"),
         (
             ["none.csv", "none.json"],
             "got no such file @ none.csv\nexpected a trajectory file, got no",

@@ -325,10 +325,11 @@ def test_the_answer_comes_first_and_the_arithmetic_on_request(
     assert "--explain" not in explained
 
 
+@pytest.mark.slow
 def test_of_many_runs_an_overview_follows_the_first_sentence(capsys: Captured) -> None:
     """Then the sentence of every row that is no pass, behind its scene and precision."""
-    solver = "geometric:implicit-midpoint?step=0.1"
-    scenes = [SCENE, "euler/rest"]
+    solver = "geometric:implicit-midpoint?step=0.01"
+    scenes = [SCENE, "euler/rest", "euler/full-tensor"]
     assert main(["run", *scenes, "--solver", solver, "--jobs", "1"]) == 1
     text = capsys.readouterr().out
     assert re.match(r"fail; worst: euler/\S+ f64 \S+: .*\n\nscene ", text)

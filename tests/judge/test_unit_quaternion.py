@@ -18,7 +18,6 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import ROTATION_MATRIX, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 
@@ -139,9 +138,3 @@ def test_an_answer_of_a_callable_is_asked_too() -> None:
     failed = row(taylor_verify.check(SCENE, solve))
     assert failed is not None
     assert failed.max == pytest.approx(15**0.5 - 1)
-
-
-def test_our_own_solver_has_no_such_row() -> None:
-    """The Taylor solver keeps quaternions to roundoff, so that its tables stay as they are."""
-    for rung in ("f32", "f64"):
-        assert row(run(SCENE, "taylor", rung)) is None

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 
 from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.models.problem import adopt
@@ -61,7 +62,9 @@ def test_a_finished_answer_is_not_made_again(
 
 @pytest.mark.parametrize(
     ("kind", "number", "words"),
-    [("jump", 5, "exact motion between jumps"), ("asleep", 4, "at rest from t = 5.727 on")],
+    by_turns(
+        [("asleep", 4, "at rest from t = 5.727 on"), ("jump", 5, "exact motion between jumps")]
+    ),
 )
 def test_an_attitude_that_follows_from_its_own_omega_has_no_cause(
     kind: str, number: int, words: str
