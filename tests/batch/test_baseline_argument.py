@@ -27,7 +27,7 @@ def _without_causes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def document() -> dict[str, Any]:
-    return run_many([SCENE, COARSE], **ASKED).document()
+    return run_many([SCENE, COARSE], jobs=1, **ASKED).document()
 
 
 def much_better(document: dict[str, Any]) -> dict[str, Any]:

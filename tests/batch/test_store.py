@@ -22,7 +22,7 @@ from taylor_verify.judge.tolerances import Tolerances
 from taylor_verify.run import run
 from taylor_verify.solvers.callback import Callback
 
-SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "kirchhoff/swimmer-vehicle")
+SCENES = ("euler/rest", "euler/generic", "kirchhoff/whole-motion", "euler/with-attitude")
 
 
 @pytest.fixture

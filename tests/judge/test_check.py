@@ -248,19 +248,6 @@ def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
         assert not any("last row" in note for note in checked(tmp_path, scene, whole).notes)
 
 
-def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
-    """Numbers of float32 are no float64 answer; as f32 arithmetic they are sound."""
-    scene = load("euler/generic")
-    times = scene.clock.instants[:40]
-    given = adopt(scene, rung("f32"), times).given
-    motion = solution(given).evaluate(given.clock.elapsed, 20)["omega"]
-    columns = {"t": [float(t) for t in times]}
-    columns |= {n: [float(np.float32(float(v))) for v in motion[:, i]] for i, n in enumerate(OMEGA)}
-    file = write_csv(tmp_path / "mine.csv", columns)
-    assert by_quantity(file_judgement(file, scene.name))["omega"].verdict is Status.FAIL
-    assert all_pass(file_judgement(file, scene.name, rung="f32"))
-
-
 # The problem that others solve.
 
 
@@ -386,7 +373,6 @@ def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -
     ("name", "content", "fault"),
     [
         ("mine.json", b"{", "expected a JSON document"),
-        ("mine.json", b"[" * 100_000, "brackets nested too deeply"),
         ("mine.json", b"[1, 2]", "expected an object of column arrays"),
         ("mine.json", b'{"t": 1, "w1": [1]}', "expected an array of numbers, got '1'"),
         (
@@ -397,9 +383,7 @@ def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -
         ("mine.json", b'{"t": [0], "w1": [true], "w2": [null], "w3": [[1]]}', "column w2"),
         ("mine.csv", b"\xff\xfe\x00", "expected text in UTF-8"),
         ("mine.npz", b"PK no zip", "expected an NPZ archive"),
-        ("mine.npz", b"", "expected an NPZ archive"),
         ("mine.parquet", b"no parquet", "expected a Parquet file, got a fault"),
-        ("mine.xlsx", b"", r"expected a file that ends in .csv, .*got .xlsx"),
     ],
 )
 def test_what_is_no_such_file_is_refused(

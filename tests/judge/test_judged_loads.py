@@ -5,7 +5,6 @@ The answers come from integrators that read the texts by Python's own ``eval``.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -16,6 +15,7 @@ from typing import Any
 
 import pytest
 from builders.integrators import step
+from builders.trajectories import write_csv
 from builders.turns import by_turns
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
@@ -64,12 +64,12 @@ def written(path: Path, scene: Scene, rows: Sequence[Sequence[Any]]) -> Path:
     """A file of these states: omega or both impulses, quaternion and centre."""
     groups = [f"{letter}{i}" for letter in GROUPS[scene.model] for i in (1, 2, 3)]
     centre = ["c1", "c2", "c3"] if "centre" in scene.track else []
-    with path.open("w", newline="") as file:
-        out = csv.writer(file)
-        out.writerow(["t", *groups, "q0", "q1", "q2", "q3", *centre])
-        for instant, row in zip(scene.clock.instants, rows, strict=True):
-            out.writerow([repr(float(number)) for number in (value(instant), *row)])
-    return path
+    header = ["t", *groups, "q0", "q1", "q2", "q3", *centre]
+    numbers = [
+        map(float, (value(instant), *row))
+        for instant, row in zip(scene.clock.instants, rows, strict=True)
+    ]
+    return Path(write_csv(path, dict(zip(header, zip(*numbers, strict=True), strict=True))))
 
 
 def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:

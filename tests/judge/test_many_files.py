@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from builders.integrators import explicit_euler, fixed_step, rk4
+from builders.scenes import THREE_INSTANTS, scene_file
 from builders.turns import by_turns
 from jsonschema import Draft202012Validator
 
@@ -41,18 +42,9 @@ Floats = np.ndarray[Any, Any]
 Method = Callable[..., tuple[Floats, Floats]]
 Captured = pytest.CaptureFixture[str]
 
-SCENE = """
-title = "A short motion with its attitude"
-model = "euler"
-track = ["attitude"]
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, 0.4, 0.3]
-[time]
-end = 4
-samples = 5
-"""
+SCENE = THREE_INSTANTS.replace("end = 2\nsamples = 3", "end = 4\nsamples = 5").replace(
+    "[body]", 'track = ["attitude"]\n[body]'
+)
 STEPS = (0.25, 0.125, 0.0625, 0.03125)
 # All that is within it passes, so that no reason is searched for.
 AMPLE = 1e-2
@@ -88,9 +80,7 @@ def write(
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("scene") / "short.toml"
-    file.write_text(SCENE, encoding="utf-8")
-    return file
+    return scene_file(tmp_path_factory.mktemp("scene"), SCENE)
 
 
 @pytest.fixture(scope="module")
