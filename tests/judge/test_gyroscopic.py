@@ -12,12 +12,10 @@ from builders.trajectories import (
     VECTORS,
     Columns,
     exact_columns,
+    file_judgement,
     write_csv,
 )
 from builders.turns import by_turns
-
-import taylor_verify
-from taylor_verify.judge.files.judgement import FileJudgement
 
 OMEGA = VECTORS["omega"]
 FREE, FULL = "euler/with-attitude", "euler/full-tensor"
@@ -30,8 +28,7 @@ WORDS = {
 
 def causes(path: Path, scene: str, columns: Columns) -> list[str]:
     """The causes of a file: they name the gyroscopic term."""
-    judgement = taylor_verify.check(scene, write_csv(path / "mine.csv", columns))
-    assert isinstance(judgement, FileJudgement)
+    judgement = file_judgement(write_csv(path / "mine.csv", columns), scene)
     return [cause.sentence for cause in judgement.causes]
 
 
