@@ -399,7 +399,7 @@ SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
 
 
 @pytest.mark.parametrize(
-    ("scene", "sound"), by_turns(product([FLUID, LOADED, "kirchhoff/whole-motion"], SOUND), 7)
+    ("scene", "sound"), by_turns(product([FLUID, LOADED, "kirchhoff/whole-motion"], SOUND), 12)
 )
 def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, sound: tuple[str, float]) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""

@@ -169,7 +169,7 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (VEHICLE, FIXED, "weight fixed in body axes"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
-        9,
+        12,
         lambda text, pairs, name: text,
     ),
 )

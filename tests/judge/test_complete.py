@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 from builders.trajectories import columns_at, write_csv
+from builders.turns import by_turns
 from builders.verdicts import by_quantity
 
 import taylor_verify
@@ -54,7 +55,7 @@ LACKING = [
 ]
 
 
-@pytest.mark.parametrize(("rows", "names", "lack"), LACKING)
+@pytest.mark.parametrize(("rows", "names", "lack"), by_turns(LACKING, 2))
 def test_what_a_file_lacks_is_undecided(
     rows: Sequence[int], names: Sequence[str], lack: str, tmp_path: Path
 ) -> None:
@@ -74,7 +75,10 @@ def test_what_a_file_lacks_is_undecided(
 
 @pytest.mark.parametrize(
     "rows",
-    [range(41), [0, 40], [0, 3, 40], range(1, 41), [40, 17, 0], [5, 10, 15, 20, 25, 30, 35, 40]],
+    by_turns(
+        [range(41), [0, 40], [0, 3, 40], range(1, 41), [40, 17, 0], range(5, 41, 5)],
+        2,
+    ),
 )
 def test_sample_times_are_the_files_own_affair(rows: Sequence[int], tmp_path: Path) -> None:
     """A file that reaches the end from within one of its own intervals of the start is complete."""
@@ -98,7 +102,7 @@ def summed(step: float, end: float) -> float:
     return t
 
 
-@pytest.mark.parametrize("end", [summed(1e-3, 20.0), summed(1e-4, 20.0), 19.99999999999])
+@pytest.mark.parametrize("end", by_turns([summed(1e-3, 20.0), summed(1e-4, 20.0), 19.99999999999]))
 def test_a_summed_clock_is_at_the_end(end: float, tmp_path: Path) -> None:
     """A last row that misses the end by roundings of the clock leaves nothing unjudged."""
     assert end != 20.0

@@ -32,6 +32,7 @@ def failed(seed: int, rows: int) -> list[str]:
     return [v.quantity for v in judged.verdicts if v.verdict is Status.FAIL]
 
 
+@pytest.mark.slow
 def test_an_answer_is_judged_whose_first_row_takes_more_digits() -> None:
     """The derivative of the whole motion stays where the start alone is computed again."""
     assert failed(134, 8) == []

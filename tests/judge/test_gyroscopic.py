@@ -55,6 +55,7 @@ def test_each_treatment_is_named(
     assert kick is none or f", h = {h:g}; " in cause
 
 
+@pytest.mark.slow
 def test_a_step_much_finer_than_the_rows_is_named(tmp_path: Path) -> None:
     """A hundred steps from row to row, on a body that flips: the first-order term alone says 108."""
     cause, *_ = causes(tmp_path, "engines/flip", engine("engines/flip", explicit, 0.02, 21, 100))

@@ -166,7 +166,7 @@ CAUSES = {
 
 
 @pytest.mark.parametrize(
-    "scene", by_turns([RIGID, BY_CLOCK, SOLID], of=2), ids=["rigid", "clock", "solid"]
+    "scene", by_turns([RIGID, BY_CLOCK, SOLID]), ids=["rigid", "clock", "solid"]
 )
 def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
     """Rows that are right to the last digit pass the bounds of the arithmetic, balances among them."""
