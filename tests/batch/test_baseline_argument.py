@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from taylor_verify import run, run_many
+from taylor_verify import chain, run, run_many
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.passing import NotPassed
 from taylor_verify.records.sums import with_sum
@@ -19,9 +19,15 @@ COARSE = "euler/generic"
 ASKED: dict[str, Any] = {"solver": "scipy:RK45?rtol=1e-6&atol=1e-6", "tolerance": 1e-2}
 
 
+@pytest.fixture(autouse=True)
+def _without_causes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No cause is looked for, which takes most of the time of a run that fails."""
+    monkeypatch.setattr(chain, "with_causes", lambda judged, *_: judged)
+
+
 @pytest.fixture(scope="module")
 def document() -> dict[str, Any]:
-    return run_many([SCENE, COARSE], **ASKED).document()
+    return run_many([SCENE, COARSE], jobs=1, **ASKED).document()
 
 
 def much_better(document: dict[str, Any]) -> dict[str, Any]:

@@ -12,17 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders.sweeps import SOLVER, TEMPLATE, parts, swept
+from builders.sweeps import SOLVER, parts, swept
 
 from taylor_verify.batch.cluster import Placed, executor_named
 from taylor_verify.cli import main
-
-
-@pytest.fixture
-def template(tmp_path: Path) -> str:
-    file = tmp_path / "small.toml"
-    file.write_text(TEMPLATE)
-    return str(file)
 
 
 def test_where_nobody_answers_there_is_one_clear_error(

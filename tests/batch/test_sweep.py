@@ -34,13 +34,6 @@ from taylor_verify.scenes.scene import Scene
 WORDS = ["--solver", SOLVER, "--count", "10", "--jobs", "1"]
 
 
-@pytest.fixture
-def template(tmp_path: Path) -> str:
-    file = tmp_path / "small.toml"
-    file.write_text(TEMPLATE)
-    return str(file)
-
-
 def invented(scene: Scene, solver: str, rung: str, *_: Any, **__: Any) -> Judgement:
     """A judgement of a scene that follows from its first moment, and takes no time."""
     moment = float(scene.body.parts()["inertia"][0][0])

@@ -29,13 +29,6 @@ json.dump({"t": times, **rows}, sys.stdout)
 """
 
 
-@pytest.fixture
-def template(tmp_path: Path) -> str:
-    file = tmp_path / "small.toml"
-    file.write_text(TEMPLATE)
-    return str(file)
-
-
 # Causes.
 
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
@@ -50,6 +50,7 @@ def triangle() -> Field:
 numbers = st.fractions(min_value=-4, max_value=4, max_denominator=5)
 
 
+@settings(max_examples=30)
 @given(st.lists(numbers, min_size=6, max_size=6))
 def test_arithmetic_at_a_point_is_that_of_rationals(coefficients: list[Fraction]) -> None:
     """Sums, products, powers and quotients of elements have the values that Fractions give."""

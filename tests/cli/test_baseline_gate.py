@@ -159,15 +159,6 @@ def test_run_is_decided_by_the_baseline_in_both_directions(scene: str, capsys: C
         assert main([*call[:-4], "--baseline", "base.json"]) == 1
 
 
-def test_the_bounds_decide_unless_said_otherwise(scene: str, capsys: Captured) -> None:
-    """Without --gate a baseline excuses nothing, and the JSON says so."""
-    solver = COARSE.format("1e-6")
-    main(["run", scene, "--solver", solver, "--json"])
-    Path("base.json").write_text(capsys.readouterr().out, encoding="utf-8")
-    assert main(["run", scene, "--solver", solver, "--baseline", "base.json", "--json"]) == 1
-    assert json.loads(capsys.readouterr().out)["baseline"]["gate"] == "bound"
-
-
 def test_nothing_compared_is_undecided_and_red_for_a_ci(scene: str, capsys: Captured) -> None:
     """A baseline of another solver decides nothing."""
     assert main(["run", scene, "--solver", COARSE.format("1e-6"), "--json"]) == 1

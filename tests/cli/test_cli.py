@@ -116,30 +116,6 @@ def test_help_imports_nothing_heavy() -> None:
 # run
 
 
-def test_run_prints_one_document_with_every_key_of_the_contract(
-    capsys: Captured, short: Path
-) -> None:
-    """stdout holds one document and nothing else; the counts add up."""
-    assert main(["run", str(short), "--rung", "f32", "f64", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert set(document) == {"verdicts", "summary", "sha256"}
-    names = {
-        *("scene", "solver", "rung", "setting", "quantity", "max", "mean", "final", "at", "unit"),
-        *("bound", "because", "attainable", "exponent", "verdict", "outcome", "steps"),
-        *("evaluations", "seconds", "provenance"),
-    }
-    for row in document["verdicts"]:
-        assert names <= set(row)
-        assert row["scene"] == str(short)
-        assert row["max"] <= row["bound"]
-        assert {"versions", "processor", "command", "scene"} <= set(row["provenance"])
-    assert {row["quantity"] for row in document["verdicts"]} == {"omega", "T", "H2"}
-    assert [row["rung"] for row in document["verdicts"]] == ["f32"] * 3 + ["f64"] * 3
-    words = {"pass", "fail", "undecided", "vacuous", "refused", "unavailable"}
-    assert set(document["summary"]) == words
-    assert document["summary"]["pass"] == len(document["verdicts"]) == 6
-
-
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -503,6 +479,3 @@ def test_workers_do_not_outlive_a_run_that_is_killed(working: subprocess.Popen[s
     time.sleep(1.0)
     working.kill()
     wait_until(lambda: not any(map(is_alive, workers)), seconds=30)
-
-
-# From Python.

@@ -5,12 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
-import pty
 import re
-import sys
 from contextlib import suppress
 from pathlib import Path
-from subprocess import run
 
 import pytest
 from builders.scenes import LISTED_INSTANTS
@@ -160,36 +157,6 @@ def test_text_without_control_characters_is_left_alone() -> None:
     page = Page()
     page.line(text)
     assert page.text().startswith("ω = 1")
-
-
-@pytest.mark.slow
-def test_a_terminal_gets_styles_and_no_commands(steering_scene: Path) -> None:
-    """The answer has colours on a terminal of its own, and no control sequence beside them."""
-    leader, follower = pty.openpty()
-    ended = run(
-        [sys.executable, "-m", "taylor_verify", "explain", str(steering_scene)],
-        stdout=follower,
-        stderr=follower,
-        cwd=ROOT,
-        check=False,
-    )
-    shown = b""
-    with open(leader, "rb", buffering=0) as terminal:
-        import os
-
-        os.close(follower)
-        while True:
-            try:
-                more = terminal.read(4096)
-            except OSError:  # the other end is closed
-                break
-            if not more:
-                break
-            shown += more
-    assert ended.returncode == 0
-    text = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", shown.decode().replace("\r", ""))
-    assert r"\x1b[2J" in text
-    assert not CONTROL.search(text)
 
 
 # Spreadsheets.

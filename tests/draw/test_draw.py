@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.motions import document
+from builders.trajectories import write_csv
 from builders.turns import by_turns
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -43,7 +44,7 @@ HAS = {
 EPS = 1e-6
 
 
-@pytest.mark.parametrize("scene", HAS)
+@pytest.mark.parametrize("scene", by_turns(HAS, len(HAS), lambda scene: frozenset(HAS[scene])))
 def test_a_scene_has_its_pictures(scene: str) -> None:
     """Each kind of body has the pictures that its motion has, and no other."""
     assert set(pictures(document(scene))) == HAS[scene]
@@ -243,13 +244,10 @@ def test_draw_writes_what_it_says(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_errors_of_a_file_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The errors are those of the judgement, and the floor is beside them."""
     rows = document("euler/axisymmetric")["course"]
-    text = ["t,w1,w2,w3"]
-    pairs = zip(rows["t"][::5], rows["omega"][::5], strict=True)
-    text += [",".join(map(repr, [t, *omega])) for t, omega in pairs]
-    file = tmp_path / "mine.csv"
-    file.write_text("\n".join(text), encoding="utf-8")
+    omega = zip(("w1", "w2", "w3"), zip(*rows["omega"][::5], strict=True), strict=True)
+    file = write_csv(tmp_path / "mine.csv", {"t": rows["t"][::5], **dict(omega)})
     out = tmp_path / "e.svg"
-    asked = ["draw", "euler/axisymmetric", str(file), "--only", "errors", "--out", str(out)]
+    asked = ["draw", "euler/axisymmetric", file, "--only", "errors", "--out", str(out)]
     assert main(asked) == 0
     # Nine digits were written.
     error = re.search(r"omega of \S+ at most (\S+?)[;.]\s", capsys.readouterr().out + " ")

@@ -41,28 +41,6 @@ def plain() -> TrajectoryFile:
     return of_columns("yaw pitch roll", ZYX)
 
 
-@pytest.mark.parametrize(
-    ("angles", "words"),
-    [
-        (np.degrees(ZYX), "are in degrees"),
-        (ZYX * [1, -1, 1], "have the other sign in angle 2 (pitch)"),
-        (ZYX[:, ::-1], "stand in the order 3 2 1"),
-        (TURNS.as_euler("zyx"), "are about axes that stay fixed"),
-        (TURNS.as_euler("ZXZ"), "are of the sequence zxz"),
-        (TURNS.inv().as_euler("ZYX"), "take space to body axes"),
-        (np.degrees(ZYX[:, ::-1]), "are in degrees; stand in the order 3 2 1"),
-    ],
-)
-def test_each_meaning_of_angles_is_found_and_mended(angles: Any, words: str) -> None:
-    """A unit, a sign, an order, a sequence: named, and read as the sound file is."""
-    file, finding = with_angles(of_columns("yaw pitch roll", angles), load(SCENE), rung("f64"))
-    assert finding is not None
-    assert finding.is_certain
-    assert finding.words == f"the angles {words}"
-    q, right = (f.groups["quaternion"].doubles() for f in (file, plain()))
-    assert np.max(np.abs(np.abs(np.sum(q * right, axis=1)) - 1)) < 1e-14
-
-
 VECTOR = TURNS.as_rotvec()
 GIBBS = np.tan(np.linalg.norm(VECTOR, axis=1, keepdims=True) / 2) * (
     VECTOR / np.linalg.norm(VECTOR, axis=1, keepdims=True)
@@ -72,6 +50,13 @@ GIBBS = np.tan(np.linalg.norm(VECTOR, axis=1, keepdims=True) / 2) * (
 @pytest.mark.parametrize(
     ("form", "numbers", "words"),
     [
+        ("", np.degrees(ZYX), "the angles are in degrees"),
+        ("", ZYX * [1, -1, 1], "the angles have the other sign in angle 2"),
+        ("", ZYX[:, ::-1], "the angles stand in the order 3 2 1"),
+        ("", TURNS.as_euler("zyx"), "the angles are about axes that stay fixed"),
+        ("", TURNS.as_euler("ZXZ"), "the angles are of the sequence zxz"),
+        ("", TURNS.inv().as_euler("ZYX"), "the angles take space to body axes"),
+        ("", np.degrees(ZYX[:, ::-1]), "the angles are in degrees; stand in the order 3 2 1"),
         ("rotvec", VECTOR / 2, "are a rotation vector with half of the angle"),
         ("rotvec", np.degrees(VECTOR), "are a rotation vector in degrees"),
         ("rotvec", GIBBS, "are a Gibbs vector"),
@@ -80,9 +65,12 @@ GIBBS = np.tan(np.linalg.norm(VECTOR, axis=1, keepdims=True) / 2) * (
         ("gibbs", TURNS.as_mrp(), "are modified Rodrigues parameters"),
     ],
 )
-def test_each_meaning_of_a_vector_is_found_and_mended(form: str, numbers: Any, words: str) -> None:
-    """Half an angle, degrees, another vector along the axis: named, and read as the sound file is."""
-    asked = of_columns("a b c", numbers, [f"{form}=2:4"])
+def test_each_meaning_of_three_numbers_is_found_and_mended(
+    form: str, numbers: Any, words: str
+) -> None:
+    """Units, signs, orders, sequences, other vectors along the axis: named, and read as they are meant."""
+    wanted = [f"{form}=2:4"] if form else []
+    asked = of_columns("a b c" if form else "yaw pitch roll", numbers, wanted)
     file, finding = with_angles(asked, load(SCENE), rung("f64"))
     assert finding is not None
     assert finding.is_certain

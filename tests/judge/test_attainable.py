@@ -10,19 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.numbers import rationals
 from builders.scenes import CLEBSCH, TENSOR, spun, vector
 from builders.scenes import LOADED as SOLID
 from builders.turns import by_turns
 from hypothesis import given
 from hypothesis import strategies as st
-from mpmath import mp
 
 from taylor_verify.exact.conditioning import condition
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor import attainable
 from taylor_verify.judge.floor.attainable import Floor, floor
@@ -31,7 +28,6 @@ from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import power_of_two, rung
-from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.run import run
@@ -117,69 +113,6 @@ def test_what_cancels_in_the_data_alone_is_known() -> None:
 
 
 # How errors add up.
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("asked", [RIGID, LOADED, REVOLVED], ids=["tensor", "loaded", "clebsch"])
-def test_one_error_is_carried_as_the_exact_motion_carries_it(asked: Scene) -> None:
-    """A component moved by 10^-20 on the way, and the rest of the way by the Taylor route."""
-    orbit = path(asked)
-    # Of the times some tenth of the span from the start, and the last.
-    place, end = 7, len(orbit.elapsed) - 1
-    here = solution(asked, "taylor").motion([orbit.elapsed[place]], 60)
-    rest = orbit.elapsed[end] - orbit.elapsed[place]
-    for component in range(3 * len(_momenta(orbit))):
-        errors = np.zeros((len(orbit.elapsed), 3 * len(orbit.blocks)))
-        errors[place, component] = 1.0
-        gathered = {name: rows[end] for name, rows in orbit.gathered(errors).items()}
-        moved = _moved(asked, here, component, float(orbit.units[_momenta(orbit)[component // 3]]))
-        for name, change in _change(asked, here, moved, rest).items():
-            expected = change / float(orbit.units[name])
-            # The variational equations are integrated to four digits.
-            assert gathered[name] == pytest.approx(expected, rel=1e-3, abs=1e-6)
-
-
-def _momenta(orbit: Path) -> tuple[str, ...]:
-    return tuple(block for block in orbit.blocks if block not in ("attitude", "centre"))
-
-
-TINY = Fraction(1, 10**20)
-
-
-def _state(asked: Scene, here: Motion) -> tuple[Vector, Vector]:
-    rows = {name: rationals(values[0]) for name, values in here.quantities.items()}
-    if "omega" in rows:
-        return tensors.apply(asked.body.inertia, rows["omega"]), ()
-    return rows["linear_impulse"] + rows["angular_impulse"], rows["centre"]
-
-
-def _started(asked: Scene, momenta: Vector) -> Scene:
-    """From these momenta in the frame of the body, which then leads from the identity."""
-    if isinstance(asked.body, RigidBody):
-        return replace(asked, initial=Spin(tensors.apply(asked.body.inverse_inertia, momenta)))
-    return replace(asked, initial=Impulse(momenta[:3], momenta[3:]))
-
-
-def _moved(asked: Scene, here: Motion, component: int, unit: float) -> tuple[Scene, Scene]:
-    momenta, _ = _state(asked, here)
-    other = tuple(m + TINY * Fraction(unit) * (i == component) for i, m in enumerate(momenta))
-    return _started(asked, momenta), _started(asked, other)
-
-
-def _change(
-    asked: Scene, here: Motion, starts: tuple[Scene, Scene], rest: Fraction
-) -> dict[str, float]:
-    """|change|/TINY of every quantity; norms do not know which way the frame looked at first."""
-    del here
-    one, other = (TaylorSolution(start).evaluate([rest], 60) for start in starts)
-    with mp.workdps(60):
-        changes = {}
-        for name in one:
-            difference = (other[name] - one[name]) / mp.convert(TINY)
-            # A small turn moves a matrix by the root of two times its angle.
-            size = mp.norm(list(difference.flat)) / (mp.sqrt(2) if name == "attitude" else 1)
-            changes[name] = float(size)
-    return changes
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.trajectories import write_csv
 from mpmath import mp, mpf
 
 from taylor_verify import check, solve
@@ -30,6 +31,7 @@ from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.values import as_mpf, exact
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 ROWS = 61
 BLOCK = 7
 # The exact motion of few instants has other roundings than that of many. Each is proven to forty bits more
@@ -55,14 +57,6 @@ def columns_of(name: str) -> dict[str, list[float]]:
             c: [float(v) for v in column] for c, column in zip(COLUMNS[group], columns, strict=True)
         }
     return by_name
-
-
-def written(folder: Path, columns: Mapping[str, Sequence[float]]) -> Path:
-    path = folder / "run.csv"
-    rows = zip(*columns.values(), strict=True)
-    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
-    path.write_text("\n".join(lines) + "\n")
-    return path
 
 
 def late(columns: dict[str, list[float]]) -> None:
@@ -123,7 +117,7 @@ def test_the_blocks_change_no_verdict(
     """Nine blocks and one give the same verdicts, rows, ratios and shifts."""
     columns = columns_of(name)
     changed(columns)
-    path = written(tmp_path, columns)
+    path = write_csv(tmp_path / "run.csv", columns)
     whole = check(name, path).verdicts
     monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(measured, "BLOCK_OF_SERIES", BLOCK)
@@ -138,7 +132,7 @@ def test_a_scale_that_is_forgotten_changes_a_verdict(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A twin that leaves every error over the scale of the first block is caught by that comparison."""
-    path = written(tmp_path, columns_of("kirchhoff/whole-motion"))
+    path = write_csv(tmp_path / "run.csv", columns_of("kirchhoff/whole-motion"))
     (whole,) = (v for v in check("kirchhoff/whole-motion", path).verdicts if v.quantity == "centre")
 
     def forgotten(self: Series) -> tuple[Any, Any]:
@@ -157,7 +151,7 @@ def test_the_worst_row_of_a_long_file_is_among_those_of_its_shift(
     columns = columns_of("euler/with-attitude")
     late(columns)
     columns["w1"][41] += 0.5
-    path = written(tmp_path, columns)
+    path = write_csv(tmp_path / "run.csv", columns)
     monkeypatch.setattr(measured, "BLOCK", BLOCK)
     monkeypatch.setattr(measured, "MOST_SHIFTED", 21)
     (omega,) = (v for v in check("euler/with-attitude", path).verdicts if v.quantity == "omega")
@@ -228,7 +222,7 @@ def test_a_file_tells_which_rows_are_numbers(tmp_path: Path) -> None:
     """The rows that are not finite are known without forming the others; a part is a file again."""
     columns = columns_of("euler/with-attitude")
     lost(columns)
-    file = read(written(tmp_path, columns))
+    file = read(write_csv(tmp_path / "run.csv", columns))
     assert np.flatnonzero(~file.finite).tolist() == [33]
     few = file.at([3, 5])
     assert few.times == (Fraction(repr(columns["t"][3])), Fraction(repr(columns["t"][5])))

@@ -8,7 +8,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -124,7 +123,7 @@ def uncoupled(n: Numbers) -> None:
             (LOADED, unloaded, "loads left out"),
             (LOADED, otherwise_loaded, "loads with the other sign"),
         ],
-        3,
+        7,
         lambda scene, change, name: scene,
     ),
 )
@@ -216,7 +215,7 @@ def single(i: int, j: int, k: int, power: int = 0) -> Rate:
             (FLUID, single(4, 3, 5), "w1*w3 in couple 2 (C_54 or C_56)"),
             (FLUID, single(0, 1, 5, power=1), None),
         ],
-        4,
+        8,
     ),
 )
 def test_a_wrong_term_is_named(scene: str, rate: Rate, name: str | None) -> None:
@@ -306,7 +305,7 @@ def test_omega_in_space_axes_is_told_without_the_start() -> None:
     assert named == {"omega is in space axes", "gyroscopic term with the other sign"}
 
 
-@pytest.mark.parametrize("factor", [10.0, 57.0, 0.16])
+@pytest.mark.parametrize("factor", by_turns([10.0, 57.0, 0.16]))
 def test_a_factor_near_that_of_a_unit_is_no_unit(factor: float, tmp_path: Path) -> None:
     """A factor of 10 is not the 9.55 of turns per minute: the factor is said, and no unit."""
     scene = load(FREE)
@@ -400,7 +399,7 @@ SOUND = [("RK45", 1e-3), ("RK45", 1e-7), ("RK23", 1e-4), ("LSODA", 1e-6)]
 
 
 @pytest.mark.parametrize(
-    ("scene", "sound"), by_turns(product([FLUID, LOADED, "kirchhoff/whole-motion"], SOUND), 5)
+    ("scene", "sound"), by_turns(product([FLUID, LOADED, "kirchhoff/whole-motion"], SOUND), 12)
 )
 def test_a_sound_method_has_no_cause_in_a_fluid(scene: str, sound: tuple[str, float]) -> None:
     """Coarse answers by Kirchhoff's equations are given no cause either."""
@@ -417,14 +416,6 @@ def test_a_geometric_method_has_no_cause(name: str) -> None:
     judgement = taylor_verify.run(FREE, f"geometric:{name}?step=1/20")
     assert not judgement.passed
     assert not false_words(cause.name for cause in judgement.causes)
-
-
-def test_what_passes_has_no_cause(tmp_path: Path) -> None:
-    """The exact motion has no cause."""
-    scene = load(FREE)
-    judgement = judged(tmp_path, FREE, columns_at(scene, scene.clock.instants))
-    assert judgement.passed
-    assert judgement.causes == ()
 
 
 def test_two_rows_name_nothing() -> None:
@@ -452,20 +443,6 @@ def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> 
 
 
 # Solvers.
-
-
-def without_gyroscopic_term(problem: Any) -> Array:
-    states = [float(v) for v in problem.scene.initial.omega]
-    return np.array([states] * len(problem.times))
-
-
-def test_a_callable_is_given_its_cause() -> None:
-    """A solver that fails has a cause as a file has, in its judgement and in the error it raises."""
-    judgement = taylor_verify.check("euler/generic", without_gyroscopic_term)
-    (cause,) = judgement.causes
-    assert (cause.name, cause.scene, cause.rung) == ("no gyroscopic term", "euler/generic", "f64")
-    with pytest.raises(AssertionError, match="likely cause: no gyroscopic term"):
-        judgement.raise_for_failure()
 
 
 def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.caused_rows import Array, columns, rows, titles
+from builders.caused_rows import Array, Law, columns, rows, titles
+from builders.trajectories import Columns
 from builders.turns import by_turns
 
 VEHICLE = """
@@ -47,16 +48,32 @@ def body(factor: float = 1.0) -> tuple[Array, Array]:
     return own, factor * np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
 
 
+def answer(law: Law) -> Columns:
+    """The columns of the velocities and the attitude that follow from a law."""
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
+    return columns(times, made, ("u1", "u2", "u3", "w1", "w2", "w3"))
+
+
 @pytest.mark.parametrize(
     ("entries", "factor", "of_mass", "words"),
-    [
-        ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
-        ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
-        ([(5, 1), (5, 3), (6, 1), (6, 2)], 0.0, 1.0, "entries C_51 C_53 C_61 C_62 of the added"),
-        ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
-        ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
-        ("every", 0.0, 0.0, "added mass left out"),
-    ],
+    by_turns(
+        [
+            ([(5, 1)], 0.0, 1.0, "entry C_51 of the added mass is 0"),
+            ([(1, 6)], -1.0, 1.0, "entry C_16 of the added mass has the other sign"),
+            (
+                [(5, 1), (5, 3), (6, 1), (6, 2)],
+                0.0,
+                1.0,
+                "entries C_51 C_53 C_61 C_62 of the added",
+            ),
+            ("every", 0.0, 1.0, "added mass left out in the Coriolis terms alone"),
+            ("every", 1.0, 0.0, "added mass left out in the mass matrix alone"),
+            ("every", 0.0, 0.0, "added mass left out"),
+        ],
+        6,
+        lambda entries, *_: entries == "every",
+    ),
 )
 def test_an_added_mass_that_a_scene_names_is_named(
     entries: Any, factor: float, of_mass: float, words: str, tmp_path: Path
@@ -72,10 +89,7 @@ def test_an_added_mass_that_a_scene_names_is_named(
         matrix = coriolis(own, nu) + factors * coriolis(added, nu)
         return np.linalg.solve(mass, -matrix @ nu)
 
-    times = np.round(np.arange(0, 61) * 0.05, 6)
-    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
-    names = ("u1", "u2", "u3", "w1", "w2", "w3")
-    assert titles(tmp_path, VEHICLE, columns(times, made, names))[0].startswith(words)
+    assert titles(tmp_path, VEHICLE, answer(law))[0].startswith(words)
 
 
 FULL = np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
@@ -102,7 +116,7 @@ def munk(matrix: Array, nu: Array, part: float = 1.0, coupling: float = 0.0) -> 
             (FULL, FULL, partial(munk, coupling=1.0), "no Munk moment"),
             (FULL, FULL, partial(munk, part=0.9), None),
         ],
-        3,
+        6,
     ),
 )
 def test_parts_of_an_added_mass_are_named(
@@ -116,10 +130,8 @@ def test_parts_of_an_added_mass_are_named(
         terms = -coriolis(own + in_terms, nu) @ nu
         return np.linalg.solve(own + in_mass, terms - (not is_cut) * without(own + FULL, nu))
 
-    times = np.round(np.arange(0, 61) * 0.05, 6)
-    made = rows(law, [1.5, 0.1, -0.05, 0.05, 0.1, 0.15], np.array([1.0, 0, 0, 0]), times, ())
     scene = VEHICLE.replace("[0.86, 30.3, 28.3, 0.035, 3.6, 3.5]", str(FULL.tolist()))
-    named_ones = titles(tmp_path, scene, columns(times, made, ("u1", "u2", "u3", "w1", "w2", "w3")))
+    named_ones = titles(tmp_path, scene, answer(law))
     near = ("added mass cut to its diagonal", "no Munk moment")
     if words is None:
         assert not any(title.startswith(near) for title in named_ones)

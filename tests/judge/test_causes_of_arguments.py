@@ -200,7 +200,7 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (TOP, [("-3]", "3]")], "moment with the other sign"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
-        3,
+        12,
         lambda text, pairs, name: text,
     ),
 )

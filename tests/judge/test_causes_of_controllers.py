@@ -89,18 +89,8 @@ def names(changed: str) -> list[str]:
             ),
             (BODY.replace('kp = "0.8"', 'kp = "0.81"'), "kp"),
         ],
-        4,
+        8,
     ),
-    ids=[
-        "rate",
-        "half more",
-        "another rate and offset",
-        "taken later",
-        "no delay",
-        "late",
-        "continuous",
-        "gain",
-    ],
 )
 def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
     """Another rate or gain, a sample more or no delay has its name; another instant has none."""

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import exp
-from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.trajectories import file_judgement, write_csv
 from builders.turns import by_turns
 from builders.wrong_dynamics import Array, Numbers, Rate, causes, runge_kutta, simulated
 
@@ -109,15 +107,6 @@ def test_a_sound_integrator_has_no_cause(scene: str) -> None:
     assert not {
         name for name in causes(load(scene), runge_kutta(load(scene), 0.1, 5)) if "damping" in name
     }
-
-
-def test_check_says_so(tmp_path: Path) -> None:
-    """A file of an engine is judged, fails, and its law is in the likely causes."""
-    columns = runge_kutta(load(RIGID), 1 / 60, 60, factor=EXPLICIT)
-    judged = file_judgement(write_csv(tmp_path / "mine.csv", columns), RIGID)
-    assert [cause.name for cause in judged.causes if cause.quantity == "omega"] == [
-        "explicit damping step"
-    ]
 
 
 # Scenes without damping: an engine that has it once in each step, as many have by default.

@@ -22,8 +22,6 @@ from builders.trajectories import (
     write_csv,
 )
 from builders.verdicts import by_quantity
-from hypothesis import given
-from hypothesis import strategies as st
 from mpmath import mp
 
 import taylor_verify
@@ -42,8 +40,9 @@ from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
-from taylor_verify.solvers.values import as_mpf, exact
+from taylor_verify.solvers.values import exact
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 F64 = rung("f64")
 SCENE = "euler/with-attitude"
 OMEGA = VECTORS["omega"]
@@ -249,19 +248,6 @@ def test_a_file_that_stops_early_is_told(tmp_path: Path) -> None:
         assert not any("last row" in note for note in checked(tmp_path, scene, whole).notes)
 
 
-def test_rung_is_what_made_the_file(tmp_path: Path) -> None:
-    """Numbers of float32 are no float64 answer; as f32 arithmetic they are sound."""
-    scene = load("euler/generic")
-    times = scene.clock.instants[:40]
-    given = adopt(scene, rung("f32"), times).given
-    motion = solution(given).evaluate(given.clock.elapsed, 20)["omega"]
-    columns = {"t": [float(t) for t in times]}
-    columns |= {n: [float(np.float32(float(v))) for v in motion[:, i]] for i, n in enumerate(OMEGA)}
-    file = write_csv(tmp_path / "mine.csv", columns)
-    assert by_quantity(file_judgement(file, scene.name))["omega"].verdict is Status.FAIL
-    assert all_pass(file_judgement(file, scene.name, rung="f32"))
-
-
 # The problem that others solve.
 
 
@@ -296,16 +282,6 @@ def test_response_to_the_input_is_that_of_differences() -> None:
 # Numbers.
 
 
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_every_double_survives_its_texts(value: float) -> None:
-    """Hexadecimal text is the double; decimal text is the decimal, not the double near it."""
-    assert exact(value.hex()) == Fraction(value)
-    assert exact(value) == Fraction(value)
-    assert exact(repr(value)) == Fraction(repr(value))
-    mpf = as_mpf(Fraction(value), 53)
-    assert Fraction(*map(int, mpf.as_integer_ratio())) == Fraction(value)
-
-
 @pytest.mark.parametrize(
     ("text", "value"),
     [
@@ -328,37 +304,18 @@ def test_text_becomes_exact(text: str, value: Fraction) -> None:
 # Formats.
 
 
-def test_formats_agree(tmp_path: Path) -> None:
-    """CSV by comma, semicolon, tab and blanks, JSON and NPZ hold the same numbers."""
-    columns = exact_columns("euler/generic")
-    expected = read(write_csv(tmp_path / "hex.csv", columns, _hexadecimal))
-    for mark, suffix in ((";", "csv"), ("\t", "tsv"), ("   ", "txt")):
-        file = tmp_path / f"mine.{suffix}"
-        plain = Path(write_csv(tmp_path / "plain.csv", columns, _hexadecimal)).read_text()
-        file.write_text("# a comment\n\n" + plain.replace(",", mark))
-        assert read(file).groups == expected.groups
-        assert read(file).times == expected.times
-    json_file = tmp_path / "mine.json"
-    texts = {name: [_hexadecimal(v) for v in values] for name, values in columns.items()}
-    json_file.write_text(json.dumps(texts))
-    assert read(json_file).groups == expected.groups
-    json_file.write_text(json.dumps({"title": "mine", "columns": texts}))
-    assert read(json_file).groups == expected.groups
-    np.savez(tmp_path / "mine.npz", **{n: np.array(v) for n, v in columns.items()})
-    assert read(tmp_path / "mine.npz").groups == expected.groups
-
-
-def _hexadecimal(value: float) -> str:
-    return float(value).hex()
-
-
-def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
-    """0.1 in JSON is a tenth, and no double."""
+@pytest.mark.parametrize("document", ["{}", '{"title": "mine", "columns": {}}'])
+def test_json_numbers_are_read_as_text(document: str, tmp_path: Path) -> None:
+    """0.1 in JSON is a tenth, and no double; columns are the document, or below its key `columns`."""
+    columns = '{"t": [0.1, 1], "w1": [0.1, "0x1.8p-3"], "w2": [0, 0], "w3": [1e-30, 1]}'
     file = tmp_path / "mine.json"
-    file.write_text('{"t": [0.1, 1], "w1": [0.1, 0.2], "w2": [0, 0], "w3": [1e-30, 1]}')
+    file.write_text(document.replace("{}", columns))
     trajectory = read(file)
     assert trajectory.times == (Fraction(1, 10), Fraction(1))
-    assert trajectory.groups["omega"][0] == (Fraction(1, 10), Fraction(0), Fraction(1, 10**30))
+    assert trajectory.groups["omega"] == (
+        (Fraction(1, 10), Fraction(0), Fraction(1, 10**30)),
+        (Fraction(3, 16), Fraction(0), Fraction(1)),
+    )
 
 
 # Faults.
@@ -369,23 +326,15 @@ def test_json_numbers_are_read_as_text(tmp_path: Path) -> None:
     [
         ("w1,w2,w3\n1,2,3\n", "expected a column `t` of times, got none"),
         ("t,w1,w2\n0,1,2\n", "expected all of w1 w2 w3, got no w3"),
-        ("t,w1,w2,wz\n0,1,2,3\n", "got no w3 @ .*did you mean `wz`"),
         ("epoch,w1,w2,w3\n0,1,2,3\n", "got none @ .*--columns t=NAME; the columns are .*`epoch`"),
         ("t,t,w1,w2,w3\n0,0,1,2,3\n", "expected every column once, got `t` again"),
         ("t,w1,w2,w3\n", "expected at least one row, got none"),
         ("", "got an empty file"),
         ("1,2,3,4\n2,3,4,5\n", "expected a header line that names the columns"),
-        ("t,w1,w2,w3\n0,1,2\n", "expected 4 values as in the header, got 3 @ .* line 2"),
         ("t,w1,w2,w3\n0,1,2,3\n1,1,x,3\n", "got 'x' @ .* row 2, column w2"),
-        ("t,w1,w2,w3\n0,1,,3\n", "got '' @ .* row 1, column w2"),
-        ("t,w1,w2,w3\n0,1,2,3\n0,1,2,4\n", "expected no time twice, got 0 again @ .* row 2"),
         ("t,w1,w2,w3\n0,1,2,3\n2,1,2,3\n1,1,2,3\n", "keep increasing, got 1 after 2 @ .* row 3"),
         ("t,w1,w2,w3\n5,1,2,3\n1,1,2,3\n2,1,2,3\n", "keep decreasing, got 2 after 1 @ .* row 3"),
         ("t,w1,w2,w3\nnan,1,2,3\n", "expected a finite time, got nan @ .* row 1"),
-        (
-            "t,q0,q1,q2,q3," + ",".join(MATRIX) + "\n" + ",".join("0" * 14) + "\n",
-            "expected the attitude once",
-        ),
     ],
 )
 def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -> None:
@@ -400,7 +349,6 @@ def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -
     ("name", "content", "fault"),
     [
         ("mine.json", b"{", "expected a JSON document"),
-        ("mine.json", b"[" * 100_000, "brackets nested too deeply"),
         ("mine.json", b"[1, 2]", "expected an object of column arrays"),
         ("mine.json", b'{"t": 1, "w1": [1]}', "expected an array of numbers, got '1'"),
         (
@@ -411,9 +359,7 @@ def test_each_fault_has_its_own_message(text: str, fault: str, tmp_path: Path) -
         ("mine.json", b'{"t": [0], "w1": [true], "w2": [null], "w3": [[1]]}', "column w2"),
         ("mine.csv", b"\xff\xfe\x00", "expected text in UTF-8"),
         ("mine.npz", b"PK no zip", "expected an NPZ archive"),
-        ("mine.npz", b"", "expected an NPZ archive"),
         ("mine.parquet", b"no parquet", "expected a Parquet file, got a fault"),
-        ("mine.xlsx", b"", r"expected a file that ends in .csv, .*got .xlsx"),
     ],
 )
 def test_what_is_no_such_file_is_refused(
@@ -508,7 +454,9 @@ def test_command_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert [row["time_shift"] for row in states] == pytest.approx([5e-4] * 2, rel=1e-9)
     assert all(row["residual"] < 1e-12 < row["max"] for row in states)
     assert [row["verdict"] for row in document["verdicts"]] == ["fail"] * 2 + ["pass"] * 3
-    assert document["conventions"][0]["found"] == "t is late by 0.0005"
+    (convention,) = document["conventions"]
+    assert (convention["found"], convention["corrected"]) == ("t is late by 0.0005", False)
+    assert convention["error_with"] < 1e-6 * convention["error_without"]
     assert set(document["verdicts"][0]) == set(Verdict(*[""] * 5, Status.PASS, "").row())
     assert document["file"]["columns"][:4] == ["t", *OMEGA]
 

@@ -6,12 +6,13 @@ from contextlib import redirect_stderr, redirect_stdout
 from html import unescape
 from io import StringIO
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from builders.trajectories import write_csv
 
 import taylor_verify
 from taylor_verify.cli import main
@@ -25,12 +26,6 @@ SCENE: Final = "euler/generic"
 CAUSE: Final = "no gyroscopic term"
 
 
-def without_gyroscopic_term(problem: Any) -> Any:
-    """Return omega as it started: I omega' = 0."""
-    start = [float(w) for w in problem.given.initial.omega]
-    return np.array([start] * len(problem.given.clock.elapsed))
-
-
 @pytest.fixture(scope="module")
 def trajectory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A CSV of a simulator without the gyroscopic term."""
@@ -38,9 +33,8 @@ def trajectory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("doors") / "mine.csv"
     times = [float(t) for t in scene.clock.instants]
     (start,) = {tuple(map(float, scene.initial.moving))}
-    rows = [",".join(map(repr, (t, *start))) for t in times]
-    file.write_text("\n".join(["t,w1,w2,w3", *rows]) + "\n", encoding="utf-8")
-    return file
+    still = {name: [w] * len(times) for name, w in zip(("w1", "w2", "w3"), start, strict=True)}
+    return Path(write_csv(file, {"t": times, **still}))
 
 
 @pytest.fixture(scope="module")

@@ -25,7 +25,6 @@ from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GROUPS, with_needs
-from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.reading.reader import read as read_scene
 from taylor_verify.scenes.scene import Scene
@@ -192,15 +191,6 @@ def test_a_key_that_two_faults_change_is_printed_once() -> None:
     assert sorted(keys) == ["couple", "force"]
 
 
-def test_the_changed_scene_passes(tmp_path: Path) -> None:
-    """`check` of a file passes against the scene that its cause has printed, to what is left."""
-    (sentence,) = sentences("wheel-2-missing", "wheels", STATES)
-    scene = tmp_path / "changed.toml"
-    scene.write_text(changed(sentence, (CASES / "wheels.toml").read_text()))
-    judged = taylor_verify.check(str(scene), str(CASES / "wheel-2-missing.csv"), tolerance=1e-7)
-    assert {verdict.verdict for verdict in judged.verdicts} == {Status.PASS}
-
-
 def test_matrices_that_are_no_rotations_are_said() -> None:
     """A file whose matrices grow has a note, and the moment that explains its rows names no cause."""
     judged = taylor_verify.check(
@@ -215,10 +205,11 @@ def test_matrices_that_are_no_rotations_are_said() -> None:
     assert judged.causes == ()
 
 
-def test_a_convention_explains_what_it_reads() -> None:
+def test_a_convention_explains_what_it_reads(tmp_path: Path) -> None:
     """No missing moment is said where omega is right in space axes and the attitude alone is wrong."""
-    judged = taylor_verify.check(
-        str(CASES / "link.toml"), str(CASES / "openhrp3-120.csv"), tolerance=1e-6
-    )
+    lines = (CASES / "openhrp3-120.csv").read_text().splitlines()[:82]
+    file = tmp_path / "run.csv"
+    file.write_text("\n".join(lines))
+    judged = taylor_verify.check(str(CASES / "link.toml"), file, partial=True, tolerance=1e-6)
     assert any("w1 w2 w3 are in space axes" in str(finding) for finding in judged.conventions)
     assert not any("moment acts" in note for note in judged.notes)

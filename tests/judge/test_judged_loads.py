@@ -5,7 +5,6 @@ The answers come from integrators that read the texts by Python's own ``eval``.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -16,6 +15,7 @@ from typing import Any
 
 import pytest
 from builders.integrators import step
+from builders.trajectories import write_csv
 from builders.turns import by_turns
 from builders.written_loads import Evaluated, end_of, euler, kirchhoff, value
 from mpmath import mp, mpf
@@ -64,12 +64,12 @@ def written(path: Path, scene: Scene, rows: Sequence[Sequence[Any]]) -> Path:
     """A file of these states: omega or both impulses, quaternion and centre."""
     groups = [f"{letter}{i}" for letter in GROUPS[scene.model] for i in (1, 2, 3)]
     centre = ["c1", "c2", "c3"] if "centre" in scene.track else []
-    with path.open("w", newline="") as file:
-        out = csv.writer(file)
-        out.writerow(["t", *groups, "q0", "q1", "q2", "q3", *centre])
-        for instant, row in zip(scene.clock.instants, rows, strict=True):
-            out.writerow([repr(float(number)) for number in (value(instant), *row)])
-    return path
+    header = ["t", *groups, "q0", "q1", "q2", "q3", *centre]
+    numbers = [
+        map(float, (value(instant), *row))
+        for instant, row in zip(scene.clock.instants, rows, strict=True)
+    ]
+    return Path(write_csv(path, dict(zip(header, zip(*numbers, strict=True), strict=True))))
 
 
 def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
@@ -166,11 +166,11 @@ CAUSES = {
 
 
 @pytest.mark.parametrize(
-    "scene", by_turns([RIGID, BY_CLOCK, SOLID], of=2), ids=["rigid", "clock", "solid"]
+    "scene", by_turns([RIGID, BY_CLOCK, SOLID]), ids=["rigid", "clock", "solid"]
 )
 def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
     """Rows that are right to the last digit pass the bounds of the arithmetic, balances among them."""
-    scene = with_rows(scene)
+    scene = with_rows(scene, 3)
     with mp.workdps(40):
         rows = [Evaluated(scene).start()]
         rows += [end_of(scene, time, 20, 4).state for time in scene.clock.elapsed[1:]]
@@ -183,7 +183,7 @@ def test_a_right_file_passes_every_gate(scene: Scene, tmp_path: Path) -> None:
 
 def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path: Path) -> None:
     """A Runge-Kutta answer is right to its own digits; the cause of its error is the order of its steps."""
-    scene = with_rows(RIGID)
+    scene = with_rows(BY_CLOCK)
     file = written(tmp_path / "steps.csv", scene, by_steps(scene, of_text(scene)))
     assert check(scene, file, partial=True, tolerance=TOLERANCE).passed
     strict = check(scene, file, partial=True)
@@ -197,7 +197,8 @@ def test_an_answer_of_steps_passes_a_tolerance_and_fails_the_arithmetic(tmp_path
 def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_path: Path) -> None:
     """A file that passes with the right load fails the state, and the work or the conserved energy.
 
-    The fault is its likely cause, or none is said.
+    A weight that is counted twice leaves the momentum along the vertical. The fault is the likely cause, or
+    none is said.
     """
     scene, rates, named = TWINS[twin]
     scene = with_rows(scene)
@@ -206,17 +207,8 @@ def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_
     assert check(scene, right, partial=True, tolerance=TOLERANCE).passed
     failed, causes = failures(scene, wrong)
     assert named <= failed
+    assert "H_along" not in failed
     assert causes == CAUSES.get(twin, [])
-
-
-def test_a_weight_counted_twice_leaves_the_vertical_momentum(tmp_path: Path) -> None:
-    """T + V fails where the potential is doubled, and the momentum along the vertical passes."""
-    scene = with_rows(TOP)
-    wrong = written(tmp_path / "wrong.csv", scene, by_steps(scene, of_text(twice(scene))))
-    judged = check(scene, wrong, partial=True, tolerance=TOLERANCE)
-    by_name = {v.quantity: v for v in judged.verdicts}
-    assert by_name["H_along"].verdict is Status.PASS
-    assert "polynomial zero" in str(by_name["T+V"].reason)
 
 
 def test_work_and_precision_are_measured_under_loads() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.trajectories import QUATERNION, VECTORS, write_csv
 from builders.turns import by_turns
 from builders.written_loads import End, Evaluated, end_of
 from mpmath import mp, mpf
@@ -27,6 +27,8 @@ from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
+pytestmark = pytest.mark.usefixtures("without_causes")
+OMEGA = VECTORS["omega"]
 SATELLITE = """
 title = "A satellite with a sampled controller"
 model = "euler"
@@ -89,33 +91,29 @@ def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str])
     """A file of these states, with the columns of some of the scene's own states."""
     assert scene.body.loads is not None
     columns = {s.name: s.components for s in scene.body.loads.states}
-    with path.open("w", newline="") as file:
-        out = csv.writer(file)
-        own = [column for name in names for column in columns[name]]
-        out.writerow(["t", "w1", "w2", "w3", "q0", "q1", "q2", "q3", *own])
-        for time, end in zip(ROWS, ends, strict=True):
-            values = [*end.state[:7], *(v for name in names for v in end.own[name])]
-            out.writerow([repr(float(value)) for value in (time, *values)])
-    return path
+    header = ["t", *OMEGA, *QUATERNION, *(column for name in names for column in columns[name])]
+    rows = [
+        map(float, (time, *end.state[:7], *(v for name in names for v in end.own[name])))
+        for time, end in zip(ROWS, ends, strict=True)
+    ]
+    return Path(write_csv(path, dict(zip(header, zip(*rows, strict=True), strict=True))))
 
 
-@pytest.mark.parametrize("form", [repr, "{:.17g}".format], ids=["shortest", "seventeen digits"])
+@pytest.mark.parametrize("form", by_turns([repr, "{:.17g}".format]), ids=["shortest", "17 digits"])
 def test_a_row_on_an_instant_is_one_however_its_time_is_written(
     form: Callable[[float], str], tmp_path: Path
 ) -> None:
     """0.1 in a text is a little earlier than the double at which a value was taken, and means it."""
-    tenths = tuple(Fraction(k, 10) for k in range(21))
+    tenths = tuple(Fraction(k, 10) for k in range(8))
     scene = replace(satellite(states("1/10")), clock=Clock(Fraction(0), tenths))
     answer = solve(scene)
     rows = np.hstack([answer[name] for name in ("omega", "quaternion", "m", "i")]).astype(float)
-    header = "t,w1,w2,w3,q0,q1,q2,q3,m1,m2,i1,i2"
-    lines = [
-        ",".join([form(float(t)), *map(repr, row)])
-        for t, row in zip(tenths, rows.tolist(), strict=True)
-    ]
-    file = tmp_path / "run.csv"
-    file.write_text("\n".join([header, *lines]))
-    judgement = check(scene, file)
+    names = (*OMEGA, *QUATERNION, "m1", "m2", "i1", "i2")
+    columns = {
+        name: [*map(repr, column)] for name, column in zip(names, rows.T.tolist(), strict=True)
+    }
+    times = {"t": [form(float(t)) for t in tenths]}
+    judgement = check(scene, write_csv(tmp_path / "run.csv", times | columns, str))
     assert judgement.passed, str(judgement)
 
 

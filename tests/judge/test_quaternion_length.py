@@ -24,7 +24,7 @@ SOLID = kirchhoff(
     ["-w1/5", "0.1*sin(t)*r21", "-w3/10"],
 )
 LONGER = 1e-5
-STEPS = 60
+STEPS = 30
 # The errors of the path between its times, and of the second order.
 NEAR = 0.02
 

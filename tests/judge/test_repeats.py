@@ -24,7 +24,7 @@ from taylor_verify.scenes.motion import Clock, Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
 # The number of steps of a run, one from row to row.
-STEPS = 600
+STEPS = 200
 SPHERE = RigidBody(tensors.diagonal(vector(2, 2, 2)), vector("0.1", "0.03", "-0.02"))
 AXIS = RigidBody(tensors.diagonal(vector(1, 2, 3)), vector(0, "0.1", 0))
 SPINS = {"sphere": (SPHERE, ("0.3", "0.5", "0.7")), "axis": (AXIS, ("0", "0.6", "0"))}
@@ -132,6 +132,8 @@ def test_damped_body_at_its_final_spin_repeats() -> None:
 
 
 # Verdicts.
+
+pytestmark = pytest.mark.usefixtures("without_causes")
 
 
 def conserved(scene: Scene, answer: Answer) -> list[Verdict]:

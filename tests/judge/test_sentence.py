@@ -32,6 +32,7 @@ from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.words.next_steps import coarser_tolerance
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 Captured = pytest.CaptureFixture[str]
 
 SCENE = "euler/generic"
@@ -324,6 +325,7 @@ def test_the_answer_comes_first_and_the_arithmetic_on_request(
     assert "--explain" not in explained
 
 
+@pytest.mark.slow
 def test_of_many_runs_an_overview_follows_the_first_sentence(capsys: Captured) -> None:
     """Then the sentence of every row that is no pass, behind its scene and precision."""
     solver = "geometric:implicit-midpoint?step=0.01"

@@ -7,7 +7,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from builders.trajectories import exact_columns, file_judgement, scalar_last, write_csv
+import pytest
+from builders.trajectories import exact_columns, scalar_last, write_csv
 
 import taylor_verify
 from taylor_verify.judge.errors.measured import Block, Comparison, Measured
@@ -30,6 +31,14 @@ STAGES = (
     *(Comparison, Block, Measured, Errors, Gate, Verdict, Record, Judgement),
 )
 MOST = 30
+SEARCHING = {
+    str(Path("judge", "conventions", "convention_search.py")),
+    str(Path("judge", "causes", "cause_search.py")),
+}
+
+
+class Searched(Exception):
+    """The way has come to a search."""
 
 
 class Way:
@@ -91,31 +100,22 @@ def test_a_right_file_passes_few_functions_and_no_search(tmp_path: Path) -> None
     first, last = "check.py: check", "judge/files/stored.py: with_file_kinds"
     assert (way.functions[0], way.functions[-1]) == (first, last)
     assert len(way.functions) <= MOST
-    searching = [
-        Path("judge", "conventions", "convention_search.py"),
-        Path("judge", "causes", "cause_search.py"),
-    ]
-    assert not way.rooms & {str(room) for room in searching}
+    assert not way.rooms & SEARCHING
     assert not any("causes" in name or "conventions" in name for name in way.receive)
 
 
 def test_a_file_that_does_not_fit_is_searched(tmp_path: Path) -> None:
-    """Another convention makes a row fail, so that it is searched for, and named."""
-    file = write_csv(tmp_path / "mine.csv", scalar_last(exact_columns(SCENE)))
-    way = Way(file)
-    searching = str(Path("judge", "conventions", "convention_search.py"))
+    """Another convention makes a row fail, so that causes and conventions are searched for."""
+    way = Way(write_csv(tmp_path / "mine.csv", scalar_last(exact_columns(SCENE))))
 
     def until_searching(frame: FrameType, event: str, returned: Any) -> None:
         way(frame, event, returned)
-        if searching in way.rooms:
-            sys.setprofile(None)
+        if way.rooms & SEARCHING:
+            raise Searched
 
     sys.setprofile(until_searching)
     try:
-        judgement = file_judgement(file, SCENE)
+        with pytest.raises(Searched):
+            taylor_verify.check(SCENE, way.file)
     finally:
         sys.setprofile(None)
-    assert searching in way.rooms
-    assert not judgement.passed
-    (finding,) = judgement.conventions
-    assert "scalar last" in finding.words

@@ -27,6 +27,7 @@ from taylor_verify.records.reason import Carried, Cause, Reason, RoundoffFloor
 from taylor_verify.records.status import Status
 from taylor_verify.testing.plugin import SolverGate
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 Captured = pytest.CaptureFixture[str]
 COARSE = "scipy:RK45?rtol=1e-6"
 SCENE = "euler/with-attitude"
@@ -59,8 +60,16 @@ def coarse(tmp_path: Path) -> str:
 # Every gate, at the border.
 
 
-def at_the_border(scene: str, solve_or_file: Any) -> None:
-    """Every gate passes at its own error, and fails against the next smaller double."""
+@pytest.mark.parametrize("is_file", [False, True])
+@pytest.mark.parametrize("scene", by_turns(SCENES, 2))
+def test_a_gate_passes_at_its_tolerance_and_fails_just_above(
+    scene: str, is_file: bool, tmp_path: Path
+) -> None:
+    """An error that is the tolerance passes, for every quantity of a solver's answer and of a file."""
+    columns = dict(coarse_file(scene))
+    states = np.array([columns[name] for name in columns if name != "t"]).T
+    file = write_csv(tmp_path / "mine.csv", columns)
+    solve_or_file: Any = file if is_file else lambda problem: states
     verdicts = by_quantity(taylor_verify.check(scene, solve_or_file, tolerance=0.5))
     errors = {name: verdicts[name].max for name in GATES[scene]}
     below = {name: math.nextafter(error or 0, 0) for name, error in errors.items()}
@@ -70,20 +79,6 @@ def at_the_border(scene: str, solve_or_file: Any) -> None:
         assert {name: judged[name].max for name in errors} == errors
         for name, tolerance in asked.items():
             assert judged[name].bound == judged[name].tolerance == tolerance
-
-
-@pytest.mark.parametrize("scene", SCENES)
-def test_a_gate_passes_at_its_tolerance_and_fails_just_above(scene: str) -> None:
-    """An error that is the tolerance passes, for every quantity of a solver's answer."""
-    columns = dict(coarse_file(scene))
-    states = np.array([columns[name] for name in columns if name != "t"]).T
-    at_the_border(scene, lambda problem: states)
-
-
-@pytest.mark.parametrize("scene", by_turns(SCENES, 2))
-def test_a_gate_of_a_file_has_the_same_border(scene: str, tmp_path: Path) -> None:
-    """All digits of the largest error decide, of a file too."""
-    at_the_border(scene, write_csv(tmp_path / "mine.csv", dict(coarse_file(scene))))
 
 
 def test_the_start_may_be_off_by_the_tolerance_of_its_state(tmp_path: Path) -> None:

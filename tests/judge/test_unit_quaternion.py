@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import MATRIX, QUATERNION, columns_at, exact_columns, write_csv
+from builders.turns import by_turns
 
 import taylor_verify
 from taylor_verify.exact.route import solution
@@ -17,10 +18,10 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.records.quantities import ROTATION_MATRIX, UNIT_QUATERNION
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.run import run
 from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 SCENE = "euler/with-attitude"
 SOUND = exact_columns(SCENE)
 ROWS = len(SOUND["t"])
@@ -63,7 +64,12 @@ def test_another_length_fails_with_its_size(
 
 
 @pytest.mark.parametrize(
-    ("entry", "change"), [("all", 1e-9), ("r12", 1e-6), ("r33", 0.1), (None, 0.0)]
+    ("entry", "change"),
+    by_turns(
+        [("all", 1e-9), ("r12", 1e-6), ("r33", 0.1), (None, 0.0)],
+        4,
+        lambda entry, change: entry is None,
+    ),
 )
 def test_a_matrix_that_is_no_rotation_has_a_row_of_its_own(
     entry: str | None, change: float, tmp_path: Path
@@ -132,9 +138,3 @@ def test_an_answer_of_a_callable_is_asked_too() -> None:
     failed = row(taylor_verify.check(SCENE, solve))
     assert failed is not None
     assert failed.max == pytest.approx(15**0.5 - 1)
-
-
-def test_our_own_solver_has_no_such_row() -> None:
-    """The Taylor solver keeps quaternions to roundoff, so that its tables stay as they are."""
-    for rung in ("f32", "f64"):
-        assert row(run(SCENE, "taylor", rung)) is None

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from builders import reports
+from builders.processes import on_one_core
 
 from taylor_verify.cli import main
 from taylor_verify.records import store
@@ -69,7 +70,8 @@ def test_what_a_clone_lacks_is_made_as_it_was(report: Path, capsys: Captured) ->
         "2 tables for searching, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
     )
     committed = {file: file.read_bytes() for file in report.rglob("*") if file.is_file()}
-    assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
+    with on_one_core():
+        assert main(["publish", "--missing", "--from", str(report), "--json"]) == 0
     out, messages = capsys.readouterr()
     assert (
         "2 tables for searching, 4 records of runs, 2 portraits of scenes, 2 exact trajectories as JSON"
@@ -134,7 +136,8 @@ def test_a_run_that_departs_from_what_is_published_is_named(report: Path, capsys
     file.write_text(text, encoding="utf-8")
     file.with_name(store.SUM).write_text(line(text.encode(), store.VERDICTS), encoding="utf-8")
     shutil.rmtree(report / "data" / store.RECORDS)
-    assert main(["publish", "--missing", "--from", str(report)]) == 1
+    with on_one_core():
+        assert main(["publish", "--missing", "--from", str(report)]) == 1
     assert "euler/generic" in capsys.readouterr().err
     assert {run.scene for run in lacking(report, "records of runs")} == {"euler/generic"}
 

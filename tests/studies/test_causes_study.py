@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 
 from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.models.problem import adopt
@@ -61,7 +62,9 @@ def test_a_finished_answer_is_not_made_again(
 
 @pytest.mark.parametrize(
     ("kind", "number", "words"),
-    [("jump", 5, "exact motion between jumps"), ("asleep", 4, "at rest from t = 5.727 on")],
+    by_turns(
+        [("asleep", 4, "at rest from t = 5.727 on"), ("jump", 5, "exact motion between jumps")]
+    ),
 )
 def test_an_attitude_that_follows_from_its_own_omega_has_no_cause(
     kind: str, number: int, words: str
@@ -82,76 +85,28 @@ def test_silence_is_right_where_no_fault_has_a_name() -> None:
     assert json.loads(said_of((1, "growing load", 0)))["outcome"] == "right"
 
 
-# What the contract of likely causes names, and given files, each with its kind.
-_NAMED = {
-    "affine clock": "clock factor",
-    "clock that is early": "early clock",
-    "frames of 24, 60, 240": "times in frames",
-    "rounding of the stamps": "times rounded",
-    "jitter of the stamps": "times that scatter",
-    "a float32 running sum": "times by a float32 sum",
-    "rows saved twice": "rows saved twice",
-    "exact from the own first row": "own start",
-    "space axes turned": "space frame turned",
-    "body frame turned": "body frame turned",
-    "velocity of another point": "velocity of another point",
-    "path of another point": "path of another point",
-    "frame that turns": "frame that turns",
-    "rates of Euler angles": "rates of Euler angles",
-    "constant current": "constant current",
-    "asleep from a time on": "asleep",
-    "a cap": "speed capped",
-    "a moment that stops": "load for a while",
-    "one row repeated": "row repeated",
-    "an error between the first two rows": "speed capped",
-    "methods of step": "RK4",
-    "held omega": "held rate of the attitude",
-    "in-place update": "attitude in place",
-    "components in place": "components updated in place",
-    "momentum turned explicitly": "momentum turned",
-    "side": "attitude on the wrong side",
-    "a method with loads": "RK4 and another load",
-    "a fault and steps": "a fault and Euler steps",
-    "steps that do not divide the rows": "steps that do not divide the rows",
-    "C of another matrix": "added mass missing in C",
-    "C of the other sign": "added mass of the other sign in C",
-    "C twice": "added mass twice in C",
-    "single entries of C_A zeroed": "entry of C_A zeroed",
-    "single entries of the other sign": "entry of C_A of the other sign",
-    "entries as public simulators": "entries of C_A as simulators zero them",
-    "centre of mass missing in one": "centre of mass in M alone",
-    "load left out": "thrust left out",
-    "load of another sign": "thrust of the other sign",
-    "load in space axes": "load in space axes",
-    "load that is held": "loads held over a step",
-    "load late by a step": "pulses late by a step",
-    "a switch missed": "switch missed",
-    "controller at another rate": "controller at another rate",
-    "controller one sample late": "controller one sample late",
-    "controller without its delay": "controller without its delay",
-    "continuous for sampled": "controller continuous",
-    "load in body axes": "one load more",
-    "load in space": "moment in space",
-    "couple of weight and buoyancy": "couple of weight and buoyancy left out",
-    "linear drag": "drag on one axis",
-    "quadratic drag": "quadratic drag",
-    "missing wheel": "wheels left out",
-    "another wheel": "wheel",
-    "factor of the gyroscopic term": "gyroscopic factor",
-    "cubic interpolation": "cubic interpolation",
-    "linear interpolation": "linear interpolation",
-    "attitude alone": "attitude alone",
-    "a body without closed form": "switch late by a step",
-    "drag by the ground velocity": "drag over ground",
-    "a direction turned the wrong way": "load turned the wrong way",
-    "gravity gradient without products": "products left out of the gravity gradient",
-}
+# The kinds of the faults that the contract of likely causes names, and of those of given files.
+_NAMED = """
+clock factor, early clock, times in frames, times rounded, times that scatter, times by a float32 sum,
+rows saved twice, own start, space frame turned, body frame turned, velocity of another point, path of
+another point, frame that turns, rates of Euler angles, constant current, asleep, speed capped, load for
+a while, row repeated, RK4, held rate of the attitude, attitude in place, components updated in place,
+momentum turned, attitude on the wrong side, RK4 and another load, a fault and Euler steps, steps that do
+not divide the rows, added mass missing in C, added mass of the other sign in C, added mass twice in C,
+entry of C_A zeroed, entry of C_A of the other sign, entries of C_A as simulators zero them, centre of
+mass in M alone, thrust left out, thrust of the other sign, load in space axes, loads held over a step,
+pulses late by a step, switch missed, controller at another rate, controller one sample late, controller
+without its delay, controller continuous, one load more, moment in space, couple of weight and buoyancy
+left out, drag on one axis, quadratic drag, wheels left out, wheel, gyroscopic factor, cubic
+interpolation, linear interpolation, attitude alone, switch late by a step, drag over ground, load turned
+the wrong way, products left out of the gravity gradient
+"""
 
 
 def test_every_name_of_the_vocabulary_is_a_kind() -> None:
     """Each fault that the search shall name is a kind of the study, so that a silent one is counted."""
-    names = {kind.name for kind in KINDS}
-    assert {word: kind for word, kind in _NAMED.items() if kind not in names} == {}
+    named = " ".join(_NAMED.split()).split(", ")
+    assert set(named) - {kind.name for kind in KINDS} == set()
 
 
 def test_loads_as_texts_and_as_plain_code_are_the_same() -> None:
@@ -159,9 +114,9 @@ def test_loads_as_texts_and_as_plain_code_are_the_same() -> None:
     for sort in LOADED:
         body = any_sample(sort, np.random.default_rng([3, LOADED.index(sort)]))
         rows = right(body)
-        times = [Fraction(str(t)) for t in rows.times[:6]]
+        times = [Fraction(str(t)) for t in rows.times[:3]]
         given = adopt(body.scene, rung("f64"), times).given
         exact = ExactMotion(given, has_centre=body.n == 6).at([*given.clock.elapsed], False)
-        assert np.max(np.abs(exact.v - rows.v[:6])) < 1e-10
+        assert np.max(np.abs(exact.v - rows.v[:3])) < 1e-10
         if exact.c is not None and rows.c is not None:
-            assert np.max(np.abs(exact.c - rows.c[:6])) < 1e-10
+            assert np.max(np.abs(exact.c - rows.c[:3])) < 1e-10

@@ -200,13 +200,6 @@ def test_one_wrong_digit_does_not_agree(column: str) -> None:
         agrees("euler/nesc-brick", None, rows)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", names())
-def test_the_digits_are_those_of_exact(scene: str) -> None:
-    """`exact`, asked for 45 digits, is within the radius of every file."""
-    agrees(scene, None)
-
-
 # Remade.
 
 

@@ -38,13 +38,6 @@ def short(name: str) -> Scene:
 # Names.
 
 
-def test_a_tolerance_that_the_rung_cannot_hold_is_unavailable() -> None:
-    """heyoka would read a zero as its default; it is never given one."""
-    (verdict,) = taylor_verify.run("euler/generic", "taylor?tol=1e-60", "f32").verdicts
-    assert verdict.verdict is Status.UNAVAILABLE
-    assert "f32 has no number" in verdict.because
-
-
 def test_every_solver_of_the_sweep_is_listed() -> None:
     """`list` shows a name of the form of every setting that is measured."""
     listed = {name.partition("?")[0] for name in solver_names()}

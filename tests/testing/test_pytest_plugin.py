@@ -16,22 +16,9 @@ from taylor_verify.testing.demand import demanded_rows, is_met, report
 pytest_plugins = ["pytester"]
 
 # The plugin, and the modules of the package's own functions.
-LIGHT = {
-    f"taylor_verify.{name}"
-    for name in (
-        *(
-            "certify",
-            "check",
-            "exact",
-            "explain",
-            "numbers",
-            "numbers.working_precision",
-            "records",
-        ),
-        *("records.version", "run", "run_many", "scenes", "sweep", "testing", "testing.plugin"),
-        *("tradeoff", "types"),
-    )
-}
+NAMES = """certify check exact explain numbers numbers.working_precision records records.version
+run run_many scenes sweep testing testing.plugin tradeoff types"""
+LIGHT = {f"taylor_verify.{name}" for name in NAMES.split()}
 HEAVY = {"flint", "gmpy2", "heyoka", "mpmath", "numpy", "rich"}
 
 

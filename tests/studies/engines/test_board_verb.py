@@ -118,20 +118,9 @@ def test_files_take_the_place_of_an_engine(folder: Path) -> None:
 
 def test_all_faults_of_a_call_are_named() -> None:
     """Name, solver, steps, scene and folder are each named with what was expected."""
-    words = [
-        "add",
-        "MuJoCo",
-        "--board",
-        "engines",
-        "--steps",
-        "0,x",
-        "--solver",
-        "nobody",
-        "--scene",
-        "a",
-    ]
+    words = "add MuJoCo --board engines --steps 0,x --solver nobody --scene a"
     with pytest.raises(WrongCall) as error:
-        called(Path(), *words)
+        called(Path(), *words.split())
     messages = "\n".join(error.value.faults)
     for part in (
         "expected a name of small letters, digits, - and _, got 'MuJoCo'",
