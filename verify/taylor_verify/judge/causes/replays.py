@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import chain
 from typing import Final
 
 import numpy as np
@@ -19,6 +20,7 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.methods_with_memory import with_memory
 from taylor_verify.judge.causes.misread_states import held_over_steps
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
@@ -35,6 +37,8 @@ _ARCS: Final = 16
 # A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
 _LEAVES: Final = 0.02
 _ROUNDINGS: Final = 5.0
+# One that is only nearly right over an arc leaves more.
+_NEARLY: Final = 0.2
 _CLEAR: Final = 10.0
 # An answer has the length of so many arcs at least.
 _FEWEST: Final = 2
@@ -102,18 +106,25 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     replayed = _clear(answer, stride)
     if replayed is None:
         return
-    known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
+    known = {**METHODS, **({} if answer.n == 6 else OF_MOMENTUM)}
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
     if answer.right.acting is not None:
         known = {**known, "loads": HELD}
-    for steps in _each_best(replayed.steps(known, _ALONE)):
-        if steps.left < max(_LEAVES, _ROUNDINGS * replayed.floor):
+    tried = [replayed.steps(known, _ALONE)]
+    if answer.count > 2 * _ARCS:
+        # A method with memory has a first step of another kind.
+        later = answer.at(np.s_[1:])
+        beyond = _clear(later, stride)
+        tried += [] if beyond is None else [beyond.steps(with_memory(answer.right), _ALONE)]
+    for steps in _each_best(chain(*tried)):
+        near = _LEAVES if steps.method.run is None else _NEARLY
+        if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = held_over_steps(answer, h) if steps.method is HELD else {}
             of_steps = fault(_name(steps, answer.n, h), "method", changes)
             motion = partial(_motion, steps)
-            yield Candidate(of_steps, of_steps.right, steps.left, motion, _LEAVES, steps)
+            yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
 
 
 def _clear(answer: Answer, stride: int) -> _Replays | None:
@@ -256,6 +267,9 @@ def moved_by(steps: Steps, h: float, answer: Answer, equations: Equations) -> Mo
     """Return the motion of the equations in steps of h."""
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
     components = max(equations.coupled, answer.n + frame * steps.method.has_frame)
+    if steps.method.run is not None:
+        motion: Motion = steps.method.run(answer, equations, h, components)
+        return motion
     return whole(_in_steps(answer, steps, h), equations, components)
 
 
