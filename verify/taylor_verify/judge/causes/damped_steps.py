@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -15,34 +15,52 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import Family, Fitted, Sizes, gauss_newton
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.proof import LEAVES
+from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
 from taylor_verify.judge.causes.replays import Steps, moved_by, replay
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16
 _MOST: Final = 60
-# The numbers of steps by which the step is measured, and what the best fit may leave of the defects there.
+# The numbers of steps by which the step is measured, and what the best fit there may leave of the defects.
 _TRIED: Final = (4, 8)
 _NEAR: Final = 0.2
+# What the right number of steps leaves, and where no other motion of a step is tried.
+_LEAVES: Final = 0.02
+_EXACT: Final = 1e-5
+# A step is so many rows at most.
+_LARGEST: Final = 2.0
 # A number of damping within this part of one of three digits is that one.
 _SHORT: Final = 1e-6
 _DIGITS: Final = 3
 # The motion of a step: the classical method where it is right, and the first-order one of engines.
 _MOTIONS: Final = {"": "RK4", ", beside steps of explicit Euler": "explicit Euler"}
 
-# The factor of a step, of c and h.
-_LAWS: Final[tuple[tuple[str, str, Callable[[float, float], float]], ...]] = (
-    ("explicit damping step", "1 - c h", lambda c, h: 1 - c * h),
-    ("implicit damping step", "1/(1 + c h)", lambda c, h: 1 / (1 + c * h)),
-    ("exponential damping step", "exp(-c h)", lambda c, h: float(np.exp(-c * h))),
-    ("exponential damping step", "(1 - c)^h", lambda c, h: (1 - c) ** h if c < 1 else np.nan),
+# The factor of a step, of c and h, and c by that factor and h.
+_Of = Callable[[float, float], float]
+_LAWS: Final[tuple[tuple[str, str, _Of, _Of], ...]] = (
+    ("explicit damping step", "1 - c h", lambda c, h: 1 - c * h, lambda f, h: (1 - f) / h),
+    (
+        "implicit damping step",
+        "1/(1 + c h)",
+        lambda c, h: 1 / (1 + c * h),
+        lambda f, h: (1 / f - 1) / h,
+    ),
+    (
+        "exponential damping step",
+        "exp(-c h)",
+        lambda c, h: float(np.exp(-c * h)),
+        lambda f, h: -float(np.log(f)) / h,
+    ),
+    (
+        "exponential damping step",
+        "(1 - c)^h",
+        lambda c, h: (1 - c) ** h if c < 1 else np.nan,
+        lambda f, h: 1 - f ** (1 / h),
+    ),
 )
-_ANY: Final = (
-    "damping step",
-    "1 - c h, or 1/(1 + c h) or exp(-c h) by another c,",
-    _LAWS[0][2],
-)
+_FIRST: Final = _LAWS[0]
+_ANY: Final = ("damping step", "1 - c h, or 1/(1 + c h) or exp(-c h) by another c,", *_FIRST[2:])
 
 
 def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
@@ -54,9 +72,11 @@ def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
             of_motion = METHODS[name]
             step = partial(_damped, of_motion.step, place == "before")
             method = replace(of_motion, step=step, has_frame=not words)
-            count = _count(arcs, stride, method)
-            if count:
-                yield _candidate(arcs, Steps(name, method, count, 0.0), stride, place, words)
+            fit = _fit(arcs, stride, method)
+            if fit is not None:
+                yield _candidate(arcs, *fit, place, words)
+                if fit[0].left < max(_EXACT, ROUNDINGS * arcs.floor):
+                    return
 
 
 def _damped(
@@ -70,62 +90,55 @@ def _damped(
     return step(equations, time, v, h) if is_first else v
 
 
-def _family(right: Equations, law: Any, h: float, pace: float, title: str = "") -> Family:
+def _family(law: _Of, h: float, pace: float, title: str = "") -> Family:
     def changes(p: Floats) -> Changes:
         return {"damping": 0.0, "loss": (1 - law(float(p[0]), h)) / h}
 
     return Family(title, "damping step", np.zeros(1), np.array([pace]), changes)
 
 
-def _fitted(arcs: Arcs, method: Method, law: Any, steps: int, h: float) -> tuple[Fitted, Floats]:
-    """Return the fit of a law in so many steps of an arc, and the defects that it leaves."""
-    answer = arcs.answer
-    own = replace(answer, stepping=partial(replay, answer, method, steps))
-    evidence = replace(arcs, answer=own, steps_given=1)
-    family = _family(answer.right, law, h, 0.1 * Sizes.of(answer).pace)
-    fit = gauss_newton(evidence, family)
-    return fit, evidence.defects([family.changes(fit.numbers)]).ravel()
-
-
-def _count(arcs: Arcs, stride: int, method: Method) -> int:
-    """Return the number of steps from row to row that leaves the least; 0 where all leave much.
+def _fit(arcs: Arcs, stride: int, method: Method) -> tuple[Steps, Fitted] | None:
+    """Return the steps from row to row that leave the least, with their damping; None if that is much.
 
     What is left is linear in h.
     """
-    spacing, law = float(np.median(np.abs(arcs.spans))) / stride, _LAWS[0][2]
+    answer, spacing = arcs.answer, float(np.median(np.abs(arcs.spans))) / stride
+    pace = 0.1 * Sizes.of(answer).pace
 
-    def rest(count: int) -> Floats:
-        return _fitted(arcs, method, law, count * stride, spacing / count)[1]
+    @cache
+    def fitted(count: int) -> tuple[Fitted, Floats]:
+        own = replace(answer, stepping=partial(replay, answer, method, count * stride))
+        evidence = replace(arcs, answer=own, steps_given=1)
+        family = _family(_FIRST[2], spacing / count, pace)
+        fit = gauss_newton(evidence, family)
+        return fit, evidence.defects([family.changes(fit.numbers)]).ravel()
 
     few, more = _TRIED
-    first, second = rest(few), rest(more)
+    first, second = fitted(few)[1], fitted(more)[1]
     if not np.linalg.norm(second) < _NEAR * arcs.size:
-        return 0
+        return None
     along = float(second @ (first - second)) / float((first - second) @ (first - second))
     inverse = 1 / more - along * (1 / few - 1 / more)
-    if not 1 / _MOST < inverse < 2:
-        return 0
+    if not 1 / _MOST < inverse < _LARGEST:
+        return None
     near = max(1, round(1 / inverse))
-    some = range(max(1, near - 1), near + 2)
-    return min(some, key=lambda count: float(np.linalg.norm(rest(count))))
+    count = min(range(max(1, near - 1), near + 2), key=lambda count: fitted(count)[0].size)
+    best = fitted(count)[0]
+    left = best.size / arcs.size
+    return (Steps("", method, count, left), best) if left < _LEAVES else None
 
 
-def _candidate(arcs: Arcs, steps: Steps, stride: int, place: str, beside: str) -> Candidate:
+def _candidate(arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str) -> Candidate:
     """Return the candidate by the law whose number is short; the laws are alike but for that number."""
-    answer, right = arcs.answer, arcs.answer.right
-    h = steps.step(answer)
-
-    def fit(law: Any) -> Fitted:
-        return _fitted(arcs, steps.method, law, steps.count * stride, h)[0]
-
-    fits = [(_length(float(best.numbers[0])), best, law) for law in _LAWS if (best := fit(law[2]))]
-    short = [each for each in fits if each[0] < _SHORT]
-    _, best, (name, words, law) = short[0] if len(short) == 1 else (0.0, fits[0][1], _ANY)
+    answer, h = arcs.answer, steps.step(arcs.answer)
+    factor = _FIRST[2](float(fit.numbers[0]), h)
+    short = [law for law in _LAWS if _length(law[3](factor, h)) < _SHORT]
+    name, words, law, number = short[0] if len(short) == 1 else _ANY
     what = "omega" if answer.n == 3 else "the velocities"
     title = f"{name}: {what} times {words} {place} the motion of each step of h = {h:.6g}{beside}, with c"
-    family = _family(right, law, h, 0.1 * Sizes.of(answer).pace, title)
-    motion = partial(_motion, steps, h)
-    return Candidate(family, best.numbers, best.size / arcs.size, motion, LEAVES, steps)
+    family = _family(law, h, 0.1 * Sizes.of(answer).pace, title)
+    numbers, motion = np.array([number(factor, h)]), partial(_motion, steps, h)
+    return Candidate(family, numbers, steps.left, motion, LEAVES, steps)
 
 
 def _length(number: float) -> float:

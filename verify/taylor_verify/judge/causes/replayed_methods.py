@@ -31,13 +31,15 @@ _SETTLED: Final = 1e-15
 class Method:
     """A step (equations, time, v, h) of some order; one ``is_dear`` that is solved or goes in stages.
 
-    One that ``has_frame`` leads the attitude and the centre as well.
+    One that ``has_frame`` leads the attitude and the centre as well. One with a ``run`` (answer, equations,
+    h, components) needs more than the state: its step is nearly right, and the run is the motion.
     """
 
     order: int
     step: _Step
     is_dear: bool = False
     has_frame: bool = False
+    run: Any = None
 
 
 def _explicit(weights: Sequence[float], *rows: Sequence[float]) -> _Step:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import chain
 from typing import Final
 
 import numpy as np
@@ -19,6 +20,7 @@ from taylor_verify.judge.causes.changed_equations import Changes, Equations
 from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.methods_with_memory import with_memory
 from taylor_verify.judge.causes.misread_states import held_over_steps
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
@@ -32,16 +34,21 @@ from taylor_verify.judge.causes.replayed_methods import (
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16
-# A replay leaves at most this part of the defects, which are this many roundings at least.
+# A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
 _LEAVES: Final = 0.02
-_CLEAR: Final = 30.0
+_ROUNDINGS: Final = 5.0
+# One that is only nearly right over an arc leaves more.
+_NEARLY: Final = 0.2
+_CLEAR: Final = 10.0
+# An answer has the length of so many arcs at least.
+_FEWEST: Final = 2
 # The steps of an arc by which the error of a method is measured, fewer where they are dear, and how many
 # times finer ones are measured again; of explicit and dear ones the most.
 _FINE: Final = 16
 _FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
-_MOST_OF_DEAR: Final = 64
+_MOST_OF_DEAR: Final = 128
 # Evaluations of an implicit step, about.
 _EVALUATIONS: Final = 12
 # What a method leaves of the defects to first order, alone and beside a fault, and how small its part is.
@@ -96,23 +103,39 @@ def replay(
 
 def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield the methods whose steps lead from row to row."""
-    rows = np.array(evenly(answer.count - stride, _ARCS))
-    arcs = Arcs(answer, rows, rows + stride)
-    replayed = _Replays(arcs, stride, [{}])
-    if replayed.floor * _CLEAR > 1:
+    replayed = _clear(answer, stride)
+    if replayed is None:
         return
-    known = METHODS if answer.n == 6 else {**METHODS, **OF_MOMENTUM}
+    known = {**METHODS, **({} if answer.n == 6 else OF_MOMENTUM)}
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
     if answer.right.acting is not None:
         known = {**known, "loads": HELD}
-    for steps in _each_best(replayed.steps(known, _ALONE)):
-        if steps.left < max(_LEAVES, _CLEAR * replayed.floor):
+    tried = [replayed.steps(known, _ALONE)]
+    if answer.count > 2 * _ARCS:
+        # A method with memory has a first step of another kind.
+        later = answer.at(np.s_[1:])
+        beyond = _clear(later, stride)
+        tried += [] if beyond is None else [beyond.steps(with_memory(answer.right), _ALONE)]
+    for steps in _each_best(chain(*tried)):
+        near = _LEAVES if steps.method.run is None else _NEARLY
+        if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = held_over_steps(answer, h) if steps.method is HELD else {}
             of_steps = fault(_name(steps, answer.n, h), "method", changes)
             motion = partial(_motion, steps)
-            yield Candidate(of_steps, of_steps.right, steps.left, motion, _LEAVES, steps)
+            yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
+
+
+def _clear(answer: Answer, stride: int) -> _Replays | None:
+    """Return the replays of arcs so long that their defects stand out of the rounding, if any do."""
+    while answer.count >= _FEWEST * stride:
+        rows = np.array(evenly(answer.count - stride, _ARCS))
+        replayed = _Replays(Arcs(answer, rows, rows + stride), stride, [{}])
+        if replayed.floor * _CLEAR < 1:
+            return replayed
+        stride *= 2
+    return None
 
 
 def _name(steps: Steps, n: int, h: float) -> str:
@@ -189,7 +212,7 @@ class _Replays:
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
         """
-        most = _MOST_OF_DEAR if method.is_dear else _MOST
+        most = _MOST_OF_DEAR // self.stride if method.is_dear else _MOST
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
             counts = self._counts(method, place, own, own - rest, near, _fine(method))
             steps = counts[0] * self.stride if counts else 0
@@ -244,6 +267,9 @@ def moved_by(steps: Steps, h: float, answer: Answer, equations: Equations) -> Mo
     """Return the motion of the equations in steps of h."""
     frame = 7 if answer.file.c is not None else 4 * (answer.file.q is not None)
     components = max(equations.coupled, answer.n + frame * steps.method.has_frame)
+    if steps.method.run is not None:
+        motion: Motion = steps.method.run(answer, equations, h, components)
+        return motion
     return whole(_in_steps(answer, steps, h), equations, components)
 
 

@@ -1,0 +1,195 @@
+"""Likely causes of methods: of few printed digits, of two steps, of added mass by past accelerations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders.caused_rows import Array, columns, rows, titles
+from builders.trajectories import Columns
+from builders.turns import by_turns
+from builders.wrong_dynamics import turned
+
+RIGID = """
+title = "Body"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [[2.6, 0.3, -0.45], [0.3, 3.4, 0.2], [-0.45, 0.2, 1.9]]
+[initial]
+omega = [0.6, -0.5, 0.9]
+attitude = [0.5, 0.3, -0.7, 0.2]
+[time]
+end = 8
+samples = 81
+"""
+TENSOR = np.array([[2.6, 0.3, -0.45], [0.3, 3.4, 0.2], [-0.45, 0.2, 1.9]])
+Q = np.array([0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([0.5, 0.3, -0.7, 0.2])
+START = np.array([0.6, -0.5, 0.9, *Q])
+TIMES = np.round(np.arange(81) * 0.1, 6)
+Step = Callable[[Array, float], Array]
+
+
+def spin(w: Array) -> Array:
+    return np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w))
+
+
+def rates(z: Array) -> Array:
+    return np.concatenate([spin(z[:3]), turned(z[3:], z[:3])])
+
+
+def classical(z: Array, h: float) -> Array:
+    a = rates(z)
+    b = rates(z + h / 2 * a)
+    c = rates(z + h / 2 * b)
+    return np.asarray(z + h / 6 * (a + 2 * b + 2 * c + rates(z + h * c)))
+
+
+class AdamsBashforth:
+    """The method of two steps, or that of other weights; the first step is Euler's or another one."""
+
+    def __init__(self, weight: float = 1.5, first: Step | None = None) -> None:
+        self.weight, self.first, self.before = weight, first, None
+
+    def __call__(self, z: Array, h: float) -> Array:
+        now, before = rates(z), self.before
+        self.before = now
+        if before is None:
+            return z + h * now if self.first is None else self.first(z, h)
+        return np.asarray(z + h * (self.weight * now - (self.weight - 1) * before))
+
+
+def stepped(step: Step, every: int, z: Array, times: Array, names: tuple[str, ...]) -> Columns:
+    n, made = len(names), [z]
+    step = deepcopy(step)  # it has a memory
+    for begin, end in pairwise(times):
+        for _ in range(every):
+            z = step(z, (end - begin) / every)
+            z[n:] /= np.linalg.norm(z[n:])
+        made.append(z)
+    return columns(times, np.array(made), names)
+
+
+rigid = partial(stepped, z=START, times=TIMES, names=("w1", "w2", "w3"))
+
+
+def printed(made: Columns, digits: int = 10) -> Columns:
+    return {name: [float(f"{x:.{digits}g}") for x in column] for name, column in made.items()}
+
+
+def faster(clock: float) -> Columns:
+    made = rows(lambda t, w, q: clock * spin(w), START[:3].tolist(), Q, TIMES, [])
+    return columns(TIMES, made, ("w1", "w2", "w3"))
+
+
+@pytest.mark.parametrize(
+    ("made", "title"),
+    by_turns(
+        [
+            (lambda: rigid(classical, 1), ["truncation of order 4: RK4, h = 0.1"]),
+            (lambda: faster(1 + 2e-8), []),
+            (lambda: rigid(AdamsBashforth(first=classical), 60), []),
+        ],
+        3,
+    ),
+)
+def test_a_method_is_named_from_ten_printed_digits(
+    made: Callable[[], Columns], title: list[str], tmp_path: Path
+) -> None:
+    """An error of hundred roundings at the end is explained; another that is as small has no such name."""
+    words = titles(tmp_path, RIGID, printed(made()))
+    assert [each for each in words if "RK" in each] == title
+
+
+@pytest.mark.parametrize(
+    ("method", "title"),
+    by_turns(
+        [
+            (AdamsBashforth(), ["truncation of order 2: Adams-Bashforth 2, h = 0.02"]),
+            (
+                AdamsBashforth(first=classical),
+                ["truncation of order 2: Adams-Bashforth 2, h = 0.02"],
+            ),
+            (AdamsBashforth(weight=1.6), []),
+            (AdamsBashforth(weight=1.0), ["explicit gyroscopic step: explicit Euler, h = 0.02"]),
+        ],
+        4,
+    ),
+)
+def test_a_method_of_two_steps_is_named(
+    method: AdamsBashforth, title: list[str], tmp_path: Path
+) -> None:
+    """Adams and Bashforth's method has its name and step however it begins; that of others has not."""
+    words = titles(tmp_path, RIGID, printed(rigid(method, 5)))
+    assert [each for each in words if not each.startswith("attitude")] == title
+
+
+# A vehicle whose added mass acts by accelerations that are known already.
+
+VEHICLE = """
+title = "Vehicle"
+model = "kirchhoff"
+track = ["attitude"]
+[body]
+mass = 30.0
+inertia = [0.5, 2.0, 2.2]
+centre_of_mass = [0, 0, 0]
+added_mass = [4.0, 9.0, 8.0, 0.05, 0.4, 0.5]
+[initial]
+linear_velocity = [1.5, 0.3, -0.25]
+angular_velocity = [0.3, 0.5, 0.4]
+[time]
+end = 2
+samples = 41
+"""
+OWN = np.diag([30.0, 30, 30, 0.5, 2.0, 2.2])
+ADDED = np.diag([4.0, 9.0, 8.0, 0.05, 0.4, 0.5])
+ORDERLY = "added mass by the acceleration of the step before, explicit Euler"
+FILTERED = "added mass by the accelerations of the steps before, low-pass with 0.3, explicit Euler"
+STEP = ", h = 0.005"
+
+
+class Plugin:
+    """Explicit steps by the low-pass of the accelerations before; at first it is known, or 0."""
+
+    def __init__(self, weight: float, is_known: bool, added: float = 1.0) -> None:
+        self.weight, self.before = weight, None if is_known else np.zeros(6)
+        self.added = added * ADDED
+
+    def __call__(self, z: Array, h: float) -> Array:
+        nu, matrix = z[:6], OWN + ADDED
+        x, y = (matrix @ nu)[:3], (matrix @ nu)[3:]
+        force = np.concatenate([np.cross(x, nu[3:]), np.cross(y, nu[3:]) + np.cross(x, nu[:3])])
+        before = np.linalg.solve(matrix, force) if self.before is None else self.before
+        own = np.linalg.solve(matrix - self.added, force - self.added @ before)
+        self.before = (1 - self.weight) * before + self.weight * own
+        after = nu + h * own
+        return np.concatenate([after, z[6:] + h * turned(z[6:], after[3:])])
+
+
+@pytest.mark.parametrize(
+    ("plugin", "title"),
+    by_turns(
+        [
+            (Plugin(1.0, is_known=True), [ORDERLY + STEP]),
+            (Plugin(1.0, is_known=False), [ORDERLY + STEP]),
+            (Plugin(0.3, is_known=False), [FILTERED + STEP]),
+            (Plugin(0.5, is_known=True), []),
+            (Plugin(1.0, is_known=True, added=0.0), []),
+        ],
+        5,
+    ),
+)
+def test_an_added_mass_by_past_accelerations_is_named(
+    plugin: Plugin, title: list[str], tmp_path: Path
+) -> None:
+    """Plug-ins of simulators have their step, and their filter if they have one; others have none."""
+    start, times = np.array([1.5, 0.3, -0.25, 0.3, 0.5, 0.4, 1, 0, 0, 0]), np.arange(41) * 0.05
+    names = ("u1", "u2", "u3", "w1", "w2", "w3")
+    words = titles(tmp_path, VEHICLE, stepped(plugin, 10, start, np.round(times, 6), names))
+    assert [each for each in words if "added mass" in each] == title
