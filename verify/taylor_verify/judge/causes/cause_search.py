@@ -60,8 +60,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     undone = _undone(answer, by_group)
     if undone:
         return undone
-    largest = max((answer.worst[name] for name in by_group), default=0.0)
     # The vectors of one quantity fail together, also where the error is that of one of them.
+    largest = max((answer.worst[name] for name in by_group if name in answer.groups), default=0.0)
     slight = {name for name in answer.groups if answer.worst[name] < _SLIGHT * largest}
     left = [name for name in answer.failed if name not in (*by_group, *slight)]
     causes = _each_once(by_group)

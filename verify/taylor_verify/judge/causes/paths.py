@@ -17,6 +17,7 @@ from taylor_verify.judge.causes.many_flows import Floats
 # What the velocities and attitudes are wrong by is nothing beside the path.
 _RIGHT: Final = 1e-3
 _WRONG: Final = 30.0
+_SINGLE: Final = 1e-6
 _MOST: Final = 64
 # The steps fit the error of the path so well that they are replayed.
 _FITS: Final = 0.3
@@ -72,7 +73,8 @@ def contradicts(answer: Answer) -> Cause | None:
     assert own.file.c is not None
     apart = np.linalg.norm(np.diff(own.file.c, axis=0) - _steps(own, own.right), axis=1)
     worst = int(np.argmax(apart))
-    if not apart[worst] > _WRONG * answer.roundings["centre"]:
+    # Centres in float32 contradict nothing.
+    if not apart[worst] > max(_WRONG * answer.roundings["centre"], _SINGLE * answer.reach):
         return None
     first, last = own.times[worst : worst + 2] + own.right.start
     words = (

@@ -9,8 +9,9 @@ from typing import Final
 import numpy as np
 
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
-from taylor_verify_reports.studies.causes.kind import RIGID, Kind, right
+from taylor_verify_reports.studies.causes.kind import RIGID, Kind, of, right
 from taylor_verify_reports.studies.causes.simulated import (
+    Law,
     Rows,
     integrated,
     law,
@@ -134,6 +135,18 @@ def _drifting(rows: Rows, arm: Floats) -> Floats:
     return np.asarray(rows.c + rows.times[:, None] * arm)
 
 
+def _by_transposed(own: Law, s: Sample, d: Draw, size: float) -> None:
+    own.path = lambda turn, v, current: turn.T @ v + current
+
+
+def _not_turned(own: Law, s: Sample, d: Draw, size: float) -> None:
+    own.path = lambda turn, v, current: v + current
+
+
+def _late_attitude(rows: Rows, s: Sample, d: Draw, size: float) -> Rows:
+    return rows._replace(q=np.vstack([rows.q[:1], rows.q[:-1]]))
+
+
 def _cubic(s: Sample, d: Draw, size: float) -> Rows:
     from scipy.interpolate import CubicHermiteSpline
 
@@ -187,6 +200,15 @@ OF_ROWS: Final = (
         has_centre=True,
     ),
     Kind("path that drifts", ("drifts",), _path(_drifting), _WITH_PATH, has_centre=True),
+    Kind("path by R transposed", ("path by R^T",), of(_by_transposed), _WITH_PATH, has_centre=True),
+    Kind(
+        "path that is not turned",
+        ("path without the attitude",),
+        of(_not_turned),
+        _WITH_PATH,
+        has_centre=True,
+    ),
+    Kind("attitude a row late", ("attitude is late",), _changed(_late_attitude)),
     Kind("cubic interpolation", ("interpolation",), _cubic),
     Kind("speed capped", ("first two rows", "jump"), _capped),
     Kind(

@@ -48,6 +48,8 @@ class Law:
     until_time: float = np.inf
     loads_of: Callable[[float, Floats], Floats] | None = None
     turn: Callable[[Floats, Floats], Floats] | None = field(default=None)
+    # The rate of the centre by R, the velocity and the current, where it is another.
+    path: Callable[[Floats, Floats, Floats], Floats] | None = field(default=None)
 
 
 def law(sample: Sample) -> Law:
@@ -133,12 +135,12 @@ def integrated(
     from scipy.integrate import solve_ivp
 
     n, times = sample.n, sample.times if times is None else times
-    turn = law.turn or turned
+    turn, path = law.turn or turned, law.path or (lambda turn, v, current: turn @ v + current)
 
     def slope(t: float, z: Floats) -> Floats:
         v, q, _, own = np.split(z, (n, n + 4, n + 7))
         turning = law.clock * turn(q, v[-3:])
-        going = rotation(q) @ v[:3] + sample.current if n == 6 else np.zeros(3)
+        going = path(rotation(q), v[:3], sample.current) if n == 6 else np.zeros(3)
         own_rate = law.acting.rate(t, v, q / np.linalg.norm(q), own)
         return np.concatenate([rates(law, t, v, q, own), turning, law.clock * going, own_rate])
 
