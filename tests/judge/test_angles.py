@@ -51,7 +51,7 @@ GIBBS = np.tan(np.linalg.norm(VECTOR, axis=1, keepdims=True) / 2) * (
     ("form", "numbers", "words"),
     [
         ("", np.degrees(ZYX), "the angles are in degrees"),
-        ("", ZYX * [1, -1, 1], "the angles have the other sign in angle 2"),
+        ("", ZYX * [1, -1, 1], "the angles have the other sign in angle 2 (pitch)"),
         ("", ZYX[:, ::-1], "the angles stand in the order 3 2 1"),
         ("", TURNS.as_euler("zyx"), "the angles are about axes that stay fixed"),
         ("", TURNS.as_euler("ZXZ"), "the angles are of the sequence zxz"),
