@@ -10,6 +10,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -26,7 +27,7 @@ from taylor_verify.scenes.loads.loads import Loads
 Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
+_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1, "held": 1} | dict.fromkeys(
     ("damping", "clock", "ahead", "late"), 0
 )
 # The work of texts, once, for each of their steps, and for each state.
@@ -127,7 +128,7 @@ class Equations:
     def copies(self, sets: Sequence[Changes]) -> Equations:
         """Return equations with an axis of parameter sets, if there are several.
 
-        A set names the parameters that it changes.
+        A set names the parameters that it changes; all sets have the texts of the first.
         """
         if len(sets) == 1:
             return self.changed(sets[0])
@@ -137,8 +138,10 @@ class Equations:
             right["turns"] = np.array([0.0, 1.0])
         stacked: dict[str, Any] = {
             name: np.array([changes.get(name, right[name]) for changes in sets], dtype=float)
-            for name in names
+            for name in names - {"acting"}
         }
+        if "acting" in names:
+            stacked["acting"] = sets[0]["acting"]
         return replace(self, **stacked)
 
     @cached_property
@@ -220,7 +223,7 @@ class Equations:
         """Return the momentum of wheels that a text writes, of the scene's own states."""
         assert self.acting is not None
         when = np.broadcast_to(self.start + time, (len(z), len(time)))
-        return self.acting.rotor(when, z.transpose(0, 2, 1)).transpose(0, 2, 1)
+        return self._read("rotor", when, z.transpose(0, 2, 1), None)
 
     def price(self, components: int, states: int) -> float:
         """Return the work of the rates of so many states: about one for each microsecond."""
@@ -283,10 +286,21 @@ class Equations:
         state = np.broadcast_to(state, (*when.shape, state.shape[2]))
         taken = self.held
         if taken is not None:
-            taken = np.broadcast_to(taken[:, None], (*when.shape, taken.shape[-1]))
-        values = getattr(self.acting, what)(when, state, taken)
+            taken = np.broadcast_to(np.atleast_2d(taken)[:, None], (*when.shape, taken.shape[-1]))
+        return self._read(what, when, state, taken)
+
+    def _read(self, what: str, when: Floats, state: Floats, taken: Floats | None) -> Floats:
+        """Return values of texts, (parameters, components, arcs)."""
+        read, values = getattr(self.acting, what), None
+        if when.size == 1:
+            # Floats are ten times as fast as arrays of one number; what they refuse is no number there.
+            held = [] if taken is None else [taken[0, 0]]
+            with suppress(ArithmeticError, ValueError):
+                values = read(when[0, 0], state[0, 0], *held)
+        if values is None:
+            values = read(when, state, *([] if taken is None else [taken]))
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
-        return np.asarray(stacked).transpose(0, 2, 1)
+        return np.asarray(stacked).reshape(*when.shape, -1).transpose(0, 2, 1)
 
     def states_of_texts(self, z: Floats, nu: Floats) -> Floats:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 from typing import Final
 
@@ -227,16 +228,26 @@ def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
     The couple is the moment of a rigid body, whose origin is held.
     """
     force = [
-        str(hung.force[i])
+        _decimal(hung.force[i])
         if is_in_body
-        else _sum((f"r{k}{i + 1}", str(f)) for k, f in zip(_AXES, hung.force, strict=True))
+        else _sum((f"r{k}{i + 1}", _decimal(f)) for k, f in zip(_AXES, hung.force, strict=True))
         for i in range(3)
     ]
     places = ((1, 2), (2, 0), (0, 1))
     couple = [
-        _sum([(f"({hung.at[j]})", force[k]), (f"({-hung.at[k]})", force[j])]) for j, k in places
+        _sum([(f"({_decimal(hung.at[j])})", force[k]), (f"({_decimal(hung.at[k], '-')})", force[j])])
+        for j, k in places
     ]
     return {"force": force, "couple": couple, "moment": couple}
+
+
+def _decimal(entry: Entry, sign: str = "") -> str:
+    """Return a number as a decimal if it is one, with the other sign if there is one; a name stays."""
+    if isinstance(entry, str):
+        return f"{sign}{entry}"
+    value = -entry if sign else entry
+    text = str(value) if value.denominator == 1 else repr(float(value))
+    return text if Fraction(text) == value else str(value)
 
 
 def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:

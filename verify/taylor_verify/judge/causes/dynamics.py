@@ -123,7 +123,7 @@ def in_states(answer: Answer) -> Cause | None:
     if not answer.moving:
         return None
     courses = Courses.of(answer)
-    search = Search(answer, courses, courses.motion, answer.moving)
+    search = Search(answer, courses, courses.motion, answer.moving, courses.settled)
     faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
     faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
@@ -179,7 +179,7 @@ def _written(answer: Answer) -> list[Family]:
 class Search:
     """Candidates for the errors of some ``groups``, by some ``evidence``.
 
-    ``motion`` is that of changes at the rows of an answer.
+    ``motion`` is that of changes at the rows of an answer; that of faults may be another one.
     """
 
     def __init__(
@@ -188,8 +188,10 @@ class Search:
         evidence: Evidence,
         motion: Callable[[Answer, Changes], Motion | None],
         groups: Sequence[str],
+        motion_of_faults: Callable[[Answer, Changes], Motion | None] | None = None,
     ) -> None:
         self.answer, self.evidence, self.motion = answer, evidence, motion
+        self.motion_of_faults = motion_of_faults or motion
         self.floor = evidence.floor
         self.choice = Choice(answer, groups, self.floor)
         self.cause = self.choice.cause
@@ -256,7 +258,8 @@ class Search:
         answer, right = self.answer, self.answer.right
         coupled = right.changed(family.changes(fit.numbers)).coupled
         near = _LOOSE if answer.file.q is None and coupled > right.coupled else LEAVES
-        return Candidate(family, fit.numbers, fit.size / self.evidence.size, self.motion, near)
+        motion = self.motion if family.count else self.motion_of_faults
+        return Candidate(family, fit.numbers, fit.size / self.evidence.size, motion, near)
 
     def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
@@ -266,6 +269,7 @@ class Search:
         for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
+                left = self.evidence.left_by(fault.changes(fault.right), defects)
                 yield self._candidate(fault, Fitted(fault.right, left))
 
     def _near(self, faults: Sequence[Family]) -> Iterator[Family]:
