@@ -24,7 +24,9 @@ _ROWS: Final = 6
 _PART: Final = 6
 _SPREAD: Final = 8
 # What a motion leaves of the errors is settled if it is so little, or if a finer step leaves no less.
-_LITTLE: Final = 1e-4
+_LITTLE: Final = 5e-4
+# A changed scene that explains some rows may cost so much on all of them.
+_SETTLED: Final = 2_500_000.0
 _HALVINGS: Final = 4
 _ACCURATE: Final = 1e-5
 
@@ -66,6 +68,11 @@ class Courses(Evidence):
         """Return the motion of a changed scene at the rows of an answer; None if it runs away."""
         (motion,) = courses(answer, [changes], self.step)
         return motion if np.all(np.isfinite(motion.v)) else None
+
+    def motion_of_fault(self, answer: Answer, changes: Changes) -> Motion | None:
+        """Return the motion of a fault that explains some rows, which may cost more than is left."""
+        answer.budget.left = max(answer.budget.left, _SETTLED)
+        return self.settled(answer, changes)
 
     def left_by(self, changes: Changes, defects: Floats) -> float:
         motion = self.settled(self.answer, changes)
@@ -113,7 +120,9 @@ def _course(answer: Answer, equations: Equations, sets: int, h: float) -> Floats
     assert loads is not None
     z = np.repeat(_start(answer, equations, loads), sets // len(equations.mass_sets), axis=0)
     starts = np.array(own.held_starts(loads), dtype=float)
-    values = np.array(np.broadcast_to(starts if equations.held is None else equations.held, (sets, len(starts))))
+    values = np.array(
+        np.broadcast_to(starts if equations.held is None else equations.held, (sets, len(starts)))
+    )
     taken = {float(i.time): i for i in loads.instants(Fraction(float(answer.times[-1])))}
     marks = np.union1d(answer.times, [*taken])
     equations, now, rows = replace(equations, held=values), answer.begins, list[Floats]()

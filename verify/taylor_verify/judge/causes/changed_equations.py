@@ -27,9 +27,14 @@ from taylor_verify.scenes.loads.loads import Loads
 Changes = Mapping[str, Any]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1, "held": 1} | dict.fromkeys(
-    ("damping", "clock", "ahead", "late"), 0
-)
+_AXES: Final = {
+    "mass": 2,
+    "extra": 2,
+    "rotor": 1,
+    "turns": 1,
+    "load": 1,
+    "held": 1,
+} | dict.fromkeys(("damping", "clock", "ahead", "late"), 0)
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
@@ -222,7 +227,7 @@ class Equations:
     def wheels(self, time: Floats, z: Floats) -> Floats:
         """Return the momentum of wheels that a text writes, of the scene's own states."""
         assert self.acting is not None
-        when = np.broadcast_to(self.start + time, (len(z), len(time)))
+        when = _spread(self.start + time[None], (len(z), len(time)))
         return self._read("rotor", when, z.transpose(0, 2, 1), None)
 
     def price(self, components: int, states: int) -> float:
@@ -282,11 +287,11 @@ class Equations:
     def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads, or the rates of own states, that the scene writes as texts."""
         late, state = np.asarray(self.late, dtype=float).reshape(-1, 1), self.states_of_texts(z, nu)
-        when = np.broadcast_to(self.start + time - late, (max(len(late), len(state)), len(time)))
-        state = np.broadcast_to(state, (*when.shape, state.shape[2]))
+        when = _spread(self.start + time - late, (max(len(late), len(state)), len(time)))
+        state = _spread(state, (*when.shape, state.shape[2]))
         taken = self.held
         if taken is not None:
-            taken = np.broadcast_to(np.atleast_2d(taken)[:, None], (*when.shape, taken.shape[-1]))
+            taken = _spread(np.atleast_2d(taken)[:, None], (*when.shape, taken.shape[-1]))
         return self._read(what, when, state, taken)
 
     def _read(self, what: str, when: Floats, state: Floats, taken: Floats | None) -> Floats:
@@ -306,8 +311,8 @@ class Equations:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""
         n, mass = self.size, self.scene_mass
         moving = nu if n == 3 or mass is None else mass @ nu
-        sets = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
-        both = (np.broadcast_to(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
+        sets = max(len(moving), len(z))
+        both = (_spread(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
         return np.concatenate([*both], axis=1).transpose(0, 2, 1)
 
     def _turned(self, q: Floats, W: Floats, moving: Floats) -> Floats:
@@ -323,6 +328,11 @@ class Equations:
         before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
         both = before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
         return np.asarray(both)
+
+
+def _spread(array: Floats, shape: tuple[int, ...]) -> Floats:
+    """Return an array of some shape; to broadcast it where it has that already takes long."""
+    return array if array.shape == shape else np.broadcast_to(array, shape)
 
 
 def outer(p: Floats, q: Floats) -> Floats:

@@ -71,9 +71,7 @@ def term(place: Place, k: int) -> Key:
 def dials(acting: Acting, wanted: Iterable[Key]) -> Dials:
     """Return the loads of a scene with dials for some of their numbers; what a grammar refuses has none."""
     loads, keys = acting.written, frozenset(wanted)
-    dialled = [
-        pair for place in places(loads) if is_readable(place) for pair in _of(place, keys)
-    ]
+    dialled = [pair for place in places(loads) if is_readable(place) for pair in _of(place, keys)]
     tried = _with_dials(loads, dialled)
     if next(tried.faults(), None) is not None:
         paths = dict.fromkeys(key[0] for key, _ in dialled)

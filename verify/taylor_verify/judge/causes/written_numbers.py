@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -23,10 +23,19 @@ from taylor_verify.judge.causes.changed_texts import (
     rewritten,
     terms,
 )
-from taylor_verify.judge.causes.dials import LITERAL, Dials, Key, dials, entry, is_readable, literal, term
+from taylor_verify.judge.causes.dials import (
+    LITERAL,
+    Dials,
+    Key,
+    dials,
+    entry,
+    is_readable,
+    literal,
+    term,
+)
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import Place, places, with_entry
+from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
 from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.tables import Kind
@@ -40,6 +49,8 @@ _DIGITS: Final = 15
 _MOST: Final = 60
 # Times the time of a switch: a time that no run reaches.
 _NEVER: Final = 1e6
+# The time of a switch is linear in a number to this part.
+_SAME: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -61,10 +72,44 @@ class Number:
         return {"acting": right.acting.of(self.put(float(values[0])))}
 
     def family(self, right: Equations) -> Family:
-        """Return the fault of another value."""
+        """Return the fault of another value, or of another time of the one switch that it moves."""
+        if (switch := self._switch(right)) is not None:
+            return switch
         value, written = np.array([self.value]), partial(self.changes, right)
         return Family(
-            self.name, KIND, value, np.abs(value), self._turned(right) or written, (self.name,), written
+            self.name,
+            KIND,
+            value,
+            np.abs(value),
+            self._turned(right) or written,
+            (self.name,),
+            written,
+        )
+
+    def _switch(self, right: Equations) -> Family | None:
+        """Return the time of a switch as a family; None where the number is another one."""
+        loads = right.loads
+        assert loads is not None
+        if self.keys or not loads.switches:
+            return None
+        shift = self.value * DIFFERENCE
+        times = [np.array(self.put(self.value + k * shift).switches, float) for k in range(3)]
+        if len({len(each) for each in times}) > 1:
+            return None
+        steps = np.diff(times, axis=0)
+        moved = np.flatnonzero(steps[0])
+        if len(moved) != 1 or np.any(
+            np.abs(np.diff(steps, axis=0)) > _SAME * np.max(np.abs(steps))
+        ):
+            return None
+        (k,) = moved
+        at, pace = float(times[0][k]) + right.start, float(f"{steps[0][k] / shift:.9g}")
+        return Family(
+            f"switch at t = {at:.6g}",
+            KIND,
+            np.array([at]),
+            np.array([abs(self.value * pace)]),
+            lambda times: self.changes(right, self.value + (times - at) / pace),
         )
 
     def _turned(self, right: Equations) -> Callable[[Floats], Changes] | None:
@@ -78,9 +123,39 @@ class Number:
 
 @lru_cache(maxsize=8)
 def _dials(acting: Acting) -> Dials:
-    """Return the dials of the numbers of a scene that move no switch."""
+    """Return the dials of the numbers of a scene that move no switch, and of the points of its weights."""
     loads = acting.written
-    return dials(acting, (key for each in numbers(loads) for key in each.keys))
+    keys = [entry(place) for point in _points(loads).values() for place in point]
+    return dials(acting, (*keys, *(key for each in numbers(loads) for key in each.keys)))
+
+
+def points_of_weights(right: Equations) -> Iterator[Family]:
+    """Yield other points of weight and of buoyancy."""
+    loads, acting = right.loads, right.acting
+    if loads is None or acting is None or not loads.hung:
+        return
+    scale = max(float(abs(x)) for hung in loads.hung for x in hung.at) or 1.0
+    for name, point in _points(loads).items():
+
+        def turned(values: Floats, point: Sequence[Place] = point) -> Changes:
+            return _dials(acting).turned(zip(map(entry, point), values, strict=True))
+
+        def written(values: Floats, point: Sequence[Place] = point) -> Changes:
+            other = loads
+            for place, value in zip(point, values, strict=True):
+                other = _put_number(replace(place, loads=other), float(value))
+            return {"acting": acting.of(other)}
+
+        values = np.array([float(place.entry) for place in point])
+        yield Family(name, KIND, values, np.full(3, scale), turned, written=written)
+
+
+def _points(loads: Loads) -> dict[str, list[Place]]:
+    """Return the places of the points at which weight and buoyancy act, by the name of the key."""
+    forces = [
+        f"{name}.at" for name, hung in zip(HANGING, loads.hung, strict=False) if any(hung.force)
+    ]
+    return {key: [p for p in places(loads) if key_of(p) == key] for key in forces}
 
 
 @lru_cache(maxsize=8)
