@@ -265,6 +265,10 @@ class Equations:
                 return nu[:, j] * nu[:, k]
             case "squares":
                 return np.abs(nu[:, columns]) * nu[:, columns]
+            case "speeds":
+                vectors = nu.reshape(len(nu), -1, 3, nu.shape[2])
+                speeds = np.repeat(np.linalg.norm(vectors, axis=2), 3, axis=1)
+                return (speeds * nu)[:, columns]
             case "frame":
                 return R.reshape(len(R), 9, -1)[:, columns]
             case "loads":

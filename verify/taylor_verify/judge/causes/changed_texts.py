@@ -58,7 +58,10 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
             yield words, other
     speeds = rewritten(loads, lambda text: _COMPONENT.sub(_speed, text))
     if speeds != loads:
-        yield "the loads have |U| for abs(u1) or |W| for abs(w1), in each component", speeds
+        yield (
+            "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
+            speeds,
+        )
     yield from _hung_otherwise(loads)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)

@@ -305,7 +305,7 @@ class Search:
         return self._families(self._linear(families), ())
 
     def begun(self, families: Sequence[tuple[Family, Floats]]) -> Iterator[Candidate]:
-        """Yield families of one number, fitted from the best of some numbers that are far from the scene's."""
+        """Yield families of one number, fitted from the best of some far numbers."""
         for family, begins in families:
             tried = [number for number in begins if self._has_motion(family, number)]
             sizes = np.linalg.norm(
