@@ -160,6 +160,16 @@ def dragged(w: Array, q: Array, n: Numbers) -> Array:
     return euler(w, q, n) - 0.01 * np.linalg.solve(n.tensor, w)
 
 
+def by_the_speed(power: float = 1, axes: tuple[int, ...] = (1, 1, 1)) -> Rate:
+    """Euler's equations with a drag by a power of the speed of turn, on some axes."""
+
+    def rate(w: Array, q: Array, n: Numbers) -> Array:
+        drag = 0.01 * np.linalg.norm(w) ** power * w * axes
+        return euler(w, q, n) - np.linalg.solve(n.tensor, drag)
+
+    return rate
+
+
 def without_wheels(w: Array, q: Array, n: Numbers) -> Array:
     return np.linalg.solve(n.tensor, np.cross(n.tensor @ w, w))
 
@@ -200,6 +210,9 @@ def single(i: int, j: int, k: int, power: int = 0) -> Rate:
             (FREE, back, "gyroscopic term with the other sign"),
             (FREE, damped, "damping"),
             (FREE, dragged, "one drag on all rates of turn"),
+            (FREE, by_the_speed(), "moment -k |w| w, with k"),
+            (FREE, by_the_speed(1.5), None),
+            (FREE, by_the_speed(1, (1, 2, 3)), None),
             (FREE, damped_alone, "factor of the gyroscopic term and damping"),
             (WHEELS, without_wheels, "wheels left out"),
             (WHEELS, wheels_turned_round, "wheels with the other sign"),

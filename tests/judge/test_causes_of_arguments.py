@@ -128,6 +128,10 @@ THRUST = [
 WEIGHT = "weight = { force = [0, 0, 20], at = [0, 0, 0.05] }"
 BUOYANCY = "buoyancy = { force = [0, 0, -20], at = [0.02, 0, 0] }"
 HEAVY = "weight = { force = [0, 0, -3], at = [0.2, 0.1, 0.5] }"
+ADDED = [("0.3, 1.5, 1.4, 0.05, 0.2, 0.2", "0.33, 1.65, 1.54, 0.055, 0.22, 0.22")]
+SPEED = "sqrt(u1*u1 + u2*u2 + u3*u3)"
+SPEEDS = [(f"abs(u{i})", SPEED) for i in (1, 2, 3)]
+EXCHANGED = [("at = [0, 0, 0.05]", "at = [0.02, 0, 0]"), ("at = [0.02, 0, 0]", "at = [0, 0, 0.05]")]
 FIXED = [(WEIGHT, ""), ('"-0.6*abs', '"20 - 0.6*abs')]
 F = ["0.4 - 0.3*abs(u1)*u1 - 0.1*u1", "-0.5*abs(u2)*u2 - 0.1*u2", "-0.6*abs(u3)*u3 - 0.1*u3"]
 C = ["-0.1*w1", "-0.1*w2", "-0.2*w3"]
@@ -198,6 +202,14 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (VEHICLE, FIXED, "weight fixed in body axes"),
             (TOP, [(HEAVY, "moment = [-0.3, 0.6, 0]")], "weight fixed in body axes"),
             (TOP, [("-3]", "3]")], "moment with the other sign"),
+            (VEHICLE, [("abs", "")], "the loads have no abs"),
+            (
+                VEHICLE,
+                SPEEDS,
+                "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
+            ),
+            (VEHICLE, EXCHANGED, "points of weight and buoyancy exchanged"),
+            (VEHICLE, ADDED, "factor of the added mass"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
         12,
@@ -222,6 +234,10 @@ def test_loads_that_read_something_else_are_named(
         (VEHICLE, [*IN_SPACE[:1], *IN_SPACE[4:]]),
         (VEHICLE, [*FIXED, DOUBLED[0]]),
         (VEHICLE, of_state("1/7")),
+        (VEHICLE, [("-0.5*abs(u2)", "-0.5*(u2)"), ("-0.1*u3", "-0.2*u3")]),
+        (VEHICLE, [*SPEEDS[:1], DOUBLED[1]]),
+        (VEHICLE, [*EXCHANGED, DOUBLED[1]]),
+        (VEHICLE, [("1.5, 1.4, 0.05", "1.65, 1.54, 0.05"), DOUBLED[1]]),
     ],
 )
 def test_loads_that_do_so_here_and_there_have_no_name(
@@ -234,3 +250,9 @@ def test_loads_that_do_so_here_and_there_have_no_name(
 def test_a_clock_takes_the_time_of_the_loads_with_it() -> None:
     """Of a motion that runs by a clock of its own the clock is named, and no load of another pace."""
     assert names(TIMED, TIMED, Fraction(101, 100)) == ["clock"]
+
+
+def test_the_point_of_a_weight_is_named_by_its_key() -> None:
+    """Weight and buoyancy of one size are one couple: both points explain it, before any couple."""
+    (name,) = asked(VEHICLE, [("at = [0.02, 0, 0]", "at = [0.03, 0.01, 0]")])
+    assert name in ("buoyancy.at", "weight.at")

@@ -47,13 +47,14 @@ def scene(text: str = BODY) -> Scene:
     return read(text, "controller")
 
 
-def names(changed: str) -> list[str]:
+def names(changed: str, text: str = BODY) -> list[str]:
     """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
-    rows = exact(scene(changed), times=list(scene().clock.instants), digits=15)["omega"]
+    own = scene(text)
+    rows = exact(scene(changed), times=list(own.clock.instants), digits=15)["omega"]
     v = np.array([[float(f"{float(x):.10g}") for x in row] for row in rows])
-    given = adopt(scene(), rung("f64"), list(scene().clock.instants)).given
+    given = adopt(own, rung("f64"), list(own.clock.instants)).given
     noise = (np.full(3, 0.5e-10), 0.0, 0.0)
-    answer = material(given, Motion(v), False, noise, [failure(scene(), "omega")])
+    answer = material(given, Motion(v), False, noise, [failure(own, "omega")])
     assert answer is not None
     return [cause.name for cause in explained(answer).causes]
 
@@ -95,6 +96,70 @@ def names(changed: str) -> list[str]:
 def test_a_controller_that_is_run_otherwise_is_named(changed: str, name: str | None) -> None:
     """Another rate or gain, a sample more or no delay has its name; another instant has none."""
     assert names(changed) == ([] if name is None else [name])
+
+
+HELD = """
+title = "Controller with limits"
+model = "euler"
+[body]
+inertia = [1.2, 0.9, 1.6]
+moment = ["m1", "m2", "m3"]
+[states]
+m = { every = "1/10", value = ["clip(-w1,-0.2,0.2)", "clip(-w2,-0.2,0.2)", "clip(-w3,-0.2,0.2)"] }
+[initial]
+omega = [0.3, -0.5, 0.4]
+[time]
+end = 1
+samples = 21
+"""
+WHEELS = """
+title = "Wheels with motors"
+model = "euler"
+[body]
+inertia = [[1.2, 0.1, 0], [0.1, 0.9, 0], [0, 0, 1.6]]
+rotor = ["h1", "h2", "h3"]
+[define]
+d = "1/2"
+[states]
+h = { start = [0.1, 0, -0.2], rate = ["d*w1", "d*w2", "d*w3"] }
+[initial]
+omega = [0.3, -0.5, 0.4]
+[time]
+end = 6
+samples = 41
+"""
+VALUE = HELD[HELD.index("value") : HELD.index(" }")]
+LATE = HELD.replace("m = {", "m = { start = [0, 0, 0],").replace(
+    "[initial]",
+    'n = { start = [0, 0, 0], every = "1/10", value = ["m1", "m2", "m3"] }\n[initial]',
+)
+LATE = LATE.replace('moment = ["m1", "m2", "m3"]', 'moment = ["n1", "n2", "n3"]')
+STATES = HELD[HELD.index("[states]") : HELD.index("[initial]")]
+LIMITED = VALUE.removeprefix("value = ")
+REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
+
+
+@pytest.mark.parametrize(
+    ("text", "changed", "name"),
+    [
+        (HELD, LATE, "m is used one sample late, by 0.1"),
+        (
+            HELD,
+            HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED),
+            "m continuous, where the scene samples",
+        ),
+        (HELD, LATE.replace("clip(-w1,", "clip(-1.1*w1,"), None),
+        (WHEELS, WHEELS.replace("rotor", REACTION), "no reaction of the wheels' motors"),
+        (WHEELS, WHEELS.replace('"1/2"', '"1/3"'), "d"),
+        (WHEELS, WHEELS.replace("rotor", REACTION).replace('"1/2"', '"9/20"'), None),
+    ],
+    ids=["late", "continuous", "late and more", "no reaction", "gain", "no reaction and a gain"],
+)
+def test_an_own_state_without_a_first_value_or_with_large_effects_is_named(
+    text: str, changed: str, name: str | None
+) -> None:
+    """A controller late from the start, one with a kink, and wheels that run away have their names."""
+    assert names(changed, text) == ([] if name is None else [name])
 
 
 def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None:

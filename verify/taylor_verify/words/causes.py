@@ -58,6 +58,8 @@ def with_numbers(
         return "clock = 0: the motion stands still"
     if name == "clock" and values[0] > 0:
         return f"clock = {values[0]:.6g}: {_pace(values[0])}"
+    if name.startswith("switch at "):
+        return f"{name} comes at t = {values[0]:.6g}"
     if labels and name.startswith("factor of ") and (words := _of_term(values[0])):
         return f"{name.removeprefix('factor of ')} {words}"
     if labels:

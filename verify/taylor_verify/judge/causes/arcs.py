@@ -128,9 +128,9 @@ def enough_steps(ends: Callable[[int], Floats], goal: Floats, is_patient: bool =
 
 def parts_of(sets: Sequence[Changes]) -> Iterator[Sequence[Changes]]:
     """Yield sets that one flow may have; other texts have a flow each."""
-    for is_text, alike in itertools.groupby(sets, lambda changes: "acting" in changes):
-        part, most = [*alike], 1 if is_text else _SETS
-        yield from (part[k : k + most] for k in range(0, len(part), most))
+    for _, alike in itertools.groupby(sets, lambda changes: id(changes.get("acting"))):
+        part = [*alike]
+        yield from (part[k : k + _SETS] for k in range(0, len(part), _SETS))
 
 
 @dataclass(frozen=True)
@@ -151,6 +151,10 @@ class Evidence:
     def coarse(self, sets: Sequence[Changes]) -> Floats:
         """Return the defects as well as derivatives need them."""
         return self.defects(sets)
+
+    def left_by(self, changes: Changes, defects: Floats) -> float:
+        """Return the size of the defects of changes without numbers, computed as well as a proof needs."""
+        return float(np.linalg.norm(defects))
 
     @cached_property
     def rounding(self) -> Floats:

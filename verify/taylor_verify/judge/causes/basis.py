@@ -1,7 +1,8 @@
 """Expressions that the load texts of a changed scene are linear in, with their names in such a text.
 
-In order: 1, the velocities nu, their products, their squares with a sign, the entries of R, the loads of
-the scene, and these taken for components in space axes (R^T f). nu is omega, or U and omega.
+In order: 1, the velocities nu, their products, their squares with a sign, nu times the whole speed (|U| u,
+|W| w), the entries of R, the loads of the scene, and these taken for components in space axes (R^T f). nu
+is omega, or U and omega.
 """
 
 from __future__ import annotations
@@ -62,6 +63,7 @@ def basis(n: int) -> Basis:
         "velocities": names,
         "products": [f"{names[j]}*{names[k]}" for j, k in pairs],
         "squares": [f"abs({name})*{name}" for name in names],
+        "speeds": [f"{_speed(name[0])}*{name}" for name in names],
         "frame": [f"r{i}{k}" for i in (1, 2, 3) for k in (1, 2, 3)],
     }
     groups, begin = dict[str, slice](), 0
@@ -69,6 +71,10 @@ def basis(n: int) -> Basis:
         groups[name] = slice(begin, begin + len(columns))
         begin += len(columns)
     return Basis(n, groups, tuple(text for texts in of_group.values() for text in texts), pairs)
+
+
+def _speed(letter: str) -> str:
+    return f"sqrt({' + '.join(f'{letter}{i}*{letter}{i}' for i in (1, 2, 3))})"
 
 
 def coriolis(gyro: Floats, turn: Any = 0.0, munk: Any = 0.0) -> Floats:

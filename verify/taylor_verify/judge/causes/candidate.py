@@ -48,7 +48,7 @@ class Candidate:
     @cached_property
     def changes(self) -> Changes:
         """The changes of the equations."""
-        return self.family.changes(self.numbers)
+        return self.family.as_written(self.numbers)
 
     @property
     def text(self) -> str:

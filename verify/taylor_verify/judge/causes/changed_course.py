@@ -18,10 +18,15 @@ from taylor_verify.models import own
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Instant
 
-# The first row with an error of so many roundings, and some that follow it; or rows spread over all.
+# The first row with an error of so many roundings, and some that follow it; or some of a part of all.
 _CLEAR: Final = 300.0
 _ROWS: Final = 6
+_PART: Final = 6
 _SPREAD: Final = 8
+# What a motion leaves of the errors is settled if it is so little, or if a finer step leaves no less.
+_LITTLE: Final = 5e-4
+# A changed scene that explains some rows may cost so much on all of them.
+_SETTLED: Final = 2_500_000.0
 _HALVINGS: Final = 4
 _ACCURATE: Final = 1e-5
 
@@ -35,11 +40,11 @@ class Courses(Evidence):
 
     @classmethod
     def of(cls, answer: Answer) -> Courses:
+        last = _first_wrong(answer) + _ROWS
         # Each instant costs as much as a row.
-        is_held = answer.right.loads is not None and answer.right.loads.held_states
-        return cls(
-            answer.at(np.s_[: _first_wrong(answer) + _ROWS]) if is_held else answer.thinned(_SPREAD)
-        )
+        if answer.right.loads is not None and answer.right.loads.held_states:
+            return cls(answer.at(np.s_[:last]))
+        return cls(answer.at(np.s_[: max(last, answer.count // _PART)]).thinned(_SPREAD))
 
     def defects(self, sets: Sequence[Changes]) -> Floats:
         answer = self.answer
@@ -64,6 +69,33 @@ class Courses(Evidence):
         (motion,) = courses(answer, [changes], self.step)
         return motion if np.all(np.isfinite(motion.v)) else None
 
+    def motion_of_fault(self, answer: Answer, changes: Changes) -> Motion | None:
+        """Return the motion of a fault that explains some rows, which may cost more than is left."""
+        answer.budget.left = max(answer.budget.left, _SETTLED)
+        return self.settled(answer, changes)
+
+    def left_by(self, changes: Changes, defects: Floats) -> float:
+        motion = self.settled(self.answer, changes)
+        if motion is None:
+            return np.inf
+        return float(np.linalg.norm((self.answer.file.v - motion.v) / self.answer.sizes))
+
+    def settled(self, answer: Answer, changes: Changes) -> Motion | None:
+        """Return the motion with the step that a changed scene needs, which may be shorter."""
+        best, before = None, np.inf
+        h = min(self.step, float(np.max(np.diff(answer.times, prepend=answer.begins))))
+        for _ in range(_HALVINGS):
+            (motion,) = courses(answer, [changes], h)
+            left = max(answer.leaves(motion).values())
+            if not np.isfinite(left):
+                left = np.inf
+            elif best is None or left < before:
+                best = motion
+            if left < _LITTLE or before / 2 < left < np.inf:
+                break
+            before, h = left, h / 4
+        return best
+
 
 def _first_wrong(answer: Answer) -> int:
     """Return the first row whose error is clear, or the last one."""
@@ -87,7 +119,10 @@ def _course(answer: Answer, equations: Equations, sets: int, h: float) -> Floats
     loads = equations.loads
     assert loads is not None
     z = np.repeat(_start(answer, equations, loads), sets // len(equations.mass_sets), axis=0)
-    values = np.tile(np.array(own.held_starts(loads), dtype=float), (sets, 1))
+    starts = np.array(own.held_starts(loads), dtype=float)
+    values = np.array(
+        np.broadcast_to(starts if equations.held is None else equations.held, (sets, len(starts)))
+    )
     taken = {float(i.time): i for i in loads.instants(Fraction(float(answer.times[-1])))}
     marks = np.union1d(answer.times, [*taken])
     equations, now, rows = replace(equations, held=values), answer.begins, list[Floats]()

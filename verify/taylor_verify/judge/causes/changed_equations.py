@@ -10,6 +10,7 @@ in the texts of its loads. An array of states has the axes (parameters, componen
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -28,9 +29,14 @@ Changes = Mapping[str, Any]
 Path = Callable[[Any, Floats, Floats], Floats]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {"mass": 2, "extra": 2, "rotor": 1, "turns": 1, "load": 1} | dict.fromkeys(
-    ("damping", "clock", "ahead", "late", "loss"), 0
-)
+_AXES: Final = {
+    "mass": 2,
+    "extra": 2,
+    "rotor": 1,
+    "turns": 1,
+    "load": 1,
+    "held": 1,
+} | dict.fromkeys(("damping", "clock", "ahead", "late", "loss"), 0)
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
@@ -138,7 +144,7 @@ class Equations:
     def copies(self, sets: Sequence[Changes]) -> Equations:
         """Return equations with an axis of parameter sets, if there are several.
 
-        A set names the parameters that it changes.
+        A set names the parameters that it changes; all sets have the texts of the first.
         """
         if len(sets) == 1:
             return self.changed(sets[0])
@@ -148,8 +154,10 @@ class Equations:
             right["turns"] = np.array([0.0, 1.0])
         stacked: dict[str, Any] = {
             name: np.array([changes.get(name, right[name]) for changes in sets], dtype=float)
-            for name in names
+            for name in names - {"acting"}
         }
+        if "acting" in names:
+            stacked["acting"] = sets[0]["acting"]
         return replace(self, **stacked)
 
     @cached_property
@@ -230,8 +238,8 @@ class Equations:
     def wheels(self, time: Floats, z: Floats) -> Floats:
         """Return the momentum of wheels that a text writes, of the scene's own states."""
         assert self.acting is not None
-        when = np.broadcast_to(self._times_of_texts(time), (len(z), len(time)))
-        return self.acting.rotor(when, z.transpose(0, 2, 1)).transpose(0, 2, 1)
+        when = _spread(self._times_of_texts(time), (len(z), len(time)))
+        return self._read("rotor", when, z.transpose(0, 2, 1), None)
 
     def price(self, components: int, states: int) -> float:
         """Return the work of the rates of so many states: about one for each microsecond."""
@@ -268,6 +276,10 @@ class Equations:
                 return nu[:, j] * nu[:, k]
             case "squares":
                 return np.abs(nu[:, columns]) * nu[:, columns]
+            case "speeds":
+                vectors = nu.reshape(len(nu), -1, 3, nu.shape[2])
+                speeds = np.repeat(np.linalg.norm(vectors, axis=2), 3, axis=1)
+                return (speeds * nu)[:, columns]
             case "frame":
                 return R.reshape(len(R), 9, -1)[:, columns]
             case "loads":
@@ -290,14 +302,25 @@ class Equations:
     def _written(self, what: str, time: Floats, z: Floats, nu: Floats) -> Floats:
         """Return the loads, or the rates of own states, that the scene writes as texts."""
         state, when = self.states_of_texts(z, nu), self._times_of_texts(time)
-        when = np.broadcast_to(when, (max(len(when), len(state)), len(time)))
-        state = np.broadcast_to(state, (*when.shape, state.shape[2]))
+        when = _spread(when, (max(len(when), len(state)), len(time)))
+        state = _spread(state, (*when.shape, state.shape[2]))
         taken = self.held
         if taken is not None:
-            taken = np.broadcast_to(taken[:, None], (*when.shape, taken.shape[-1]))
-        values = getattr(self.acting, what)(when, state, taken)
+            taken = _spread(np.atleast_2d(taken)[:, None], (*when.shape, taken.shape[-1]))
+        return self._read(what, when, state, taken)
+
+    def _read(self, what: str, when: Floats, state: Floats, taken: Floats | None) -> Floats:
+        """Return values of texts, (parameters, components, arcs)."""
+        read, values = getattr(self.acting, what), None
+        if when.size == 1:
+            # Floats are ten times as fast as arrays of one number; what they refuse is no number there.
+            held = [] if taken is None else [taken[0, 0]]
+            with suppress(ArithmeticError, ValueError):
+                values = read(when[0, 0], state[0, 0], *held)
+        if values is None:
+            values = read(when, state, *([] if taken is None else [taken]))
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
-        return np.asarray(stacked).transpose(0, 2, 1)
+        return np.asarray(stacked).reshape(*when.shape, -1).transpose(0, 2, 1)
 
     def _times_of_texts(self, time: Floats) -> Floats:
         """Return the times at which texts are read, (parameters or 1, arcs)."""
@@ -310,8 +333,8 @@ class Equations:
         """Return states as the texts of the scene read them, (parameters, arcs, components)."""
         n, mass = self.size, self.scene_mass
         moving = nu if n == 3 or mass is None else mass @ nu
-        sets = np.broadcast_shapes(moving.shape[:1], z.shape[:1])[0]
-        both = (np.broadcast_to(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
+        sets = max(len(moving), len(z))
+        both = (_spread(each, (sets, *each.shape[1:])) for each in (moving, z[:, n:]))
         return np.concatenate([*both], axis=1).transpose(0, 2, 1)
 
     def _turned(self, q: Floats, W: Floats, moving: Floats) -> Floats:
@@ -327,6 +350,11 @@ class Equations:
         before, after = np.moveaxis(np.array([0, 1]) if self.turns is None else self.turns, -1, 0)
         both = before[..., None, None] * _BEFORE + after[..., None, None] * AFTER
         return np.asarray(both)
+
+
+def _spread(array: Floats, shape: tuple[int, ...]) -> Floats:
+    """Return an array of some shape; to broadcast it where it has that already takes long."""
+    return array if array.shape == shape else np.broadcast_to(array, shape)
 
 
 def outer(p: Floats, q: Floats) -> Floats:

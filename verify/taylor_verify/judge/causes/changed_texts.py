@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 from typing import Final
 
@@ -18,6 +19,7 @@ from taylor_verify.scenes.loads.loads import Hung, Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
 
 NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
+_COMPONENT: Final = re.compile(r"\babs\(([uw])[123]\)")
 _AXES: Final = (1, 2, 3)
 _PAIRS: Final = tuple(product(_AXES, repeat=2))
 _TENSOR: Final = frozenset(INERTIA)
@@ -31,6 +33,7 @@ _ALWAYS: Final[dict[str, _Names]] = {
         f"q{k}": f"q{(k + 1) % 4}" for k in range(4)
     },
     "the loads have no products of inertia": {f"I{i}{k}": "0" for i, k in _PAIRS if i != k},
+    "the loads have no abs: u1*u1 for abs(u1)*u1": {"abs": ""},
     "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
     "the loads take omega in radians for degrees": {f"w{i}": f"(pi/180*w{i})" for i in _AXES},
 }
@@ -55,9 +58,21 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
         other = rewritten(loads, changed)
         if other != loads:
             yield words, other
+    speeds = rewritten(loads, lambda text: _COMPONENT.sub(_speed, text))
+    if speeds != loads:
+        yield (
+            "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
+            speeds,
+        )
     yield from _hung_otherwise(loads)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
+
+
+def _speed(component: re.Match[str]) -> str:
+    """Return the text of the length of the vector that has a component."""
+    squares = " + ".join(f"{component.group(1)}{i}*{component.group(1)}{i}" for i in _AXES)
+    return f"sqrt({squares})"
 
 
 def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:
@@ -211,6 +226,11 @@ def moving_names(loads: Loads) -> frozenset[str]:
 def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield weight and buoyancy, each and both, left out, at the origin, or fixed in body axes."""
     has_force = [k for k, hung in enumerate(loads.hung) if any(hung.force)]
+    points = [hung.at for hung in loads.hung]
+    if len(has_force) > 1 and points[0] != points[1]:
+        pairs = zip(loads.hung, reversed(points), strict=True)
+        exchanged = tuple(Hung(hung.force, at) for hung, at in pairs)
+        yield "points of weight and buoyancy exchanged", replace(loads, hung=exchanged)
     for some in [*([k] for k in has_force), *[has_force] * (len(has_force) > 1)]:
         noun = " and ".join(HANGING[k] for k in some)
         without = _with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
@@ -241,16 +261,28 @@ def _texts_of(hung: Hung, is_in_body: bool = False) -> dict[str, list[str]]:
     The couple is the moment of a rigid body, whose origin is held.
     """
     force = [
-        str(hung.force[i])
+        _decimal(hung.force[i])
         if is_in_body
-        else _sum((f"r{k}{i + 1}", str(f)) for k, f in zip(_AXES, hung.force, strict=True))
+        else _sum((f"r{k}{i + 1}", _decimal(f)) for k, f in zip(_AXES, hung.force, strict=True))
         for i in range(3)
     ]
     places = ((1, 2), (2, 0), (0, 1))
     couple = [
-        _sum([(f"({hung.at[j]})", force[k]), (f"({-hung.at[k]})", force[j])]) for j, k in places
+        _sum(
+            [(f"({_decimal(hung.at[j])})", force[k]), (f"({_decimal(hung.at[k], '-')})", force[j])]
+        )
+        for j, k in places
     ]
     return {"force": force, "couple": couple, "moment": couple}
+
+
+def _decimal(entry: Entry, sign: str = "") -> str:
+    """Return a number as a decimal if it is one, with the other sign if there is one; a name stays."""
+    if isinstance(entry, str):
+        return f"{sign}{entry}"
+    value = -entry if sign else entry
+    text = str(value) if value.denominator == 1 else repr(float(value))
+    return text if Fraction(text) == value else str(value)
 
 
 def added(loads: Loads, more: Mapping[str, Sequence[str]]) -> Loads:

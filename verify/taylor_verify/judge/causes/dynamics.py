@@ -40,7 +40,7 @@ from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
-from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
+from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
 
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
 _PAIR_ROUNDINGS: Final = 100.0
@@ -63,6 +63,8 @@ _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
 # An arc over what is wrong between two switches passes so many rows.
 _ROWS_OF_RUN: Final = 4
+# Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
+_BEGINS: Final = 2
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,7 @@ class Dynamics:
             *families_of_terms(right, sizes),
             *families_of_bodies(right, sizes),
             *(number.family(right) for number in of_texts),
+            *points_of_weights(right),
         ]
 
 
@@ -124,7 +127,7 @@ def in_states(answer: Answer) -> Cause | None:
     if not answer.moving:
         return None
     courses = Courses.of(answer)
-    search = Search(answer, courses, courses.motion, answer.moving)
+    search = Search(answer, courses, courses.motion, answer.moving, courses.motion_of_fault)
     faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
     faults += faults_of_texts(right)
     cause = search.cause([*search.without_numbers(faults)])
@@ -143,21 +146,37 @@ def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
     ``wrong`` are the rows that the next one does not follow from. Numbers that move a switch come first. At
     most three quarters of the work that may be done are done for it.
     """
-    moves_switch, others = list[Family](), list[Family]()
+    moves_switch, others, runs = list[tuple[Family, Floats]](), list[Family](), _runs(wrong)
+    ends = [(answer.times[row] + answer.times[row + 1]) / 2 for run in runs for row in run[[0, -1]]]
     for family in (loads_late(answer.right, Sizes.of(answer)), *_written(answer)):
-        switches = answer.right.changed(family.ahead[0]).switches
-        is_same = np.array_equal(switches, answer.right.switches)
-        (others if is_same else moves_switch).append(family)
+        moved = answer.right.changed(family.ahead[0]).switches
+        if np.array_equal(moved, answer.right.switches):
+            others.append(family)
+        else:
+            begins = _that_move(answer.right.switches, family, moved, ends)
+            moves_switch.append((family, begins))
     with suppress(Spent), answer.budget.at_most(0.75 * answer.budget.left):
-        search = _search_by(answer, _arcs_over(answer, wrong))
-        cause = search.cause([*search.fitted(moves_switch)]) if moves_switch else None
+        search = _search_by(answer, _arcs_over(answer, runs))
+        cause = search.cause([*search.begun(moves_switch)]) if moves_switch else None
         return cause or search.cause([*search.fitted(others)])
     return None
 
 
-def _arcs_over(answer: Answer, wrong: Places) -> Arcs:
+def _that_move(switches: Floats, family: Family, moved: Floats, times: Sequence[float]) -> Floats:
+    """Return the values of a number that move a switch to each of some times, and its own value."""
+    shifts = moved - switches if len(moved) == len(switches) else np.zeros(0)
+    paces = [(switches[k], shift / DIFFERENCE) for k, shift in enumerate(shifts) if shift]
+    own, scale = family.right[0], family.scale[0]
+    return np.unique([own, *(own + scale * (t - at) / pace for at, pace in paces for t in times)])
+
+
+def _runs(rows: Places) -> list[Places]:
+    """Return rows in runs of those that follow one another."""
+    return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+
+
+def _arcs_over(answer: Answer, runs: Sequence[Places]) -> Arcs:
     """Return arcs that begin and end at rows on either side of what is wrong, each over a few rows."""
-    runs = np.split(wrong, np.flatnonzero(np.diff(wrong) > 1) + 1)
     first = np.array([row for run in runs for row in run[::_ROWS_OF_RUN]])
     ends = [min(row + _ROWS_OF_RUN, run[-1] + 1) for run in runs for row in run[::_ROWS_OF_RUN]]
     return Arcs(answer, first, np.array(ends))
@@ -180,7 +199,7 @@ def _written(answer: Answer) -> list[Family]:
 class Search:
     """Candidates for the errors of some ``groups``, by some ``evidence``.
 
-    ``motion`` is that of changes at the rows of an answer.
+    ``motion`` is that of changes at the rows of an answer; that of faults may be another one.
     """
 
     def __init__(
@@ -189,8 +208,10 @@ class Search:
         evidence: Evidence,
         motion: Callable[[Answer, Changes], Motion | None],
         groups: Sequence[str],
+        motion_of_faults: Callable[[Answer, Changes], Motion | None] | None = None,
     ) -> None:
         self.answer, self.evidence, self.motion = answer, evidence, motion
+        self.motion_of_faults = motion_of_faults or motion
         self.floor = evidence.floor
         self.choice = Choice(answer, groups, self.floor)
         self.cause = self.choice.cause
@@ -261,7 +282,8 @@ class Search:
         answer, right = self.answer, self.answer.right
         coupled = right.changed(family.changes(fit.numbers)).coupled
         near = _LOOSE if answer.file.q is None and coupled > right.coupled else LEAVES
-        return Candidate(family, fit.numbers, fit.size / self.evidence.size, self.motion, near)
+        motion = self.motion if family.count else self.motion_of_faults
+        return Candidate(family, fit.numbers, fit.size / self.evidence.size, motion, near)
 
     def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""
@@ -271,6 +293,7 @@ class Search:
         for fault, defects in zip(near, every, strict=True):
             left = float(np.linalg.norm(defects))
             if left < _FAULT * self.evidence.size:
+                left = self.evidence.left_by(fault.changes(fault.right), defects)
                 yield self._candidate(fault, Fitted(fault.right, left))
 
     def _near(self, faults: Sequence[Family]) -> Iterator[Family]:
@@ -285,6 +308,25 @@ class Search:
     def fitted(self, families: Sequence[Family]) -> Iterator[Candidate]:
         """Yield families with the numbers that fit best."""
         return self._families(self._linear(families), ())
+
+    def begun(self, families: Sequence[tuple[Family, Floats]]) -> Iterator[Candidate]:
+        """Yield families of one number, fitted from the best of some far numbers."""
+        for family, begins in families:
+            tried = [number for number in begins if self._has_motion(family, number)]
+            sizes = np.linalg.norm(
+                self.evidence.coarse([family.changes(np.array([x])) for x in tried]), axis=(1, 2)
+            )
+            for k in np.argsort(sizes)[:_BEGINS]:
+                with suppress(ValueError):
+                    fit = gauss_newton(self.evidence, family, np.array([tried[k]]))
+                    if np.isfinite(fit.size):
+                        yield self._candidate(family, fit)
+
+    def _has_motion(self, family: Family, number: float) -> bool:
+        with suppress(ValueError):
+            self.answer.right.changed(family.changes(np.array([number])))
+            return True
+        return False
 
     def _groups(
         self, families: Sequence[Family], candidates: list[Candidate]

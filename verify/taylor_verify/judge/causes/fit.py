@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -35,13 +36,16 @@ _FRAMES: Final = (10.0, 12.0, 24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0, 240.0)
 _LONG: Final = 3
 _MOST_STEPS: Final = 128
 
+_Changing = Callable[[Floats], Changes]
+
 
 @dataclass(frozen=True)
 class Family:
     """Faults with numbers, or one without: ``right`` are the scene's, ``scale`` natural sizes of a change.
 
     ``kind`` is the class that a family belongs to; families of one kind are no alternatives.
-    ``labels`` name the numbers of a body, whose changes are said one by one. ``parts`` are the families of
+    ``labels`` name the numbers of a body, whose changes are said one by one. ``written`` are the changes
+    as a scene writes them, where they are not those that are computed with. ``parts`` are the families of
     which one is made.
     """
 
@@ -51,11 +55,16 @@ class Family:
     scale: Floats
     changes: Callable[[Floats], Changes]
     labels: tuple[str, ...] = ()
+    written: Callable[[Floats], Changes] | None = None
     parts: tuple[Family, ...] = ()
 
     @property
     def count(self) -> int:
         return len(self.right)
+
+    def as_written(self, numbers: Floats) -> Changes:
+        """Return the changes as a scene writes them."""
+        return (self.written or self.changes)(numbers)
 
     def around(self, numbers: Floats) -> list[Changes]:
         """Return the changes at both ends of a central difference in every number."""
@@ -140,8 +149,8 @@ def both(equations: Equations, one: Family, other: Family) -> Family:
     """Return the family of the changes of two families together."""
     count = one.count
 
-    def changes(p: Floats) -> Changes:
-        first, second = one.changes(p[:count]), other.changes(p[count:])
+    def joined(of_one: _Changing, of_other: _Changing, p: Floats) -> Changes:
+        first, second = of_one(p[:count]), of_other(p[count:])
         common = {
             field: first[field] + second[field] - getattr(equations, field)
             for field in first.keys() & second.keys()
@@ -153,7 +162,8 @@ def both(equations: Equations, one: Family, other: Family) -> Family:
         "pair",
         np.concatenate([one.right, other.right]),
         np.concatenate([one.scale, other.scale]),
-        changes,
+        partial(joined, one.changes, other.changes),
+        written=partial(joined, one.as_written, other.as_written),
         parts=(one, other),
     )
 

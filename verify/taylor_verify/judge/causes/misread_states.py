@@ -132,8 +132,8 @@ def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:
 
 def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
     """Return a state whose values are used one sample late."""
-    now = replace(state, name=f"{state.name}_now")
     start = state.start or (Fraction(0),) * len(state.components)
+    now = replace(state, name=f"{state.name}_now", start=start)
     late = replace(state, start=start, value=now.components)
     name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
     return name, _with(loads, state, now, late)

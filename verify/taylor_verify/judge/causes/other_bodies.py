@@ -242,6 +242,8 @@ def _of_parts(right: Equations, added: Floats) -> Iterator[Family]:
         values[places] = p
         return {"mass": added + _rigid(values[0], about_centre, values[1:])}
 
+    name = "factor of the added mass"
+    yield linear(right, name, "part of the body", 1.0, [1], mass=added[None])
     values, scales = np.r_[heavy, arm], np.r_[heavy, size, size, size]
     names = ("mass", *(f"centre_of_mass {i}" for i in (1, 2, 3)))
     for name, places in (

@@ -190,6 +190,12 @@ def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
     least = sizes.pace * np.min(sizes.inertia[-3:]) ** 2
     name = "one drag on all rates of turn"
     yield linear(right, name, "linear drag", least, extra=[factors(velocities=-turns)])
+    for first in range(0, n, 3):
+        places = [first, first + 1, first + 2]
+        drag, letter = np.diag(np.isin(range(n), places) * 1.0), "w" if first == n - 3 else "u"
+        title = f"{names[first].split()[0]} -k |{letter}| {letter}, with k"
+        least = float(np.max(sizes.load[places]) / np.max(sizes.nu[places]) ** 2)
+        yield linear(right, title, "drag by the speed", least, extra=[factors(speeds=-drag)])
     for field, power in (("linear", 1), ("quadratic", 2)):
         scale, kind = sizes.load / sizes.nu**power, f"{field} drag"
         group = "velocities" if power == 1 else "squares"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache, partial
+from itertools import product
 from math import pi
 from typing import Final
 
@@ -23,14 +23,24 @@ from taylor_verify.judge.causes.changed_texts import (
     rewritten,
     terms,
 )
+from taylor_verify.judge.causes.dials import (
+    LITERAL,
+    Dials,
+    Key,
+    dials,
+    entry,
+    is_readable,
+    literal,
+    term,
+)
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import Place, places, with_entry
+from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
+from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.tables import Kind
 
 KIND: Final = "number"
-_LITERAL: Final = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _TURNS: Final = re.compile(r"\b(?:sin|cos|tan)\(")
 # A number below a fraction line makes the one of the other.
 _ANGLES: Final = (pi / 180, 180 / pi)
@@ -39,16 +49,22 @@ _DIGITS: Final = 15
 _MOST: Final = 60
 # Times the time of a switch: a time that no run reaches.
 _NEVER: Final = 1e6
+# The time of a switch is linear in a number to this part.
+_SAME: Final = 1e-6
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number of the scene by its name and ``value``, and the loads with another ``put`` in its place."""
+    """A number of the scene by its name and ``value``, and the loads with another ``put`` in its place.
+
+    ``keys`` are those of the dials that are the number, if there are any.
+    """
 
     name: str
     value: float
     put: Callable[[float], Loads]
     is_angle: bool = False
+    keys: tuple[Key, ...] = ()
 
     def changes(self, right: Equations, values: Floats) -> Changes:
         """Return the change of the scene; raises ValueError where no scene has this number."""
@@ -56,17 +72,105 @@ class Number:
         return {"acting": right.acting.of(self.put(float(values[0])))}
 
     def family(self, right: Equations) -> Family:
-        """Return the fault of another value."""
-        value = np.array([self.value])
-        changes = partial(self.changes, right)
-        return Family(self.name, KIND, value, np.abs(value), changes, (self.name,))
+        """Return the fault of another value, or of another time of the one switch that it moves."""
+        if (switch := self._switch(right)) is not None:
+            return switch
+        value, written = np.array([self.value]), partial(self.changes, right)
+        return Family(
+            self.name,
+            KIND,
+            value,
+            np.abs(value),
+            self._turned(right) or written,
+            (self.name,),
+            written,
+        )
+
+    def _switch(self, right: Equations) -> Family | None:
+        """Return the time of a switch as a family; None where the number is another one."""
+        loads = right.loads
+        assert loads is not None
+        if self.keys or not loads.switches:
+            return None
+        shift = self.value * DIFFERENCE
+        times = [np.array(self.put(self.value + k * shift).switches, float) for k in range(3)]
+        if len({len(each) for each in times}) > 1:
+            return None
+        steps = np.diff(times, axis=0)
+        moved = np.flatnonzero(steps[0])
+        if len(moved) != 1 or np.any(
+            np.abs(np.diff(steps, axis=0)) > _SAME * np.max(np.abs(steps))
+        ):
+            return None
+        (k,) = moved
+        at, pace = float(times[0][k]) + right.start, float(f"{steps[0][k] / shift:.9g}")
+        return Family(
+            f"switch at t = {at:.6g}",
+            KIND,
+            np.array([at]),
+            np.array([abs(self.value * pace)]),
+            lambda times: self.changes(right, self.value + (times - at) / pace),
+        )
+
+    def _turned(self, right: Equations) -> Callable[[Floats], Changes] | None:
+        """Return the change by dials; None where the number has none."""
+        assert right.acting is not None
+        turned = _dials(right.acting) if self.keys else None
+        if turned is None or not turned.places.keys() >= {*self.keys}:
+            return None
+        return lambda values: turned.turned((key, float(values[0])) for key in self.keys)
+
+
+@lru_cache(maxsize=8)
+def _dials(acting: Acting) -> Dials:
+    """Return the dials of the numbers of a scene that move no switch, and of the points of its weights."""
+    loads = acting.written
+    keys = [entry(place) for point in _points(loads).values() for place in point]
+    return dials(acting, (*keys, *(key for each in numbers(loads) for key in each.keys)))
+
+
+def points_of_weights(right: Equations) -> Iterator[Family]:
+    """Yield other points of weight and of buoyancy."""
+    loads, acting = right.loads, right.acting
+    if loads is None or acting is None or not loads.hung:
+        return
+    scale = max(float(abs(x)) for hung in loads.hung for x in hung.at) or 1.0
+    for name, point in _points(loads).items():
+
+        def turned(values: Floats, point: Sequence[Place] = point) -> Changes:
+            return _dials(acting).turned(zip(map(entry, point), values, strict=True))
+
+        def written(values: Floats, point: Sequence[Place] = point) -> Changes:
+            other = loads
+            for place, value in zip(point, values, strict=True):
+                other = _put_number(replace(place, loads=other), float(value))
+            return {"acting": acting.of(other)}
+
+        values = np.array([float(place.entry) for place in point])
+        yield Family(name, KIND, values, np.full(3, scale), turned, written=written)
+
+
+def _points(loads: Loads) -> dict[str, list[Place]]:
+    """Return the places of the points at which weight and buoyancy act, by the name of the key."""
+    forces = [
+        f"{name}.at" for name, hung in zip(HANGING, loads.hung, strict=False) if any(hung.force)
+    ]
+    return {key: [p for p in places(loads) if key_of(p) == key] for key in forces}
 
 
 @lru_cache(maxsize=8)
 def numbers(loads: Loads) -> list[Number]:
     """Return the numbers of the loads that may be others, and the factors of the terms of sums."""
     every = [*_of_places(loads), *_repeated(loads), *_of_terms(loads), *_of_drag(loads)]
-    return [number for number in every if _is_free(number)][:_MOST]
+    free = [_at_no_switch(loads, number) for number in every if _is_free(number)][:_MOST]
+    # Numbers that are dials go through one flow, one after the other.
+    return sorted(free, key=lambda number: not number.keys)
+
+
+def _at_no_switch(loads: Loads, number: Number) -> Number:
+    """Return a number without its dials if it moves a switch."""
+    moved = number.put(number.value * (1 + DIFFERENCE)).switches if loads.switches else ()
+    return number if moved == loads.switches or not moved else replace(number, keys=())
 
 
 def faults_of_texts(right: Equations) -> Iterator[Family]:
@@ -80,7 +184,9 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             yield fault(f"{number.name} {_EXCHANGED}", KIND, changes)
         if (missed := _missed(loads, number)) is not None:
             time = right.start + float(missed[0])
-            yield fault(f"switch at t = {time:.6g} missed", KIND, {"acting": acting.of(missed[1])})
+            # A number that no run reaches is no text for a reader.
+            changes = {"acting": acting.of(missed[1]), "late": 0.0}
+            yield fault(f"switch at t = {time:.6g} missed", "switch", changes)
     for name, other in changed_texts(loads):
         if next(other.faults(), None) is None:
             yield fault(name, KIND, {"acting": acting.of(other)})
@@ -116,16 +222,23 @@ def _of_places(loads: Loads) -> Iterator[Number]:
     for place in places(loads):
         if not isinstance(place.entry, str):
             if place.entry:
-                yield Number(place.name, float(place.entry), partial(_put_number, place))
+                yield _of_entry(place, float(place.entry))
             continue
         if (value := _rational(place.entry)) is not None:
-            yield Number(place.name, float(value), partial(_put_number, place))
+            yield _of_entry(place, float(value))
             continue
-        for match in _LITERAL.finditer(place.entry):
+        for match in LITERAL.finditer(place.entry):
             if float(match.group()):
                 put = partial(_put_literal, place, place.entry, match.span())
                 name = f"`{match.group()}` in {place.name}, {place.entry},"
-                yield Number(name, float(match.group()), put, bool(_TURNS.search(place.entry)))
+                is_angle = bool(_TURNS.search(place.entry))
+                keys = (literal(place, match.start()),)
+                yield Number(name, float(match.group()), put, is_angle, keys)
+
+
+def _of_entry(place: Place, value: float) -> Number:
+    keys = (entry(place),) if is_readable(place) else ()
+    return Number(place.name, value, partial(_put_number, place), keys=keys)
 
 
 def _rational(text: str) -> Fraction | None:
@@ -151,24 +264,28 @@ def _written(value: float) -> str:
 
 def _repeated(loads: Loads) -> Iterator[Number]:
     """Yield the numbers that several texts have, of one key or of all, to be changed in all of them."""
-    counts: dict[str, Counter[str]] = {}
+    found: dict[str, dict[str, list[Key]]] = {}
     for place in places(loads):
         if isinstance(place.entry, str):
-            for key in ("", key_of(place)):
-                counts.setdefault(key, Counter()).update(_LITERAL.findall(place.entry))
-    for key, of_key in counts.items():
-        for literal, count in of_key.items():
-            is_part = not key or count < counts[""][literal]
-            if count > 1 and is_part and float(literal):
-                name = f"every `{literal}`" + (f" of {key}" if key else "")
-                yield Number(name, float(literal), partial(_put_all, loads, key, literal))
+            for key, match in product(("", key_of(place)), LITERAL.finditer(place.entry)):
+                of_key = found.setdefault(key, {})
+                is_entry = _rational(place.entry) is not None
+                own = entry(place) if is_entry else literal(place, match.start())
+                of_key.setdefault(match.group(), []).append(own)
+    for key, of_key in found.items():
+        for text, keys in of_key.items():
+            is_part = not key or len(keys) < len(found[""][text])
+            if len(keys) > 1 and is_part and float(text):
+                name = f"the number {text} in " + (f"all of {key}" if key else "all texts")
+                put = partial(_put_all, loads, key, text)
+                yield Number(name, float(text), put, keys=tuple(keys))
 
 
-def _put_all(loads: Loads, key: str, literal: str, value: float) -> Loads:
+def _put_all(loads: Loads, key: str, text: str, value: float) -> Loads:
     def changed(match: re.Match[str]) -> str:
-        return _written(value) if match.group() == literal else match.group()
+        return _written(value) if match.group() == text else match.group()
 
-    return rewritten(loads, lambda text: _LITERAL.sub(changed, text), key)
+    return rewritten(loads, lambda text: LITERAL.sub(changed, text), key)
 
 
 # Terms of sums.
@@ -181,9 +298,10 @@ def _of_terms(loads: Loads) -> Iterator[Number]:
             continue
         parts = terms(place.entry)
         for k, part in enumerate(parts):
-            if not _LITERAL.match(part.strip().lstrip("+-").strip()) and len(parts) > 1:
+            if not LITERAL.match(part.strip().lstrip("+-").strip()) and len(parts) > 1:
                 name = f"factor of the term {part.strip()} in {place.name}"
-                yield Number(name, 1.0, partial(_put_factor, place, parts, {k}))
+                put = partial(_put_factor, place, parts, {k})
+                yield Number(name, 1.0, put, keys=(term(place, k),))
 
 
 def _put_factor(place: Place, parts: list[str], which: set[int], value: float) -> Loads:
@@ -209,9 +327,12 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
         drag: Callable[[str], set[int]] = partial(_drag_of, names, word)
         # Where all of the drag is quadratic, the second of the two words says it.
         of_loads[tuple(frozenset(drag(text)) for text in texts)] = words, drag
+    own = [p for p in places(loads) if p.path[0] == "vectors" and isinstance(p.entry, str)]
     for parts, (words, drag) in of_loads.items():
         if sum(map(bool, parts)) > 1:
-            yield Number(f"factor of all {words}", 1.0, partial(_put_drag, loads, drag))
+            keys = (term(place, k) for place in own for k in drag(str(place.entry)))
+            put = partial(_put_drag, loads, drag)
+            yield Number(f"factor of all {words}", 1.0, put, keys=tuple(keys))
 
 
 def _drag_of(names: frozenset[str], word: str, text: str) -> set[int]:

@@ -177,7 +177,10 @@ OF_LOADS: Final = (
         ("pulse",),
     ),
     Kind(
-        "pulses left out", ("moment left out", "every `", "from t ="), _with(size=0.0), ("pulse",)
+        "pulses left out",
+        ("moment left out", "the number ", "from t ="),
+        _with(size=0.0),
+        ("pulse",),
     ),
     Kind(
         "controller at another rate",
@@ -190,7 +193,7 @@ OF_LOADS: Final = (
     Kind("controller continuous", ("continuous",), _continuous, _S),
     Kind(
         "controller of another gain",
-        ("every `",),
+        ("the number ",),
         _with(gain=lambda c, s, e: (1 + e) * c.gain),
         _S,
     ),
