@@ -65,6 +65,8 @@ _NEARLY: Final = 0.02
 _ROWS_OF_RUN: Final = 4
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
 _BEGINS: Final = 2
+# Fits that end so near to each other, as a part of the scale, are one.
+_APART: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -156,7 +158,9 @@ def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
             begins = _that_move(answer.right.switches, family, moved, ends)
             moves_switch.append((family, begins))
     with suppress(Spent), answer.budget.at_most(0.75 * answer.budget.left):
-        search = _search_by(answer, _arcs_over(answer, runs))
+        # A switch may come a little before or after the row at which the motion is seen to be wrong.
+        wider = [np.arange(max(run[0] - 1, 0), min(run[-1] + 2, answer.count - 1)) for run in runs]
+        search = _search_by(answer, _arcs_over(answer, wider))
         cause = search.cause([*search.begun(moves_switch)]) if moves_switch else None
         return cause or search.cause([*search.fitted(others)])
     return None
@@ -316,10 +320,13 @@ class Search:
             sizes = np.linalg.norm(
                 self.evidence.coarse([family.changes(np.array([x])) for x in tried]), axis=(1, 2)
             )
+            ends = list[Floats]()
             for k in np.argsort(sizes)[:_BEGINS]:
                 with suppress(ValueError):
                     fit = gauss_newton(self.evidence, family, np.array([tried[k]]))
-                    if np.isfinite(fit.size):
+                    is_new = all(abs(fit.numbers - end) > _APART * family.scale for end in ends)
+                    if np.isfinite(fit.size) and is_new:
+                        ends.append(fit.numbers)
                         yield self._candidate(family, fit)
 
     def _has_motion(self, family: Family, number: float) -> bool:

@@ -194,8 +194,8 @@ def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
         places = [first, first + 1, first + 2]
         drag, letter = np.diag(np.isin(range(n), places) * 1.0), "w" if first == n - 3 else "u"
         title = f"{names[first].split()[0]} -k |{letter}| {letter}, with k"
-        least = float(np.max(sizes.load[places]) / np.max(sizes.nu[places]) ** 2)
-        yield linear(right, title, "drag by the speed", least, extra=[factors(speeds=-drag)])
+        size = float(np.max(sizes.load[places]) / np.max(sizes.nu[places]) ** 2)
+        yield linear(right, title, "drag by the speed", size, extra=[factors(speeds=-drag)])
     for field, power in (("linear", 1), ("quadratic", 2)):
         scale, kind = sizes.load / sizes.nu**power, f"{field} drag"
         group = "velocities" if power == 1 else "squares"
