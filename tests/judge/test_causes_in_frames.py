@@ -157,7 +157,7 @@ def test_a_path_that_does_not_follow_has_its_cause(path: Path_, words: str, tmp_
                 "is the path of steps of first order, c += h c' at the end of each step, h = 0.05",
             ),
             (5, 0.1, "contradicts"),
-            (3, 0.5, "contradicts"),
+            (1, 0.5, "contradicts"),
         ],
         2,
     ),

@@ -200,15 +200,6 @@ OF_ROWS: Final = (
         has_centre=True,
     ),
     Kind("path that drifts", ("drifts",), _path(_drifting), _WITH_PATH, has_centre=True),
-    Kind("path by R transposed", ("path by R^T",), of(_by_transposed), _WITH_PATH, has_centre=True),
-    Kind(
-        "path that is not turned",
-        ("path without the attitude",),
-        of(_not_turned),
-        _WITH_PATH,
-        has_centre=True,
-    ),
-    Kind("attitude a row late", ("attitude is late",), _changed(_late_attitude)),
     Kind("cubic interpolation", ("interpolation",), _cubic),
     Kind("speed capped", ("first two rows", "jump"), _capped),
     Kind(
@@ -218,4 +209,16 @@ OF_ROWS: Final = (
         ("free", "wheels"),
         has_rates=False,
     ),
+)
+# Kinds that came later stand last: a kind is drawn by its place.
+LATER: Final = (
+    Kind("path by R transposed", ("path by R^T",), of(_by_transposed), _WITH_PATH, has_centre=True),
+    Kind(
+        "path that is not turned",
+        ("path without the attitude",),
+        of(_not_turned),
+        _WITH_PATH,
+        has_centre=True,
+    ),
+    Kind("attitude a row late", ("attitude is late",), _changed(_late_attitude)),
 )
