@@ -40,6 +40,7 @@ from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
+from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
 
 # Defects of so many roundings are needed to look for two families at once, with so many numbers.
@@ -338,10 +339,17 @@ class Search:
     def _groups(
         self, families: Sequence[Family], candidates: list[Candidate]
     ) -> Iterator[list[Family]]:
-        """Yield the families of one number, of few and of many, while no candidate is exact."""
+        """Yield the families of one number, of few and of many, while no candidate is exact.
+
+        What the scene writes, even if it is a vector, is asked with those of one number.
+        """
         for least, most in ((1, 1), (2, 3), (4, self.answer.n**2)):
             if least == 1 or not any(self._is_exact(candidate) for candidate in candidates):
-                yield [family for family in families if least <= family.count <= most]
+                yield [
+                    family
+                    for family in families
+                    if least <= (1 if family.kind == WRITTEN else family.count) <= most
+                ]
 
     def _linear(self, families: Sequence[Family]) -> list[_Linear]:
         """Return families with the slopes of their numbers, few numbers and a good linear fit first."""
