@@ -122,9 +122,9 @@ def with_memory(right: Equations) -> dict[str, Method]:
     ):
         words = f"{name}, explicit Euler" + (f", attitude {some[0]}" if some[0] else "")
         ways = [partial(_with_acceleration, UPDATES.get(turn)) for turn in some]
-        begun = [partial(_lagging, *way, weight) for way in product((1.0, 0.0), ways)]
+        runs = [partial(_lagging, *way, weight) for way in product((1.0, 0.0), ways)]
         over = partial(_lagging_over_an_arc, ways[0], weight)
-        methods[words] = Method(1, over, has_frame=True, run=_runs(*begun))
+        methods[words] = Method(1, over, has_frame=True, run=_runs(*runs))
     return methods
 
 
