@@ -46,9 +46,11 @@ def faults_of_bodies(right: Equations) -> Iterator[Family]:
         # Wrong axes are wrong in both.
         if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
-        if is_body and right.size == 6:
-            changes = {"mass": mass, "extra": -extra}
-            yield fault(f"{name} in the mass matrix alone", "Coriolis matrix", changes)
+        if is_body and (right.size == 6 or name.startswith("products")):
+            changes, where = {"mass": mass, "extra": -extra}, "mass matrix"
+            if right.size == 3:
+                where = "tensor that divides"
+            yield fault(f"{name} in the {where} alone", "Coriolis matrix", changes)
 
 
 def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
