@@ -234,7 +234,7 @@ def test_loads_that_read_something_else_are_named(
         (VEHICLE, [*IN_SPACE[:1], *IN_SPACE[4:]]),
         (VEHICLE, [*FIXED, DOUBLED[0]]),
         (VEHICLE, of_state("1/7")),
-        (VEHICLE, [("-0.5*abs(u2)", "-0.5*(u2)"), ("-0.1*u3", "-0.2*u3")]),
+        (VEHICLE, [("-0.5*abs(u2)", "-0.5*(u2)"), DOUBLED[0]]),
         (VEHICLE, [*SPEEDS[:1], DOUBLED[1]]),
         (VEHICLE, [*EXCHANGED, DOUBLED[1]]),
         (VEHICLE, [("1.5, 1.4, 0.05", "1.65, 1.54, 0.05"), DOUBLED[1]]),
