@@ -163,6 +163,10 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
         leaves = of_motion if of_attitude else {**of_motion, "attitude": left}
         causes = [replace(each, leaves=leaves) if each is cause else each for each in causes]
     if of_attitude is not None:
+        if causes:
+            # What is left of the motion is said of its own cause.
+            own = {name: part for name, part in of_attitude.leaves.items() if name == "attitude"}
+            of_attitude = replace(of_attitude, leaves=own)
         return [*causes, of_attitude]
     # An attitude that no cause explains refutes a cause that does not explain it.
     is_refuted = cause is not None and cause.method is None and cause.kind not in _OF_PIECES
