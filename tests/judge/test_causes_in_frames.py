@@ -89,8 +89,8 @@ def along(first: int, count: int) -> Path_:
 
     def path(R: Array, U: Array) -> Array:
         angles = Rotation.from_matrix(R).as_euler("ZYX")
-        kept = [a * (first <= k < first + count) for k, a in enumerate(angles)]
-        return Rotation.from_euler("ZYX", kept).apply(U) + CURRENT
+        some = [a * (first <= k < first + count) for k, a in enumerate(angles)]
+        return Rotation.from_euler("ZYX", some).apply(U) + CURRENT
 
     return path
 

@@ -17,7 +17,7 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.dynamics import Dynamics, dynamics, in_numbers, in_states
+from taylor_verify.judge.causes.dynamics import Dynamics, dynamics
 from taylor_verify.judge.causes.float_answer import (
     Answer,
     Motion,
@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.float_answer import (
 from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.paths import contradicts
 from taylor_verify.judge.causes.proof import may_leave, whole
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows

@@ -29,23 +29,16 @@ Changes = Mapping[str, Any]
 Path = Callable[[Any, Floats, Floats], Floats]
 
 # The number of axes that a parameter has without an axis of parameter sets.
-_AXES: Final = {
-    "mass": 2,
-    "extra": 2,
-    "rotor": 1,
-    "turns": 1,
-    "load": 1,
-    "held": 1,
-} | dict.fromkeys(("damping", "clock", "ahead", "late", "loss"), 0)
+_AXES: Final = (
+    dict.fromkeys(("mass", "extra"), 2)
+    | dict.fromkeys(("rotor", "turns", "load", "held"), 1)
+    | dict.fromkeys(("damping", "clock", "ahead", "late", "loss"), 0)
+)
 # The work of texts, once, for each of their steps, and for each state.
 _TEXTS: Final = 55.0
 _STEP: Final = 2.5
 _TEXTS_OF_ONE: Final = 0.2
 _FRAMED: Final = frozenset({"frame", "turned loads"})
-
-
-def _over_ground(R: Any, U: Floats, current: Floats) -> Floats:
-    return to_space(R, U) + current
 
 
 @dataclass(frozen=True)
@@ -216,7 +209,9 @@ class Equations:
         if z.shape[1] > n:
             out[:, n : n + 4] = self._turned(z[:, n : n + 4], nu[:, -3:], moving)
         if has_centre:
-            out[:, n + 4 : n + 7] = (self.path or _over_ground)(R, nu[:, :3], self.current[:, None])
+            U, current = nu[:, :3], self.current[:, None]
+            path = self.path(R, U, current) if self.path else to_space(R, U) + current
+            out[:, n + 4 : n + 7] = path
         if self.own and z.shape[1] > n + 4:
             out[:, -self.own :] = self._written("rates", time, z, nu)
         return out if np.ndim(self.clock) == 0 and self.clock == 1 else out * _number(self.clock)

@@ -14,7 +14,6 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
-from taylor_verify.judge.causes.changed_course import Courses
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.fit import (
@@ -28,9 +27,8 @@ from taylor_verify.judge.causes.fit import (
     gauss_newton,
     orthonormal,
 )
-from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
+from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
     faults_of_added_mass,
@@ -39,7 +37,7 @@ from taylor_verify.judge.causes.other_bodies import (
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
-from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
+from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
 
@@ -62,8 +60,6 @@ _LINEAR: Final = 0.6
 # Where another is exact, a family is tried that may be so as well.
 _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
-# An arc over what is wrong between two switches passes so many rows.
-_ROWS_OF_RUN: Final = 4
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
 _BEGINS: Final = 2
 # Fits that end so near to each other, as a part of the scale, are one.
@@ -99,7 +95,7 @@ class Dynamics:
 
     @cached_property
     def _search(self) -> Search:
-        return _search_by(self.answer, self._arcs[0])
+        return search_by(self.answer, self._arcs[0])
 
     @cached_property
     def _faults(self) -> list[Candidate]:
@@ -124,81 +120,11 @@ def dynamics(answer: Answer) -> Cause | None:
     return Dynamics(answer).cause()
 
 
-def in_states(answer: Answer) -> Cause | None:
-    """Return the change of own states, of loads or of the body whose scene moves as the answer does."""
-    right = answer.right
-    if not answer.moving:
-        return None
-    courses = Courses.of(answer)
-    search = Search(answer, courses, courses.motion, answer.moving, courses.motion_of_fault)
-    faults = [*faults_of_states(right), *faults_of_terms(right), *faults_of_bodies(right)]
-    faults += faults_of_texts(right)
-    cause = search.cause([*search.without_numbers(faults)])
-    with suppress(Spent):
-        cause = cause or search.cause([*search.fitted(_written(answer))])
-        sizes = Sizes.of(answer)
-        families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
-        one = [each for each in families if each.count == 1 and each.kind != "clock"]
-        cause = cause or search.cause([*search.fitted(one)])
-    return cause
-
-
-def in_numbers(answer: Answer, wrong: Places) -> Cause | None:
-    """Return the one number of the loads with which the scene moves as the answer does, or their lateness.
-
-    ``wrong`` are the rows that the next one does not follow from. Numbers that move a switch come first. At
-    most three quarters of the work that may be done are done for it.
-    """
-    moves_switch, others, runs = list[tuple[Family, Floats]](), list[Family](), _runs(wrong)
-    ends = [(answer.times[row] + answer.times[row + 1]) / 2 for run in runs for row in run[[0, -1]]]
-    for family in (loads_late(answer.right, Sizes.of(answer)), *_written(answer)):
-        moved = answer.right.changed(family.ahead[0]).switches
-        if np.array_equal(moved, answer.right.switches):
-            others.append(family)
-        else:
-            begins = _that_move(answer.right.switches, family, moved, ends)
-            moves_switch.append((family, begins))
-    with suppress(Spent), answer.budget.at_most(0.75 * answer.budget.left):
-        # A switch may come a little before or after the row at which the motion is seen to be wrong.
-        wider = [np.arange(max(run[0] - 1, 0), min(run[-1] + 2, answer.count - 1)) for run in runs]
-        search = _search_by(answer, _arcs_over(answer, wider))
-        cause = search.cause([*search.begun(moves_switch)]) if moves_switch else None
-        return cause or search.cause([*search.fitted(others)])
-    return None
-
-
-def _that_move(switches: Floats, family: Family, moved: Floats, times: Sequence[float]) -> Floats:
-    """Return the values of a number that move a switch to each of some times, and its own value."""
-    shifts = moved - switches if len(moved) == len(switches) else np.zeros(0)
-    paces = [(switches[k], shift / DIFFERENCE) for k, shift in enumerate(shifts) if shift]
-    own, scale = family.right[0], family.scale[0]
-    return np.unique([own, *(own + scale * (t - at) / pace for at, pace in paces for t in times)])
-
-
-def _runs(rows: Places) -> list[Places]:
-    """Return rows in runs of those that follow one another."""
-    return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-
-
-def _arcs_over(answer: Answer, runs: Sequence[Places]) -> Arcs:
-    """Return arcs that begin and end at rows on either side of what is wrong, each over a few rows."""
-    first = np.array([row for run in runs for row in run[::_ROWS_OF_RUN]])
-    ends = [min(row + _ROWS_OF_RUN, run[-1] + 1) for run in runs for row in run[::_ROWS_OF_RUN]]
-    return Arcs(answer, first, np.array(ends))
-
-
-def _search_by(answer: Answer, arcs: Arcs) -> Search:
+def search_by(answer: Answer, arcs: Arcs) -> Search:
     right = answer.right
     return Search(
         answer, arcs, lambda answer, other: whole(answer, right.changed(other)), answer.moving
     )
-
-
-def _written(answer: Answer) -> list[Family]:
-    """Return the families of the numbers of the texts and of sampling."""
-    right, loads = answer.right, answer.right.loads
-    assert loads is not None
-    return [each.family(right) for each in (*numbers_of_sampling(loads), *numbers(loads))]
 
 
 class Search:
@@ -314,7 +240,7 @@ class Search:
         """Yield families with the numbers that fit best."""
         return self._families(self._linear(families), ())
 
-    def begun(self, families: Sequence[tuple[Family, Floats]]) -> Iterator[Candidate]:
+    def from_far(self, families: Sequence[tuple[Family, Floats]]) -> Iterator[Candidate]:
         """Yield families of one number, fitted from the best of some far numbers."""
         for family, begins in families:
             tried = [number for number in begins if self._has_motion(family, number)]

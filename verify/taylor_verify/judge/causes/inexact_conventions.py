@@ -18,6 +18,14 @@ from taylor_verify.judge.causes.float_answer import Answer, angles, conjugate, m
 from taylor_verify.judge.causes.float_answer import product as times
 from taylor_verify.judge.causes.lateness import late_rows
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.other_frames import (
+    NEAR,
+    degrees,
+    frame_that_turns,
+    is_near,
+    mean_turn,
+    other_columns,
+)
 from taylor_verify.judge.causes.paths import paths
 from taylor_verify.judge.causes.proof import LEAVES
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
@@ -25,7 +33,6 @@ from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 _ROUNDINGS: Final = 10.0
 _PART: Final = 1e-6
 _MOST: Final = 0.03
-_NEAR: Final = 1e-2
 
 # All signed permutations, those of signs alone first.
 SIGNED: Final = tuple(
@@ -115,9 +122,9 @@ def _one_turn(answer: Answer, causes: Mapping[str, Cause]) -> dict[str, Cause]:
         return {}
     assert q is not None
     assert truth is not None
-    turn = _mean(times(conjugate(truth), q))
+    turn = mean_turn(times(conjugate(truth), q))
     rows = {name: _group(answer, name)[1] @ matrices(turn)[0] for name in answer.moving}
-    words = f"the body's axes are {_TURNED} of {_degrees(turn[0]):.4g} degrees"
+    words = f"the body's axes are {_TURNED} of {degrees(turn[0]):.4g} degrees"
     nouns = " and ".join(_NOUNS.get(name, name) for name in names)
     return _one(
         answer, f"{words}, in {nouns} alike", {"attitude": times(truth, turn), **rows}, _PART
@@ -131,7 +138,7 @@ def _one_frame(answer: Answer, causes: Mapping[str, Cause]) -> dict[str, Cause]:
         return {}
     assert q is not None
     assert truth is not None
-    rate, turned = _frame_that_turns(answer, q, truth)
+    rate, turned = frame_that_turns(answer, q, truth)
     omega = _group(answer, "omega")[1] - matrices(truth).transpose(0, 2, 1) @ rate
     words = f"omega and attitude are {_THAT_TURNS} {numbers(rate)}"
     return _one(answer, words, {"omega": omega, "attitude": turned}, LEAVES)
@@ -328,7 +335,7 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
         0,
         conjugate(truth),
     )
-    columns = _other_columns(truth)
+    columns = other_columns(truth)
     for words, rows in columns.items():
         yield Reading(words, 0, rows)
     for words, rows in (("", truth), ("is transposed, and ", conjugate(truth))):
@@ -336,47 +343,18 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
             ("space", times(q, conjugate(rows))),
             ("body", times(conjugate(rows), q)),
         ):
-            mean = _mean(turn)
-            angle = _degrees(mean[0])
+            mean = mean_turn(turn)
+            angle = degrees(mean[0])
             name = f"{words}has {side} axes turned by a fixed rotation of {angle:.4g} degrees"
             turned = (mean, rows) if side == "space" else (rows, mean)
             yield Reading(name, 3, times(*turned))
     # A quaternion with one component in the wrong place is that of other frames too, for no other reason.
-    if not any(_is_near(q, rows) for rows in columns.values()):
+    if not any(is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
-    rate, relative = _frame_that_turns(answer, q, truth)
+    rate, relative = frame_that_turns(answer, q, truth)
     yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, relative)
     for words, rows in late_rows(answer, "attitude"):
         yield Reading(words, 3, rows)
-
-
-def _other_columns(truth: Floats) -> dict[str, Floats]:
-    """Return the quaternions of files whose columns hold other components, or one with the other sign."""
-    columns = {
-        "has the scalar last, read as first": np.roll(truth, -1, axis=1),
-        "has the scalar first, read as last": np.roll(truth, 1, axis=1),
-    }
-    for k in (1, 2, 3):
-        columns[f"has the other sign in q{k}"] = truth * (1 - 2 * np.eye(4)[k])
-    for i, k in ((1, 2), (1, 3), (2, 3)):
-        order = np.array([0, 1, 2, 3])
-        order[[i, k]] = k, i
-        columns[f"has q{i} and q{k} exchanged"] = truth[:, order]
-    return columns
-
-
-def _is_near(q: Floats, rows: Floats) -> bool:
-    return bool(np.all(np.abs(np.sum(q * rows, axis=1)) > 1 - _NEAR))
-
-
-def _mean(turns: Floats) -> Floats:
-    """Return the mean of quaternions whose signs are free, (1, 4)."""
-    return np.asarray(np.linalg.eigh(turns.T @ turns)[1][:, -1][None])
-
-
-def _degrees(q: Floats) -> float:
-    """Return the angle of the turn of a quaternion."""
-    return float(np.degrees(2 * np.arccos(min(1.0, abs(float(q[0]))))))
 
 
 def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
@@ -386,7 +364,7 @@ def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
         for P in (P for P in SIGNED[1:] if np.linalg.det(P) > 0):
             S = file[0] @ P.T @ rows[0].T
             some = [len(rows) // 2, -1]
-            if np.max(np.abs(S @ rows[some] @ P - file[some])) > _NEAR:
+            if np.max(np.abs(S @ rows[some] @ P - file[some])) > NEAR:
                 continue
             known = [s for s in SIGNED if np.max(np.abs(S - s)) < 1e-6]
             of_space = f"space axes {axes(known[0])}" if known else "space axes turned"
@@ -394,30 +372,3 @@ def _both_frames(q: Floats, truth: Floats) -> Iterator[Reading]:
             unit = rotations / np.linalg.norm(rotations, axis=1, keepdims=True)
             name = f"{words}has other frames: body axes {axes(P.T)}, {of_space}, q = E q F"
             yield Reading(name, 0 if known else 3, unit)
-
-
-def _frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> tuple[Floats, Floats]:
-    """Return the constant rate of a frame, by Newton's method, and the attitudes relative to it."""
-    elapsed = answer.times - answer.begins
-    early = np.argsort(np.abs(elapsed))[1 : max(3, len(elapsed) // 10)]
-    rate = _rate(_small_turns(times(q, conjugate(truth)))[early], elapsed[early])
-    turned = truth
-    for _ in range(4):
-        turn = elapsed[:, None] * rate
-        angle = np.linalg.norm(turn, axis=1, keepdims=True) + 1e-300
-        frame = np.hstack([np.cos(angle / 2), np.sin(angle / 2) * turn / angle])
-        turned = times(frame, truth)
-        rest = _small_turns(times(q, conjugate(turned)))
-        rate = rate + _rate(rest, elapsed)
-    # The frame turns as much one way as what is seen from it turns the other way.
-    return -rate, turned
-
-
-def _rate(turns: Floats, elapsed: Floats) -> Floats:
-    """Return the constant rate that fits small turns best."""
-    squares = max(float(np.sum(elapsed**2)), 1e-300)
-    return np.asarray(np.sum(turns * elapsed[:, None], axis=0) / squares)
-
-
-def _small_turns(q: Floats) -> Floats:
-    return np.asarray(2 * q[:, 1:] * np.where(q[:, :1] < 0, -1.0, 1.0))

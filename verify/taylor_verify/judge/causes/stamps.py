@@ -154,6 +154,6 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
         rows = np.diff(late)[jumps] / spacing * answer.stride
         if np.max(np.abs(rows - np.rint(rows))) < _PATTERN:
             firsts, off = answer.places[jumps + 1] + 1, np.cumsum(np.rint(rows)).astype(int)
-            told = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
-            return f"rows dropped or doubled: row k holds the state {', '.join(told)}"
+            words = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
+            return f"rows dropped or doubled: row k holds the state {', '.join(words)}"
     return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"

@@ -264,17 +264,17 @@ def _written(value: float) -> str:
 
 def _repeated(loads: Loads) -> Iterator[Number]:
     """Yield the numbers that several texts have, of one key or of all, to be changed in all of them."""
-    found: dict[str, dict[str, list[Key]]] = {}
+    by_key: dict[str, dict[str, list[Key]]] = {}
     for place in places(loads):
         if isinstance(place.entry, str):
             for key, match in product(("", key_of(place)), LITERAL.finditer(place.entry)):
-                of_key = found.setdefault(key, {})
+                of_key = by_key.setdefault(key, {})
                 is_entry = _rational(place.entry) is not None
                 own = entry(place) if is_entry else literal(place, match.start())
                 of_key.setdefault(match.group(), []).append(own)
-    for key, of_key in found.items():
+    for key, of_key in by_key.items():
         for text, keys in of_key.items():
-            is_part = not key or len(keys) < len(found[""][text])
+            is_part = not key or len(keys) < len(by_key[""][text])
             if len(keys) > 1 and is_part and float(text):
                 name = f"the number {text} in " + (f"all of {key}" if key else "all texts")
                 put = partial(_put_all, loads, key, text)

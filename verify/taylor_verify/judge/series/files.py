@@ -12,10 +12,11 @@ from typing import Any, Final, TypeVar
 
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.judge.judgement import Judgement
-from taylor_verify.judge.series.order import STEP, Sample, orders
+from taylor_verify.judge.series.order import Sample, orders
 from taylor_verify.records.answers import Order
 from taylor_verify.records.faults import Refused, brief
 from taylor_verify.records.json_text import complete
+from taylor_verify.records.order_of_points import STEP
 from taylor_verify.records.quantities import INITIAL, states_among
 from taylor_verify.records.showing import counts, html_table
 from taylor_verify.records.status import Status

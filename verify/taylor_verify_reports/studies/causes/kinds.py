@@ -16,7 +16,7 @@ from taylor_verify_reports.studies.causes.bodies import Floats, Sample
 from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind, of, right, setting
 from taylor_verify_reports.studies.causes.kinds_of_loads import OF_LOADS
 from taylor_verify_reports.studies.causes.kinds_of_rows import LATER, OF_ROWS
-from taylor_verify_reports.studies.causes.kinds_of_steps import OF_STEPS
+from taylor_verify_reports.studies.causes.kinds_of_steps import DAMPING_STEP, OF_STEPS
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
     Rows,
@@ -367,4 +367,4 @@ SIMPLE: Final = (
     Kind("Radau at 1e-6", (), _coarse("Radau", 1e-6)),
     Kind("load for a while", ("from t =",), of(_for_a_while), ("free", "wheels", *FLUID)),
 )
-KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS, *LATER)
+KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS, *LATER, DAMPING_STEP)

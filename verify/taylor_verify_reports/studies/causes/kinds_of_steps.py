@@ -137,7 +137,6 @@ OF_STEPS: Final = (
         _of_momentum(is_turned=False),
         RIGID,
     ),
-    Kind("damping step", ("damping step", "attitude turned by"), by(_damped, mean)),
     Kind("semi-implicit Euler", ("explicit Euler", "attitude turned by"), by(euler, _end)),
     Kind(
         "attitude by Euler steps",
@@ -146,4 +145,8 @@ OF_STEPS: Final = (
     ),
     Kind("RK4 and another load", ("RK4", "force", "couple", "moment"), _loaded),
     Kind("steps that do not divide the rows", (), _uneven),
+)
+# A kind that came later stands last among all: a kind is drawn by its place.
+DAMPING_STEP: Final = Kind(
+    "damping step", ("damping step", "attitude turned by"), by(_damped, mean)
 )

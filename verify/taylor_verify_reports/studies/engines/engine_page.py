@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from taylor_verify.words.cells import NOTHING, figure
 from taylor_verify.words.markdown import bullets, code, prose, table
+from taylor_verify.words.orders import order_sentence
 from taylor_verify.words.page_parts import whole
 from taylor_verify_reports.studies.engines.document import STATES, Board, EngineRow, Standing
 from taylor_verify_reports.studies.engines.entry import EntryList
@@ -81,7 +82,7 @@ def _cells(
 def _order(setting: EngineSetting, scene: str, states: Sequence[str]) -> str:
     """Return a line with the observed orders of one setting; empty for a setting without steps."""
     orders = [setting.order(scene, name) for name in states]
-    sentences = [prose(order.sentence) for order in orders if order]
+    sentences = [prose(order_sentence(order)) for order in orders if order]
     words = [setting.version, setting.words, "as shipped" * setting.shipped]
     named = prose(" ".join(filter(None, words)))
     return f"{named}. {'. '.join(sentences)}." if sentences else ""

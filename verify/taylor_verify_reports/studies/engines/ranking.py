@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf, log10
 
-from taylor_verify.judge.series.order import read_order
 from taylor_verify.records.answers import Order, OrderPoint
 from taylor_verify.records.json_text import finite
+from taylor_verify.records.order_of_points import read_order
 from taylor_verify_reports.studies.engines.document import EngineRow, EnginesStudy
 
 
