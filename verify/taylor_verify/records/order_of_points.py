@@ -32,8 +32,8 @@ def read_order(
 ) -> Order:
     """Return the order that the errors of a quantity show, without its sentence.
 
-    ``points`` begin with the largest step; ``digits`` are the printed digits of the file of each, where it is
-    one. Raises ValueError for two points with the same step.
+    ``points`` begin with the largest step; ``digits`` are the printed digits of the file of each, where it
+    is one. Raises ValueError for two points with the same step.
     """
     points = tuple(_with_local_orders(points))
     fit = convergence(

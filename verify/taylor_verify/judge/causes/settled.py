@@ -117,7 +117,9 @@ class Choice:
             if better is not None and better.worst < proof.worst:
                 proof = better
         part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
-        allowed = min(max(most * part, self._least), CAPS[min(candidate.count, 1)])
+        # The rounding of a file allows two faults nothing: near to it a pair fits what one fault does not.
+        cap = PAIR if candidate.kind == "pair" else CAPS[min(candidate.count, 1)]
+        allowed = min(max(most * part, self._least), cap)
         return proof if proof.worst <= allowed and not proof.candidate.is_nothing else None
 
     def _left(self, candidate: Candidate) -> _Proven | None:
