@@ -87,7 +87,7 @@ def asked(scene: Scene, states: list[State], digits: int) -> Motion | None:
     here = arcs(scene, states, [Fraction(0)] * 3, digits_of(scene), TIMES)
     with precision():
         derivatives = led(scene)
-        motion = neighbours(scene, SPANS, exact, in_mpfr(here), digits, derivatives=derivatives)
+        motion = neighbours(scene, SPANS, exact, in_mpfr(here), derivatives).to(digits)
     if motion is None:
         return None
     return Motion({name: to_mpf(rows) for name, rows in motion.quantities.items()}, motion.radius)
@@ -161,7 +161,7 @@ def test_no_answer_after_too_many_steps() -> None:
         exact = in_mpfr(solution(scene).motion(TIMES, DIGITS))
         with precision():
             far = [10**4 * span for span in SPANS]
-            assert neighbours(scene, far, (exact, exact), exact, 16) is None
+            assert neighbours(scene, far, (exact, exact), exact).to(16) is None
 
 
 def test_a_wrong_end_of_the_exact_motion_is_noticed() -> None:
@@ -172,7 +172,7 @@ def test_a_wrong_end_of_the_exact_motion_is_noticed() -> None:
         exact = [in_mpfr(solution(scene).motion(times, DIGITS)) for times in (TIMES, TIMES)]
         here = in_mpfr(arcs(scene, states, [Fraction(0)] * 3, DIGITS, TIMES))
         with precision():
-            assert neighbours(scene, SPANS, (exact[0], exact[1]), here, 16) is None
+            assert neighbours(scene, SPANS, (exact[0], exact[1]), here).to(16) is None
 
 
 def test_too_low_an_order_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

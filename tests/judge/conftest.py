@@ -1,4 +1,4 @@
-"""What tests share that are about verdicts, and not about the likely causes of a failure."""
+"""Fixtures of tests that are about verdicts, and not about the likely causes of a failure."""
 
 from __future__ import annotations
 

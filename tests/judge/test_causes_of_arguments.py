@@ -248,7 +248,7 @@ def test_loads_that_do_so_here_and_there_have_no_name(
 
 
 def test_a_clock_takes_the_time_of_the_loads_with_it() -> None:
-    """Of a motion that runs by a clock of its own the clock is named, and no load of another pace."""
+    """The clock of a motion that runs by one of its own is named, and no load of another pace."""
     assert names(TIMED, TIMED, Fraction(101, 100)) == ["clock"]
 
 

@@ -138,7 +138,7 @@ def test_damping_that_no_scene_has_is_named_with_its_step(scene: str, law: str) 
 
 
 def test_a_factor_that_is_short_in_no_law_is_that_of_any() -> None:
-    """What c is cannot be told: the sentence says so."""
+    """The value of c cannot be told, and the sentence says so."""
     assert any(
         sentence.startswith("damping step: omega times 1 - c h, or 1/(1 + c h) or exp(-c h) by ")
         for sentence in stepped(FREE, 1 - 0.0512345 * H).values()

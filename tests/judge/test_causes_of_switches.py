@@ -55,7 +55,7 @@ def sentences(changed: str) -> list[str]:
 def test_a_load_that_begins_or_ends_at_another_time_is_named(
     old: str, new: str, words: str
 ) -> None:
-    """One switch at another time, however far, has its name; so have all that are late together."""
+    """A switch at another time has its name, however far it is; so have all that are late together."""
     (sentence,) = sentences(PULSE.replace(old, new))
     assert sentence.startswith(words)
 

@@ -96,7 +96,7 @@ def test_every_kind_of_fault_is_there() -> None:
 
 
 def sort_of(question: Any) -> tuple[bool, ...]:
-    """What a body is in and has: a fluid, wheels, written loads, states."""
+    """Return the parts of a scene that make its sort: a fluid, wheels, written loads, states."""
     words = ('"kirchhoff"', "rotor =", "[states]")
     return *(word in question["scene"] for word in words), bool(WRITTEN.search(question["scene"]))
 

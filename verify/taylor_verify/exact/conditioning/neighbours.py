@@ -55,15 +55,13 @@ def neighbours(
     spans: Sequence[Fraction],
     exact: tuple[Motion, Motion],
     beside: Motion,
-    digits: int,
     derivatives: Floats | None = None,
-) -> Motion | None:
+) -> Neighbours:
     """Return the ends of arcs of these ``spans`` that start from the states ``beside`` an exact motion.
 
     ``exact`` are its rows at the beginnings and at the ends of the arcs; row k of ``beside`` belongs to
-    the k-th beginning. Motions are in MPFR's numbers, at the ambient precision. None if the estimated
-    error is not far below ``digits`` digits of the motion. Under written loads, which are not known here,
-    the ``derivatives`` of the motion over the arcs lead the differences on.
+    the k-th beginning. Motions are in MPFR's numbers, at the ambient precision. Under written loads, which
+    are not known here, the ``derivatives`` of the motion over the arcs lead the differences on.
     """
     arcs = _Arcs(scene, Flow.of(scene), kind_of(scene.body))
     begin, end = exact
@@ -74,8 +72,24 @@ def neighbours(
         with np.errstate(all="ignore"):  # what is not finite is not negligible
             times = np.array([float(span / arcs.flow.time) for span in spans])
             ends, errors = arcs.followed(exact, start, float(size), times)
-    is_close = arcs.is_negligible(errors, size, end, digits + _MORE_DIGITS)
-    return arcs.moved(end, ends, size) if is_close else None
+    return Neighbours(arcs, end, ends, errors, size)
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """The ends of arcs beside the ``exact`` ones: their differences in units of ``size``, with errors."""
+
+    arcs: _Arcs
+    exact: Motion
+    ends: Floats
+    errors: Floats
+    size: Any
+
+    def to(self, digits: int) -> Motion | None:
+        """Return the ends; None if the estimated error is not far below so many digits of the motion."""
+        arcs, more = self.arcs, digits + _MORE_DIGITS
+        is_close = arcs.is_negligible(self.errors, self.size, self.exact, more)
+        return arcs.moved(self.exact, self.ends, self.size) if is_close else None
 
 
 @dataclass(frozen=True)

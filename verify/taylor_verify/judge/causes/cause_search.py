@@ -159,9 +159,10 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
     if cause is not None and is_stepped:
         # The steps of the motion explain the attitude, or another update does, or the sentence says so.
-        left = cause.leaves.get("attitude", 1.0)
-        of_motion = {name: part for name, part in cause.leaves.items() if name != "attitude"}
-        leaves = of_motion if of_attitude else {**of_motion, "attitude": left}
+        leaves = {"attitude": 1.0, **cause.leaves}
+        left = leaves.pop("attitude")
+        if of_attitude is None:
+            leaves["attitude"] = left
         causes = [replace(each, leaves=leaves) if each is cause else each for each in causes]
     if of_attitude is not None:
         if causes:

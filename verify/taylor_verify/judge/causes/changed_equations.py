@@ -309,9 +309,9 @@ class Equations:
         read, values = getattr(self.acting, what), None
         if when.size == 1:
             # Floats are ten times as fast as arrays of one number; what they refuse is no number there.
-            held = [] if taken is None else [taken[0, 0]]
+            inputs = [] if taken is None else [taken[0, 0]]
             with suppress(ArithmeticError, ValueError):
-                values = read(when[0, 0], state[0, 0], *held)
+                values = read(when[0, 0], state[0, 0], *inputs)
         if values is None:
             values = read(when, state, *([] if taken is None else [taken]))
         stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values

@@ -28,16 +28,12 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         return ""
     other, lines, n = right.changed(changes), dict[str, str](), right.size
     if "acting" in changes:
-        before = _entries_by_key(right.loads)
-        after = _entries_by_key(other.loads)
-        lines |= {key: words for key, words in after.items() if before.get(key) != words}
+        lines |= _changed_entries(right.loads, other.loads)
     if not _is_written(other, changes):
         return ""
     if "mass" in changes:
         if right.loads is not None and names_inertia(right.loads):
-            before = _entries_by_key(right.loads)
-            after = _entries_by_key(with_inertia(right.loads, right.mass))
-            lines |= {key: words for key, words in after.items() if before.get(key) != words}
+            lines |= _changed_entries(right.loads, with_inertia(right.loads, right.mass))
         rows = [_list(map(number, row)) for row in _symmetric(other.mass)]
         lines["inertia" if n == 3 else "mass_matrix"] = _list(rows)
     if "rotor" in changes and np.any([right.rotor, other.rotor]):
@@ -50,6 +46,12 @@ def changed_scene(right: Equations, changes: Changes) -> str:
         for key, first in zip(("moment",) if n == 3 else ("force", "couple"), (0, 3), strict=False):
             lines[key] = _list(texts[first : first + 3])
     return "; ".join(f"{key} = {words}" for key, words in lines.items())
+
+
+def _changed_entries(loads: Loads | None, other: Loads | None) -> dict[str, str]:
+    """Return the keys whose entries are others in other loads, with these entries."""
+    before, after = _entries_by_key(loads), _entries_by_key(other)
+    return {key: words for key, words in after.items() if before.get(key) != words}
 
 
 def _entries_by_key(loads: Loads | None) -> dict[str, str]:

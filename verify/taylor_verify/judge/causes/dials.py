@@ -42,10 +42,10 @@ class Dials:
 
     def turned(self, keys: Iterable[tuple[Key, float]]) -> Changes:
         """Return the change of the scene by other values of some dials."""
-        held = self.values.copy()
+        values = self.values.copy()
         for key, value in keys:
-            held[self.places[key]] = value
-        return {"acting": self.acting, "held": held}
+            values[self.places[key]] = value
+        return {"acting": self.acting, "held": values}
 
 
 def is_readable(place: Place) -> bool:

@@ -136,6 +136,13 @@ class Answer:
         """Return the quantity of the verdicts that a group belongs to."""
         return "impulse" if self.n == 6 and group in self.groups else group
 
+    def rows(self, motion: Motion, group: str) -> Floats:
+        """Return the rows of a group of vectors, of the attitude or of the centre, which a motion has."""
+        frame = {"attitude": motion.q, "centre": motion.c}
+        rows = frame[group] if group in frame else motion.v[:, self.groups[group]]
+        assert rows is not None
+        return rows
+
     def errors(self, motion: Motion) -> dict[str, Floats]:
         """Return the errors of the rows against a motion: relative ones of v, angles, distances."""
         errors = {

@@ -179,12 +179,8 @@ def _left(answer: Answer, name: str, rows: Floats) -> float:
 
 def _group(answer: Answer, name: str) -> tuple[Floats, Floats, float]:
     """Return the file's rows of a group of vectors, the truth, and the size of an error of 1."""
-    if name == "centre":
-        assert answer.file.c is not None
-        assert answer.truth.c is not None
-        return answer.file.c, answer.truth.c, 1.0
-    part = answer.groups[name]
-    return answer.file.v[:, part], answer.truth.v[:, part], float(answer.sizes[part][0])
+    size = 1.0 if name == "centre" else float(answer.sizes[answer.groups[name]][0])
+    return answer.rows(answer.file, name), answer.rows(answer.truth, name), size
 
 
 def numbers(values: Floats) -> str:

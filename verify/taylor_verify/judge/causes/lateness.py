@@ -41,7 +41,7 @@ def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
         return
     part, scale = _part(answer, name)
     states = true_states(answer, part.stop)
-    file = _file(answer, name).T
+    file = answer.rows(answer.file, name).T
     if name == "attitude":
         file = file * np.sign(np.sum(file * states[0, part], axis=0))
     spacing = float(np.median(np.abs(np.diff(answer.times))))
@@ -73,15 +73,6 @@ def _part(answer: Answer, name: str) -> tuple[slice, float]:
     if name == "centre":
         return slice(n + 4, n + 7), answer.reach
     return answer.groups[name], float(answer.sizes[answer.groups[name]][0])
-
-
-def _file(answer: Answer, name: str) -> Floats:
-    file = answer.file
-    rows = {"attitude": file.q, "centre": file.c}.get(
-        name, file.v[:, answer.groups.get(name, slice(0))]
-    )
-    assert rows is not None
-    return rows
 
 
 def _words(late: float, spacing: float) -> str:

@@ -47,9 +47,8 @@ def faults_of_bodies(right: Equations) -> Iterator[Family]:
         if not (name.startswith("principal axes") or np.allclose(coriolis_of(mass), 0.0)):
             yield fault(f"{name} in the {_term(right)} alone", "Coriolis matrix", {"extra": extra})
         if is_body and (right.size == 6 or name.startswith("products")):
-            changes, where = {"mass": mass, "extra": -extra}, "mass matrix"
-            if right.size == 3:
-                where = "tensor that divides"
+            changes = {"mass": mass, "extra": -extra}
+            where = "mass matrix" if right.size == 6 else "tensor that divides"
             yield fault(f"{name} in the {where} alone", "Coriolis matrix", changes)
 
 

@@ -10,6 +10,7 @@ from typing import Any, Final, final
 
 import numpy as np
 
+from taylor_verify.judge.causes.float_answer import Places
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.material import are_known, equations_of
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
@@ -55,8 +56,9 @@ class QuickMotion:
         order = np.argsort(since)
         self._begins, self._states = since[order], np.hstack([*rows.values()])[order]
         self._is_dense = True
-        middles = (self._begins[1:] + self._begins[:-1]) / 2
-        self._extend(np.append(middles, self._begins[-1:]), np.insert(middles, 0, self._begins[0]))
+        middles, count = (self._begins[1:] + self._begins[:-1]) / 2, len(since)
+        both_sides = np.concatenate([np.arange(count - 1), np.arange(1, count)])
+        self._extend(both_sides, np.tile(middles, 2))
 
     @staticmethod
     def is_possible(scene: Scene, known: Mapping[str, Any]) -> bool:
@@ -69,12 +71,9 @@ class QuickMotion:
 
         It is NaN where float64 does not follow.
         """
-        ends = np.copy(self._begins), np.copy(self._begins)
-        ends[0][-1], ends[1][0] = (
-            max(np.max(times), self._begins[-1]),
-            min(np.min(times), self._begins[0]),
-        )
-        self._extend(*ends)
+        first, last = self._begins[0], self._begins[-1]
+        until = np.array([min(np.min(times), first), max(np.max(times), last)])
+        self._extend(np.array([0, len(self._begins) - 1]), until)
         if not self._is_dense:
             return None
         begins, last = self._begins, len(self._begins) - 1
@@ -88,11 +87,10 @@ class QuickMotion:
             motion["attitude"] = rotations(motion["attitude"])
         return motion
 
-    def _extend(self, right: Floats, left: Floats) -> None:
-        """Follow each known state to the right and to the left until these times, less than an arc away."""
+    def _extend(self, places: Places, until: Floats) -> None:
+        """Follow some of the known states until these times, less than an arc away."""
         begins, rows = [self._begins], [self._states]
-        now, states = np.tile(self._begins, 2), np.tile(self._states, (2, 1))
-        until = np.concatenate([right, left])
+        now, states = self._begins[places], self._states[places]
         for _ in range(self._most_arcs * self._is_dense):
             omega = self._right.velocities(now, states.T[None])[0, -3:]
             with np.errstate(divide="ignore", invalid="ignore"):

@@ -186,10 +186,8 @@ class _Search:
         """Return the rounded scene of a world at the file's rows, and its solution with the attitude."""
         track = {"attitude", *(GROUPS[group].quantity for group in self.file.groups)}
         track &= set(TRACKED[self.scene.model])
-        asked, times = (
-            replace(world.scene, track=frozenset(track)),
-            world.times(self.file.times[k] for k in self.rows),
-        )
+        asked = replace(world.scene, track=frozenset(track))
+        times = world.times(self.file.times[k] for k in self.rows)
         if asked.body.loads is not None:
             given = adopt(asked, self.rung, times).given
             return given, solution(given)

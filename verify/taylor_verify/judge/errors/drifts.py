@@ -167,13 +167,10 @@ class Drifts:
                 for before, rows in ((end.truth, truth), (end.answer, answer))
             )
             derivatives = self._derivatives(begins, elapsed)
-
-            def beside_exact(digits: int) -> Motion | None:
-                return neighbours(scene, spans, (earlier, truth), beside, digits, derivatives)
-
-            arc_ends = beside_exact(self._digits)
+            near = neighbours(scene, spans, (earlier, truth), beside, derivatives)
+            arc_ends = near.to(self._digits)
             if arc_ends is None:
-                rough = beside_exact(_FEW_DIGITS)
+                rough = near.to(_FEW_DIGITS)
                 arc_ends = rough if rough is not None and self._is_clear(answer, rough) else None
         if arc_ends is None:
             states = _states(scene, own)
