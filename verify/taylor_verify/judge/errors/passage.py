@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.errors.shifted import Compared, Floats, Run, is_finite
+from taylor_verify.judge.errors.shifted import Compared, Floats, Run
 
 # Points between the first and the last row, and on either side of them.
 _BETWEEN: Final = 2048
@@ -46,7 +46,7 @@ class Passage:
     @property
     def is_followed(self) -> bool:
         """True if the motion is known at all of these times."""
-        return self.points is not None and is_finite(self.points)
+        return self.points is not None
 
     def distances(self, compared: Compared) -> Floats:
         """Return at most the distance of each row of the answer from a motion that is followed.

@@ -131,7 +131,7 @@ def _shift(compared: Compared, start: Shifted, passage: Passage) -> Shift:
     if compared.largest(start) > courses.FAR and passage.is_followed:
         if courses.reach(start) <= passage.around and _passes_too_far(compared, start, passage):
             return _without_evaluation(compared, start)
-        quick = _searched(replace(compared, run=replace(compared.run, is_quick=True)), start)
+        quick = _searched(replace(compared, is_quick=True), start)
         if quick.kind is Kind.NONE:
             return quick
         if (exact := _settled(compared, start, quick)) is not None:

@@ -27,7 +27,6 @@ from taylor_verify.numbers.precision import power_of_two
 from taylor_verify.records.quantities import QUANTITIES, Measure
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.scenes.motion import Clock, Motion
-from taylor_verify.scenes.mpfr import real
 from taylor_verify.scenes.scene import Scene
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -40,6 +39,8 @@ _SEARCH_SAMPLES: Final = 16
 _SEARCH_DIGITS: Final = 15
 # So many arcs in float64 one behind the other take less time than a closed form.
 _FEW_ARCS: Final = 32
+# Two times nearby, in the unit of time in which the motion is of size one, tell its rates.
+_ASIDE: Final = 2.0**-7
 # A verdict has no numbers below 2^-1000; above 2^-960 a double keeps all 53 bits.
 _LEAST_EXPONENT: Final = -1000
 _LEAST: Final = 2.0**-960
@@ -120,17 +121,13 @@ class Shifted:
 
 @dataclass(frozen=True)
 class Run:
-    """An answer and the exact motion, for all quantities of a scene.
-
-    If it ``is_quick``, the motion at other times than the samples is taken in float64.
-    """
+    """An answer and the exact motion, for all quantities of a scene."""
 
     scene: Scene
     exact: Solution
     truth: Motion
     answer: Motion
     digits: int
-    is_quick: bool = False
 
     @cached_property
     def rates(self) -> Rates:
@@ -184,12 +181,6 @@ class Run:
 
     def motion(self, elapsed: Sequence[Fraction], digits: int) -> Motion | None:
         """Return the exact motion; None if it cannot be computed."""
-        quick = self.along(_floats(elapsed)) if self.is_quick else None
-        if quick is not None:
-            if not is_finite(quick):
-                return None
-            rows = {name: real(each, self.truth[name]) for name, each in quick.items()}
-            return Motion(rows, np.array([mp.zero] * len(elapsed), dtype=object))
         try:
             return self.exact.motion(elapsed, digits)
         except Unsettled:
@@ -198,10 +189,14 @@ class Run:
 
 @dataclass(frozen=True)
 class Compared:
-    """A quantity of an answer, compared with the exact motion at any shifts."""
+    """A quantity of an answer, compared with the exact motion at any shifts.
+
+    If it ``is_quick``, the motion at other times than the samples is taken in float64.
+    """
 
     run: Run
     errors: Errors
+    is_quick: bool = False
 
     def without(self, strays: Collection[int]) -> Compared:
         """Return the comparison without these samples."""
@@ -231,11 +226,31 @@ class Compared:
         """Return the comparison with the exact motion at t - shifts; None if it cannot be computed."""
         run = self.run
         elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
+        quick = self._quickly(_floats(elapsed), shifts) if self.is_quick else None
+        if quick is not None:
+            return quick
         motion = run.motion(elapsed, run.digits)
         if motion is None:
             return None
         fit = self.fit(motion, rates(run.scene, motion), shifts)
         return fit if fit.is_finite else None
+
+    def _quickly(self, times: Floats, shifts: Shifts) -> Shifted | None:
+        """Return the comparison with the motion in float64; its rates are those of two times nearby."""
+        run = self.run
+        unit = power_of_two(run.rates.time)
+        aside = _ASIDE * float(unit)
+        motions = [run.along(times + side * aside) for side in (-1, 0, 1)]
+        if any(motion is None for motion in motions):
+            return None
+        before, here, after = (self.over_scales(motion) for motion in motions if motion)
+        error = self.over_scales(run.answer.quantities) - here
+        size = 2.0 ** frexp(float(np.max(np.abs(error))))[1]
+        velocity = (after - before) / (2 * _ASIDE)
+        acceleration = (after - 2 * here + before) / _ASIDE**2
+        return Shifted(
+            shifts, error / size, velocity, acceleration, size, unit, np.zeros(len(shifts))
+        )
 
     def fit(self, truth: Motion, derivatives: Rates, shifts: Shifts) -> Shifted:
         error, size = self._relative(truth.quantities)
@@ -340,11 +355,6 @@ class Compared:
         largest = max(abs(value) for value in exact.flat)
         exponent = max(int(mp.mag(largest)), _LEAST_EXPONENT) if largest else 0
         return (exact * mp.ldexp(1, -exponent)).astype(float), 2.0**exponent
-
-
-def is_finite(motion: Mapping[str, Any]) -> bool:
-    """Return True if no number is NaN, as float64 leaves it where it does not follow."""
-    return all(np.all(np.isfinite(rows.astype(float))) for rows in motion.values())
 
 
 def _floats(times: Sequence[Fraction]) -> Floats:
