@@ -131,8 +131,10 @@ def material(
     instants = [Fraction(0), *(given.clock.elapsed[k] for k in rows)]
     # Texts may read q1 q2 q3, whose signs are those of the scene's start.
     first = np.array(given.initial.attitude, dtype=float)
-    truth = exact.at(instants, has_momenta).signed_as(first).at(np.s_[1:])
-    start = exact.at(instants[:1], has_momenta=False).signed_as(first)
+    motion = exact.at(instants, has_momenta).signed_as(first)
+    start, truth = motion.at(np.s_[:1]), motion.at(np.s_[1:])
+    if has_momenta:
+        start = replace(start, v=start.v @ right.inverse.T)
     assert truth.q is not None
     compared = file.at(rows).signed_as(truth.q[0])
     return Answer(

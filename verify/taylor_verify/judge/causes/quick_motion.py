@@ -23,12 +23,12 @@ from taylor_verify.scenes.scene import Scene
 # The states at times.
 Course = Callable[[Floats], Any]
 
-# From a known row the motion is followed in arcs that turn by at most so many radians. An arc has so many
-# steps, doubled as often as this until the ends of some arcs, evenly chosen and the longest, change by less
-# than this part.
+# From a known row the motion is followed in arcs that turn by about so many radians, or change the momenta
+# by as large a part. An arc has so many steps, doubled as often as this until the ends of some arcs, evenly
+# chosen and the longest, change by less than this part.
 _ARC: Final = 1.0
 _STEPS: Final = 1
-_DOUBLINGS: Final = 4
+_DOUBLINGS: Final = 5
 _SETTLED: Final = 1e-6
 _SAMPLED: Final = 16
 # Arcs one behind the other, from a row to the middle between two.
@@ -37,6 +37,9 @@ MOST_ARCS: Final = 1024
 # halving makes a cubic 16 times better.
 _FORETOLD: Final = 1e-6
 _MOST_STATES: Final = 1 << 16
+# What is taken for the size of quantities: a unit quaternion changes by half the angle of a turn, and the
+# path follows from the others.
+_SIZES: Final = {"attitude": 0.5, "centre": np.inf}
 
 
 @final
@@ -65,6 +68,8 @@ class QuickMotion:
         self._edges = np.cumsum([part.shape[1] for part in rows.values()])[:-1]
         order = np.argsort(since)
         self._begins, self._states = since[order], np.hstack([*rows.values()])[order]
+        largest = {name: np.max(np.linalg.norm(part, axis=1)) for name, part in rows.items()}
+        self._sizes = [_SIZES.get(name, size or np.inf) for name, size in largest.items()]
         self._course: Course | None = None
         self._is_lost = False
         self._extend(*self._to_middles())
@@ -103,9 +108,14 @@ class QuickMotion:
 
     def _arcs(self, begins: Floats, states: Floats) -> Floats:
         """Return how long each state may be followed in one arc."""
-        omega = self._right.velocities(begins, states.T[None])[0, -3:]
+        rates = np.split(self._rates(begins, states), self._edges, axis=1)
+        parts = zip(rates, self._sizes, strict=True)
+        paces = [np.linalg.norm(rate, axis=1) / size for rate, size in parts]
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray(_ARC / np.linalg.norm(omega, axis=0))
+            return np.asarray(_ARC / np.max(paces, axis=0))
+
+    def _rates(self, times: Floats, states: Floats) -> Floats:
+        return np.asarray(self._right.rates(times, states.T[None])[0].T)
 
     def _extend(self, places: Places, until: Floats) -> None:
         """Follow some of the known states until these times."""
@@ -137,11 +147,10 @@ class QuickMotion:
             return None
         if not len(gaps):
             return lambda times: np.repeat(states, len(times), axis=0)
-        size = np.max(np.abs(states), axis=0)
+        parts = np.split(states, self._edges, axis=1)
+        size = np.concatenate([np.full(part.shape[1], np.max(np.abs(part))) for part in parts])
         while len(t) < _MOST_STATES:
-            course: Course = CubicHermiteSpline(
-                t, states, self._right.rates(t, states.T[None])[0].T
-            )
+            course: Course = CubicHermiteSpline(t, states, self._rates(t, states))
             middles = (t[gaps] + t[gaps + 1]) / 2
             between = self._moved(t[gaps], states[gaps], middles - t[gaps])
             is_off = np.any(np.abs(between - course(middles)) > _FORETOLD * size, axis=1)
