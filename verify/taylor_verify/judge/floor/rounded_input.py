@@ -68,12 +68,14 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     """Return the response to a rounding of each nonzero number of the body and of the start.
 
     If the rung cannot represent every time, such as 0.1, the times are changed too. Where the motion has no
-    closed form the response is that of its derivative: each changed motion would cost as much as the truth.
-    Elsewhere it is
-    computed at the samples of the floor, for the scene ``asked``: near an unstable axis the response is
-    large during short passages, which evenly chosen samples could miss.
+    closed form, or loses it by such a change, the response is that of its derivative: each changed motion
+    would cost as much as the truth. Elsewhere it is computed at the samples of the floor, for the scene
+    ``asked``: near an unstable axis the response is large during short passages, which evenly chosen
+    samples could miss.
     """
-    if is_of_run(given) or differs_dearly(given):
+    beside = [*_moved(given, rung)]
+    are_dear = any(solution(scene).route == "taylor" for scene in beside)
+    if is_of_run(given) or are_dear or differs_dearly(given):
         return _by_derivative(given, rung)
     nodes = looked_at(orbit_of(given if asked is None else asked))
     instants = tuple(given.clock.instants[k] for k in nodes)
@@ -81,7 +83,7 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     digits, numbers = truth_digits(rung.bits, _MORE_DIGITS), len(_numbers(scene))
     with mp.workprec(working_bits(rung.bits)):
         gates = _Gates(scene, _motion(scene, digits))
-        moved = [gates.squares(_motion(s, digits)) for s in _moved(scene, rung)]
+        moved = [gates.squares(_motion(replace(s, clock=scene.clock), digits)) for s in beside]
         # Single changes are summed, random draws are averaged.
         draws = 1 if numbers <= _MOST_DRAWS else len(moved)
         names = moved[0] if moved else ()
