@@ -124,13 +124,24 @@ def check(
         For what is neither a callable nor a trajectory, for a name that is no rung, for a tolerance as
         `run`, for ``columns`` of a callable, and for ``steps`` that are no step for each answer of a list.
     """
-    answer: Any = solve_or_file
-    if event is not None:
-        return _of_events(scene, answer, event, rung, tolerance)
+    from taylor_verify.judge.tolerances import tolerances
     from taylor_verify.numbers.precision import rung as rung_named
+    from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.registry import PYTHON
     from taylor_verify.solvers.solver import Solver
 
+    question: Any = scene
+    answer: Any = solve_or_file
+    is_path = isinstance(answer, str | PathLike)
+    if event is not None:
+        from taylor_verify.exact.request import exact_times
+        from taylor_verify.judge.events import given_times, judge_events
+        from taylor_verify.solvers.files.events import read_events
+
+        scene = as_scene(question)
+        times = read_events(answer) if is_path else exact_times(given_times(answer))
+        allowed = tolerances(tolerance, [scene]).every
+        return judge_events(scene, event, times, rung_named(rung), allowed)
     is_named = isinstance(answer, str) and answer.startswith(PYTHON)
     if callable(answer) or is_named or isinstance(answer, Solver):
         if columns:
@@ -148,8 +159,6 @@ def check(
         )
     from taylor_verify.judge.files.judgement import judge_file
     from taylor_verify.judge.series.files import judge_files
-    from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.scenes.reading.reader import as_scene
     from taylor_verify.solvers.files.file import read
     from taylor_verify.solvers.files.objects import pairs, trajectory
 
@@ -162,27 +171,5 @@ def check(
         raise ValueError(f"expected a list of files with {given}, got one answer @ {given}")
     wanted = pairs(columns)
     asked = tolerances(tolerance, [scene])
-    is_path = isinstance(answer, str | PathLike)
     file = read(answer, wanted, scene) if is_path else trajectory(answer, scene, wanted)
     return judge_file(file, scene, rung_named(rung), accept_conventions, partial, asked)
-
-
-def _of_events(
-    scene: Any,
-    answer: Any,
-    event: str,
-    rung: types.Rung | str,
-    tolerance: types.Tolerances | types.Tolerance,
-) -> types.EventsJudgement:
-    from taylor_verify.exact.request import exact_times
-    from taylor_verify.judge.events import given_times, judge_events
-    from taylor_verify.judge.tolerances import tolerances
-    from taylor_verify.numbers.precision import rung as rung_named
-    from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.solvers.files.events import read_events
-
-    scene = as_scene(scene)
-    is_path = isinstance(answer, str | PathLike)
-    times = read_events(answer) if is_path else exact_times(given_times(answer))
-    asked = tolerances(tolerance, [scene]).every
-    return judge_events(scene, event, times, rung_named(rung), asked)

@@ -15,7 +15,6 @@ import logging
 import os
 import shlex
 import shutil
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
@@ -34,6 +33,7 @@ from taylor_verify.judge.provenance import versions
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import DOCUMENT, converted
 from taylor_verify.records.regular_file import bounded_bytes
+from taylor_verify.records.replacement import replace_files
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.solvers.registry import PROCESS, PYTHON, solver_named
 from taylor_verify.solvers.solver import Solver
@@ -67,10 +67,7 @@ class Unfinished:
     def keep(self, job: Job, judgements: Sequence[Judgement]) -> None:
         """Store the judgements of a job; where nothing can be written, nothing is stored."""
         with suppress(OSError):
-            handle, name = tempfile.mkstemp(dir=self.folder)
-            with open(handle, "wb") as file:
-                file.write(to_bytes(judgements))
-            os.replace(name, self._file(job))
+            replace_files(self.folder, {self._file(job).name: to_bytes(judgements)})
 
     def forget(self) -> None:
         """Remove everything."""

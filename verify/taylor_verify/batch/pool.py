@@ -30,6 +30,8 @@ from typing import Any, Final, TypeVar
 from taylor_verify.batch.pickling import dumps, needs_script
 
 Result = TypeVar("Result")
+# A function and its arguments.
+Task = tuple[Callable[..., Any], tuple[Any, ...], dict[str, Any]]
 
 # Each worker has one core: a library of linear algebra that reads these starts no threads for the others.
 _ONE_THREAD: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -72,7 +74,7 @@ class LocalPool(Executor):
 
     def submit(self, fn: Callable[..., Result], /, *args: Any, **kwargs: Any) -> Future[Result]:
         """Schedule ``fn(*args, **kwargs)`` in a worker process and return its future."""
-        return self._threads.submit(self._call, fn, args, kwargs)
+        return self._threads.submit(self._call, (fn, args, kwargs))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers after their work; with ``cancel_futures`` after the work that has begun."""
@@ -92,12 +94,10 @@ class LocalPool(Executor):
                 worker.exit_status()
             self.shutdown()
 
-    def _call(
-        self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> Result:
+    def _call(self, task: Task) -> Any:
         worker = self._idle.get()
         try:
-            return worker.call(function, args, kwargs)
+            return worker.call(task)
         finally:
             self._idle.put(worker)
 
@@ -114,11 +114,9 @@ class _Worker:
         # Theirs alone now: when the process ends, the pipe does.
         theirs.close()
 
-    def call(
-        self, function: Callable[..., Result], args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> Result:
-        task = dumps((function, args, kwargs))
-        request = pickle.dumps((_script() if needs_script(task) else {}, task))
+    def call(self, task: Task) -> Any:
+        content = dumps(task)
+        request = pickle.dumps((_script() if needs_script(content) else {}, content))
         try:
             self._pipe.send_bytes(request)
             answer = self._pipe.recv_bytes()
@@ -127,7 +125,7 @@ class _Worker:
         value, error = pickle.loads(answer)
         if error is not None:
             raise error
-        return value  # type: ignore[no-any-return]
+        return value
 
     def close(self) -> None:
         self._pipe.close()

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import hypot
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.certify.enclosed_error import QUATERNION, Errors, Interval
+from taylor_verify.certify.enclosed_error import QUATERNION, Errors, Floats, Interval
 from taylor_verify.certify.pieces import Pieces, nearest
 from taylor_verify.records.certificate import Fault, InterpolantFinding
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # Errors between the nodes that are so much larger are those of the interpolant.
 _BETWEEN: Final = 10.0

@@ -14,9 +14,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from taylor_verify.certify.enclosed_error import Interval
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
+from taylor_verify.certify.enclosed_error import Floats, Interval
 
 _CLOSE: Final = 1.01
 _ROUNDS: Final = 14

@@ -1,4 +1,4 @@
-"""The verb `check`: the judgement of a trajectory in a file, or of several of one solver."""
+"""The verb `check`: the judgement of a file: a trajectory, several of one solver, or times of an event."""
 
 from __future__ import annotations
 
@@ -9,10 +9,17 @@ from typing import Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
+from taylor_verify.check import check
+from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
-from taylor_verify.cli.console import Page, bold, print_table
-from taylor_verify.cli.inputs import known_rungs, read_number, read_tolerances
+from taylor_verify.cli.console import Page, bold, print_table, titled
+from taylor_verify.cli.inputs import (
+    known_rungs,
+    parse_tolerance,
+    read_number,
+    read_scene,
+    read_tolerances,
+)
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import (
     figure,
@@ -23,6 +30,7 @@ from taylor_verify.cli.sentences import (
     status_text,
 )
 from taylor_verify.cli.standard_input import scene_and_files
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
 from taylor_verify.numbers.precision import rung
@@ -31,7 +39,7 @@ from taylor_verify.records.showing import counts
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile
-from taylor_verify.words.account import cause_line, note_line
+from taylor_verify.words.account import cause_line, event_lines, note_line
 from taylor_verify.words.opening import opening
 
 _NUMBERS: Final = (
@@ -50,9 +58,7 @@ def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
     (options.rung,) = known_rungs([options.rung])
     if options.event is not None:
-        from taylor_verify.cli.check_events import answer as answer_of_events
-
-        return answer_of_events(options)
+        return _of_events(options)
     with working(f"check {', '.join(options.files)}"):
         scene, files, steps = _asked(options)
     asked = outputs(options)
@@ -100,6 +106,25 @@ def _steps(options: argparse.Namespace) -> list[float] | None:
             raise WrongCall(f"expected a positive step, got {text!r} @ --steps")
     with wrong_calls(" (--steps)"):
         return checked_steps(steps, len(options.files))
+
+
+def _of_events(options: argparse.Namespace) -> Answer:
+    """Judge the times of an event in one file."""
+    if len(options.files) > 1:
+        raise WrongCall(f"expected one file with --event, got {len(options.files)}")
+    scene, (file,) = read_scene(options.scene), options.files
+    try:
+        with working(f"check {file}"), wrong_calls():
+            tolerance = parse_tolerance(options.tolerance)
+            judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
+    except Unsettled as doubt:
+        because = f"undecided: {doubt} @ {scene.name}"
+        content = {"scene": scene.name, "event": options.event, "because": because}
+        return Answer(UNDECIDED, content, str, [because])
+    status = PASS if judged.passed else FAIL if judged.is_wrong else UNDECIDED
+    content, event = judged.document(), judged.true.text
+    text = partial(titled, event, judged.heading.removeprefix(event), event_lines(content))
+    return Answer(status, content, text)
 
 
 # The text about a file.

@@ -6,7 +6,7 @@ import logging
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
@@ -27,21 +27,16 @@ PROGRESS: Final = logging.getLogger("taylor_verify.progress")
 @contextmanager
 def advancing() -> Iterator[Progress]:
     """Show a bar that advances as jobs end; a line for each where stderr is no terminal."""
-    if MANNER.quiet or not sys.stderr.isatty():
-        yield _say_progress
-        return
-    with _bar("compiling and solving"):
-        yield _log_progress
+    has_bar = sys.stderr.isatty() and not MANNER.quiet
 
+    def show(finished: int, total: int, job: Job | None) -> None:
+        if job is not None and has_bar:
+            PROGRESS.info(f"{finished}/{total} {job.name}", extra={"share": finished / total})
+        elif job is not None:
+            say(f"{finished}/{total} {job}")
 
-def _say_progress(finished: int, total: int, job: Job | None) -> None:
-    if job is not None:
-        say(f"{finished}/{total} {job}")
-
-
-def _log_progress(finished: int, total: int, job: Job | None) -> None:
-    if job is not None:
-        PROGRESS.info(f"{finished}/{total} {job.name}", extra={"share": finished / total})
+    with _bar("compiling and solving") if has_bar else nullcontext():
+        yield show
 
 
 @contextmanager

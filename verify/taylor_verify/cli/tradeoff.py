@@ -78,10 +78,10 @@ def answer(options: argparse.Namespace) -> Answer:
 
 def _draw(documents: Sequence[Mapping[str, Any]], place: Path) -> list[Path]:
     """Write the pictures of each scene and the document itself, whole or not at all."""
-    from taylor_verify.tradeoff import work_precision
+    from taylor_verify.plotting.picture import save
+    from taylor_verify.tradeoff.work_precision import pictures
 
-    sound = [one for one in documents if any(row["standing"] == "sound" for row in one["points"])]
-    drawn = [path for one in sound for path in work_precision.draw(one, place)]
+    drawn = save([picture for one in documents for picture in pictures(one)], place)
     text = json.dumps({"scenes": documents}, indent=1, allow_nan=False) + "\n"
     return [*replace_files(place, {"tradeoff.json": text}), *drawn]
 

@@ -7,19 +7,16 @@ impulse keeps its direction in space, and the picture marks that direction.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import captioned
+from taylor_verify.draw.caption import Document, captioned
 from taylor_verify.draw.stage import CROSS
 from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
-
-Document = Mapping[str, Any]
 
 # A course has nine digits: a direction that changes by less than this stands still.
 _AT_REST: Final = 1e-6

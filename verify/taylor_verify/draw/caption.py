@@ -12,6 +12,8 @@ from taylor_verify.plotting.wording import stem_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Document = Mapping[str, Any]
+
 OMEGA: Final = "\N{GREEK SMALL LETTER OMEGA}"
 SUBSCRIPTS: Final = "\N{SUBSCRIPT ONE}\N{SUBSCRIPT TWO}\N{SUBSCRIPT THREE}"
 WAYS: Final = {
@@ -25,13 +27,13 @@ class NotDrawn(ValueError):  # noqa: N818 (an answer, not a fault of the code)
     """Refusal of a picture that the scene cannot have; the text says what is missing."""
 
 
-def caption(document: Mapping[str, Any]) -> str:
+def caption(document: Document) -> str:
     """Return the scene and the exact route of its motion."""
     return f"{document['scene']}: {WAYS[document['route']]}."
 
 
 def captioned(
-    document: Mapping[str, Any], kind: str, title: str, alt: str, draw: Callable[[str], Figure]
+    document: Document, kind: str, title: str, alt: str, draw: Callable[[str], Figure]
 ) -> Picture:
     """Return a picture of the motion ``document``; ``draw`` makes the figure with its caption.
 

@@ -6,14 +6,13 @@ at equal intervals of time: an ellipsoid by its sections, and the frame of a bod
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, captioned
+from taylor_verify.draw.caption import Document, NotDrawn, captioned
 from taylor_verify.draw.stage import END, START, Look, Stage, scale, stretches
 from taylor_verify.draw.view import Ellipsoid, Numbers, View
 from taylor_verify.plotting.picture import Picture
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Document = Mapping[str, Any]
 
 # In inches.
 _HEIGHT: Final = 4.3

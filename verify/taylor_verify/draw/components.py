@@ -6,7 +6,7 @@ flip time 2K/lam of its orbit.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import cycle
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, NotDrawn, captioned
+from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, Document, NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, sheet
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Document = Mapping[str, Any]
 
 # In inches.
 _HEIGHT: Final = 2.7

@@ -16,12 +16,12 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from math import ceil
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from mpmath import mp, mpf
 
-from taylor_verify.draw.acting_loads import acting_on
+from taylor_verify.draw.acting_loads import Document, acting_on
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.printed import shortest_text
@@ -33,8 +33,6 @@ from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.scene import Scene
-
-Document = dict[str, Any]
 
 # Digits of the numbers of the orbit.
 DIGITS: Final = 30

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn, captioned
+from taylor_verify.draw.caption import Document, NotDrawn, captioned
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.log_axes import powers_within, widened
 from taylor_verify.plotting.picture import Picture
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Document = Mapping[str, Any]
 Row = Mapping[str, Any]
 
 # In inches.

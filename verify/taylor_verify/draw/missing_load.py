@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import PurePath
-from typing import Any
 
 import numpy as np
 
-from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.caption import Document, NotDrawn
 from taylor_verify.draw.components import Panel, Series, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.wording import stem_of
 from taylor_verify.records.answers import MissingLoad
-
-Document = Mapping[str, Any]
 
 
 def series(loads: Sequence[MissingLoad]) -> Series:

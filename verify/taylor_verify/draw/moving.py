@@ -17,14 +17,12 @@ import numpy as np
 
 from taylor_verify.draw import components, mesh, polhode, spheres
 from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
-from taylor_verify.draw.caption import NotDrawn, caption
+from taylor_verify.draw.caption import Document, NotDrawn, caption
 from taylor_verify.draw.drawn_course import turns
 from taylor_verify.draw.mesh import Face, Mesh
 from taylor_verify.draw.surface import Surface
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.row_arithmetic import quaternions
-
-Document = Mapping[str, Any]
 
 # Seconds for a turn, so that the eye can follow.
 _TURN: Final = 2.4

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import Any, Final
+from typing import Final
 
 from taylor_verify.draw import axis_path, centre_path, components, polhode, spheres
-from taylor_verify.draw.caption import NotDrawn
+from taylor_verify.draw.caption import Document, NotDrawn
 from taylor_verify.plotting.picture import Picture
-
-Document = Mapping[str, Any]
 
 # In the order in which they are written.
 KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {

@@ -6,21 +6,18 @@ are sqrt(2T/J_i). With damping omega sinks below the surface of the start.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from math import sqrt
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
-from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, NotDrawn, captioned
+from taylor_verify.draw.caption import OMEGA, SUBSCRIPTS, Document, NotDrawn, captioned
 from taylor_verify.draw.stage import Look
 from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Ellipsoid, Numbers
 from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.wording import plain
-
-Document = Mapping[str, Any]
 
 _BORDER: Final[Look] = {
     "color": "#8A5A00",

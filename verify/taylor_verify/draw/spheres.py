@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from taylor_verify.draw.axis_path import momentum_of
-from taylor_verify.draw.caption import NotDrawn, captioned
+from taylor_verify.draw.caption import Document, NotDrawn, captioned
 from taylor_verify.draw.stage import Look
 from taylor_verify.draw.surface import Part, Surface, figure
 from taylor_verify.draw.view import Numbers
 from taylor_verify.plotting.picture import Picture
-
-Document = Mapping[str, Any]
 
 _SECOND: Final[Look] = {"color": "#A83C00", "linewidth": 1.5, "dashes": (4, 1.4), "gid": "course"}
 _NAMES: Final = {"x": "linear_impulse", "y": "angular_impulse"}

@@ -16,13 +16,11 @@ import numpy as np
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.exact.registry import kind_of
-from taylor_verify.judge.floor.loads import Along
+from taylor_verify.judge.floor.loads import Along, Floats
 from taylor_verify.judge.load_notes import NOTHING_CONSERVED
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.scene import Scene
-
-Floats = np.ndarray[Any, np.dtype[np.float64]]
 
 # An evaluation is timed as often as this, and the fastest counts.
 _REPEATS: Final = 3

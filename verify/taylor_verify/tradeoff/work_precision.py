@@ -12,11 +12,10 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 from math import isfinite
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.plotting.log_axes import number_axes, widened
-from taylor_verify.plotting.picture import Picture, save
+from taylor_verify.plotting.picture import Picture
 from taylor_verify.plotting.sheet import Entry, name_lines, sheet
 from taylor_verify.plotting.style import INK, QUIET, TAYLOR, heading_of, kind_of, look_of, place
 from taylor_verify.plotting.wording import plain, stem_of
@@ -121,19 +120,8 @@ def panels_of(series: Sequence[Series]) -> dict[str, list[Series]]:
 # Pictures.
 
 
-def draw(document: Mapping[str, Any], folder: Path | str) -> list[Path]:
-    """Write the pictures of one scene's trade-off, as `TradeOff.document` gives it, to a folder.
-
-    Raises ImportError without matplotlib, ValueError for a document without a sound point, OSError
-    for a folder that cannot be written.
-    """
-    return save(pictures(document), folder)
-
-
 def pictures(document: Mapping[str, Any]) -> list[Picture]:
-    """Return every picture that has points. Raises ValueError for a document without a sound point."""
-    if not any(row["standing"] == "sound" for row in document["points"]):
-        raise ValueError(f"expected a sound point, got none @ {document['scene']}.points")
+    """Return the pictures of one scene's trade-off, as `TradeOff.document` gives it, that have points."""
     return [_picture(document, key) for key in WORKS if front_of(document, key)]
 
 

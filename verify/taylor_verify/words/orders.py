@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from math import isfinite, log10
 
 from taylor_verify.records.answers import Order, OrderPoint, Stall
@@ -11,14 +11,14 @@ from taylor_verify.records.observed_order import CLEAR, local_orders
 
 def order_sentence(order: Order) -> str:
     """Return what is known of an order."""
-    return "; ".join(_sentences(order, order.clear))
+    return "; ".join(_sentences(order))
 
 
-def _sentences(order: Order, clear: Sequence[OrderPoint]) -> Iterator[str]:
+def _sentences(order: Order) -> Iterator[str]:
     if all(_is_at_the_floor(point) for point in order.points if point.error is not None):
         yield f"{order.quantity}: no order shows, because the error is near roundoff at every step"
         return
-    yield f"{order.quantity}: {_order_words(order, clear)}"
+    yield f"{order.quantity}: {_order_words(order)}"
     if order.best_step is not None and order.best_error is not None:
         best = f"best {order.knob} = {order.best_step:g} with {_accuracy(order, order.best_error)}"
         yield f"{best}{_below_the_best(order, order.best_step, order.best_error)}"
@@ -28,7 +28,8 @@ def _is_at_the_floor(point: OrderPoint) -> bool:
     return point.error is not None and point.error <= CLEAR * (point.attainable or 0.0)
 
 
-def _order_words(order: Order, clear: Sequence[OrderPoint]) -> str:
+def _order_words(order: Order) -> str:
+    clear = order.clear
     if order.order is not None and order.high is not None and order.largest is not None:
         spread = order.high - order.order
         uncertain = f" ± {spread:.1f}" if spread >= 0.05 else ""

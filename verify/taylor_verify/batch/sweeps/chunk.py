@@ -61,10 +61,11 @@ class Judged(NamedTuple):
 
 def judge(chunk: Chunk) -> Judged:
     """Solve and judge a chunk. A scene that breaks the code is an undecided row, and stops no other."""
-    asked = list(chunk.questions.questions(chunk.first, chunk.stop))
-    rows = [_verdicts(question, chunk) for question in asked]
-    columns = _columns(asked, rows, chunk.questions.drawn)
-    return Judged(chunk.number, len(asked), columns, package_digest())
+    asked = chunk.questions.questions(chunk.first, chunk.stop)
+    rows = [_row(question, verdict) for question in asked for verdict in _verdicts(question, chunk)]
+    names = (*COLUMNS, *(DRAWN + name for name in chunk.questions.drawn))
+    columns = {name: [row[name] for row in rows] for name in names}
+    return Judged(chunk.number, chunk.stop - chunk.first, columns, package_digest())
 
 
 def explain(chunk: Chunk) -> tuple[int, tuple[str, ...]]:
@@ -102,23 +103,10 @@ def _unjudged(
     return Verdict(*run_of, SCENE, status, outcome.value, reason=reason)
 
 
-def _columns(
-    asked: Sequence[Question], rows: Sequence[Sequence[Verdict]], drawn: Sequence[str]
-) -> Columns:
-    columns: Columns = {name: [] for name in (*COLUMNS, *(DRAWN + name for name in drawn))}
-    for question, verdicts in zip(asked, rows, strict=True):
-        for verdict in verdicts:
-            row = _row(question, verdict)
-            for name in COLUMNS:
-                columns[name].append(row[name])
-        for name in drawn:
-            columns[DRAWN + name] += [question.drawn.get(name)] * len(verdicts)
-    return columns
-
-
 def _row(question: Question, verdict: Verdict) -> dict[str, Any]:
     return {
         **vars(verdict),
+        **{DRAWN + name: number for name, number in question.drawn.items()},
         "point": question.number,
         "verdict": verdict.verdict.value,
         # The arithmetic of a bound that was kept would be most of the dataset.

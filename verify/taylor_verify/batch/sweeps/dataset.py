@@ -179,13 +179,8 @@ def table(columns: Columns) -> Any:
     """Return the rows as a table of pyarrow."""
     import pyarrow
 
-    types = {name: getattr(pyarrow, kind)() for name, kind in COLUMNS.items()}
-    return pyarrow.table(
-        {
-            name: pyarrow.array(values, types.get(name, pyarrow.float64()))
-            for name, values in columns.items()
-        }
-    )
+    kinds = {name: getattr(pyarrow, COLUMNS.get(name, "float64"))() for name in columns}
+    return pyarrow.table(columns, pyarrow.schema(kinds))
 
 
 def read_manifest(folder: Path) -> Manifest | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from hashlib import sha256
@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.scenes.families.cube import Spread, places
-from taylor_verify.scenes.families.family import Family
+from taylor_verify.scenes.families.family import Family, Place
 from taylor_verify.scenes.families.shipped import family, is_family
 from taylor_verify.scenes.families.template import MOST_POINTS, load_family
 from taylor_verify.scenes.library import find, named
@@ -33,7 +33,7 @@ class Question(NamedTuple):
     number: int
     name: str
     scene: Scene | Refused
-    drawn: dict[str, float]
+    drawn: Mapping[str, float | None]
 
 
 @dataclass(frozen=True)
@@ -79,18 +79,17 @@ class Drawn:
 
     def questions(self, first: int, stop: int) -> Iterator[Question]:
         """Yield the scenes with these numbers."""
-        for number, numbers in self._numbers(first, stop):
+        for number, place, node in self._places(first, stop):
             name = f"{self.name}#{number}"
-            if isinstance(numbers, Refused):
-                yield Question(number, name, numbers, {})
-                continue
-            drawn = self.family.drawn(numbers)
+            drawn: Mapping[str, float | None] = dict.fromkeys(self.drawn)
+            scene: Scene | Refused
             try:
+                numbers = self.family.numbers(place, node)
+                drawn = self.family.drawn(numbers)
                 scene = self.family.scene_of(numbers, name)
             except Refused as refused:
-                yield Question(number, name, refused, drawn)
-            else:
-                yield Question(number, name, scene, drawn)
+                scene = refused
+            yield Question(number, name, scene, drawn)
 
     def examples(self) -> Iterator[Scene]:
         """Yield a scene with the quantities that all scenes have."""
@@ -102,21 +101,17 @@ class Drawn:
 
     def text(self, number: int) -> str:
         """Return the scene file of one number."""
-        ((_, numbers),) = self._numbers(number, number + 1)
-        if isinstance(numbers, Refused):
-            raise numbers
-        return self.family.text_of(numbers)
+        ((_, place, node),) = self._places(number, number + 1)
+        return self.family.text(place, node)
 
-    def _numbers(self, first: int, stop: int) -> Iterator[tuple[int, Any]]:
+    def _places(self, first: int, stop: int) -> Iterator[tuple[int, Place, int]]:
+        """Yield these numbers, each with its drawn place and its point of the grid."""
         nodes = self.family.nodes
         low, high = first // nodes, -(-stop // nodes)
         points = places(self.spread, self.family.free, self.seed, low, high)
         for number in range(first, stop):
             draw, node = divmod(number, nodes)
-            try:
-                yield number, self.family.numbers(points[draw - low], node)
-            except Refused as refused:
-                yield number, refused
+            yield number, points[draw - low], node
 
 
 @dataclass(frozen=True)
