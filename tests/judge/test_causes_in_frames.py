@@ -376,3 +376,21 @@ def test_a_unit_of_time_under_loads_is_found_where_times_are_too_far(
     statuses = {verdict.verdict for verdict in judged.verdicts}
     assert any("milliseconds" in finding.words for finding in judged.conventions) == is_named
     assert statuses == {Status.FAIL if is_named else Status.UNDECIDED}
+
+
+@pytest.mark.parametrize(
+    ("column", "limit", "words"),
+    [
+        (0, 0.8, "the linear velocity is cut off on axis 1 above 0.8"),
+        (5, 0.8, "omega is cut off on axis 3 above 0.8"),
+    ],
+)
+def test_a_column_that_is_cut_off_is_named(
+    column: int, limit: float, words: str, tmp_path: Path
+) -> None:
+    """A sensor shows no more than its range: the motion is right where it is within."""
+    made = vehicle().copy()
+    assert np.count_nonzero(made[:, column] > limit) > 3
+    made[:, column] = np.minimum(made[:, column], limit)
+    (title,) = titles(tmp_path, VEHICLE, table(made))
+    assert title.startswith(words)

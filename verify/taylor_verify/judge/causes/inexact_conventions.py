@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -33,6 +33,8 @@ from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 _ROUNDINGS: Final = 10.0
 _PART: Final = 1e-6
 _MOST: Final = 0.03
+# A limit is reached so often.
+_OFTEN: Final = 3
 
 # All signed permutations, those of signs alone first.
 SIGNED: Final = tuple(
@@ -270,6 +272,7 @@ def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -
         yield Reading(
             f"has a constant offset on axis {i + 1}: {offset:.6g}", 1, truth + offset * unit[i]
         )
+    yield from _cut_off(file, truth)
     constant = [np.broadcast_to(axis, truth.shape) for axis in unit]
     p, rows = _best(file - truth, constant)
     yield Reading(f"has a constant offset {numbers(p)}", 3, truth + rows)
@@ -293,6 +296,21 @@ def _fitted(answer: Answer, name: str, file: Floats, truth: Floats, R: Floats) -
     yield from _turned(file, truth, R, is_centre)
     for words, rows in late_rows(answer, name):
         yield Reading(words, 3, rows)
+
+
+def _cut_off(file: Floats, truth: Floats) -> Iterator[Reading]:
+    """Yield rows whose numbers are cut off at a limit that the file reaches often, as a sensor does."""
+    limits = list[tuple[float, float, Any, str]]()
+    for i, own in enumerate(np.eye(3, dtype=bool)):
+        least, most = float(np.min(file[:, i])), float(np.max(file[:, i]))
+        limits.append((-np.inf, most, own, f"on axis {i + 1} above {most:.6g}"))
+        limits.append((least, np.inf, own, f"on axis {i + 1} below {least:.6g}"))
+    limit = float(np.max(np.abs(file)))
+    limits.append((-limit, limit, np.ones(3, dtype=bool), f"on all axes at {limit:.6g}"))
+    for least, most, own, words in limits:
+        if np.count_nonzero((file[:, own] == least) | (file[:, own] == most)) >= _OFTEN:
+            rows = np.where(own, np.clip(truth, least, most), truth)
+            yield Reading(f"is cut off {words}", 1, rows)
 
 
 def _turned(file: Floats, truth: Floats, R: Floats, is_centre: bool) -> Iterator[Reading]:
