@@ -111,8 +111,6 @@ def _parsed(text: str, place: object) -> Any:
             parse_constant=float,
             object_pairs_hook=named_once,
         )
-    except Refused:
-        raise
     except (ValueError, RecursionError) as error:
         reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
         raise refusal("a JSON document", f"a fault in it: {reason}", place) from None

@@ -47,7 +47,7 @@ def _of(path: Path) -> Iterator[Column]:
     names = _COLUMNS[path.stem]
     with regular_file(path, "a report of 42", BYTES) as opened:
         content = Content(opened, path)
-        columns = delimited.table(content, path, first=1).columns
+        columns = delimited.table(content, path).columns
     if len(columns) != len(names):
         raise refusal(f"{len(names)} numbers in a line", str(len(columns)), path)
     yield from (Column(name, column.values) for name, column in zip(names, columns, strict=True))
