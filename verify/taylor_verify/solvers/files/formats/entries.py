@@ -40,7 +40,7 @@ class Shape(NamedTuple):
         if parent:
             return parent in self.inner
         stem = _stem(name)
-        return stem in self.vectors if stem else _is_time(name)
+        return stem in self.vectors if stem else Name.of(name).is_time
 
 
 @dataclass
@@ -109,11 +109,6 @@ def _fill(values: list[Any], name: str, of_rows: Sequence[Shape], shapes: Iterab
         if shape in lacking:
             values[k] = "0"
     return bool(lacking)
-
-
-@lru_cache
-def _is_time(name: str) -> bool:
-    return Name.of(name).is_time
 
 
 @lru_cache(4096)
