@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.records.faults import Faults, cut, refusal
+from taylor_verify.records.faults import Faults, cut
 from taylor_verify.records.limit import Limit
 from taylor_verify.scenes.reading.time_table import MOST_SAMPLES
 
@@ -57,12 +57,6 @@ def check_size(columns: int, rows: int, place: object) -> None:
     COLUMNS.check(columns, place)
     ROWS.check(rows, place)
     VALUES.check(columns * rows, place)
-
-
-def refuse_part(part: str, place: object) -> None:
-    """Refuse FILE#PART of a format that holds one trajectory in a file."""
-    if part:
-        raise refusal("a file of one trajectory by its name alone", f"`#{part}`", place)
 
 
 @contextmanager

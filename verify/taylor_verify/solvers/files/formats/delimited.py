@@ -19,7 +19,6 @@ from taylor_verify.solvers.files.formats.column import (
     Table,
     alike,
     check_size,
-    refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.header import (
@@ -38,14 +37,8 @@ _ROWS_AT_ONCE: Final = 1000
 _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
 
 
-def read(file: Content, path: Path, part: str) -> Table:
-    """Return the columns; # and % begin a comment line."""
-    refuse_part(part, path)
-    return table(file, path)
-
-
-def table(file: Content, path: Path, first: int = 1, marks: Sequence[str] = MARKS) -> Table:
-    """Return the columns of the table that stands from the ``first`` line on."""
+def read(file: Content, path: Path, first: int = 1, marks: Sequence[str] = MARKS) -> Table:
+    """Return the columns of the table from the ``first`` line on; # and % begin a comment line."""
     try:
         top = head(_first_lines(file, first), marks)
         if top is None:
