@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
 
 import h5py
@@ -89,22 +88,3 @@ def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
     by_name = {c.name: list(c.values) for c in read_table(file).columns}
     assert by_name["t"] == [0, 1, 2, 3]
     assert by_name["q[1]"] == [1, 5, 9, 13]
-
-
-def opaque(name: bytes, kind: bytes) -> bytes:
-    """An object of MATLAB's, as version 7 holds it: its name, the system and the class."""
-
-    def element(code: int, data: bytes) -> bytes:
-        return struct.pack("<II", code, len(data)) + data + bytes(-len(data) % 8)
-
-    flags = element(6, struct.pack("<II", 17, 0))
-    return element(14, flags + element(1, name) + element(1, b"MCOS") + element(1, kind))
-
-
-def test_objects_of_matlab_are_refused_with_the_way_to_save_them(tmp_path: Path) -> None:
-    """A timeseries is no array: the refusal says how to save its numbers."""
-    header = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
-    (tmp_path / "run.mat").write_bytes(header + opaque(b"run", b"timeseries"))
-    expected = "got the object `run` of class timeseries .*save the numbers: s.t = run.Time"
-    with pytest.raises(Refused, match=expected):
-        read(tmp_path / "run.mat")

@@ -388,7 +388,8 @@ def test_a_file_of_times_alone_is_refused_with_what_was_ignored(tmp_path: Path) 
     """A file of times alone is refused, and the ignored columns are named."""
     file = write_csv(tmp_path / "mine.csv", {"t": [0.0], "roll": [1.0], "pitch": [1.0]})
     with pytest.raises(
-        Refused, match=r"got t alone @ .*ignored: `roll` `pitch`; .*--columns w1=NAME"
+        Refused,
+        match=r"expected w1 .* tracks, got t alone @ .*ignored: `roll` `pitch`; .*--columns w1=NAME",
     ):
         taylor_verify.check(SCENE, file)
 

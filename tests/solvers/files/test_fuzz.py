@@ -23,10 +23,10 @@ import numpy as np
 import pytest
 from builders import recordings
 from builders.recordings import OMEGA, QUATERNION, WRITERS
-from scipy.spatial.transform import Rotation
+from builders.trajectories import Columns, columns_at, write_csv
 
 import taylor_verify
-from taylor_verify import exact, load
+from taylor_verify import load
 from taylor_verify.judge.causes.likely import Explained
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.worlds import World
@@ -66,20 +66,9 @@ def scene() -> Scene:
 
 
 @cache
-def columns() -> dict[str, list[float]]:
+def columns() -> Columns:
     """The right answer to the scene, in doubles."""
-    motion = exact(scene(), scene().times, 20)
-    x, y, z, w = Rotation.from_matrix(motion.attitude.astype(float)).as_quat().T
-    numbers = (*motion.omega.astype(float).T, w, x, y, z)
-    each = dict(zip((*OMEGA, *QUATERNION), (column.tolist() for column in numbers), strict=True))
-    return {**each, "t": [float(t) for t in scene().times]}
-
-
-def write_csv(file: Path) -> None:
-    rows = zip(*columns().values(), strict=True)
-    file.write_text(
-        "\n".join([",".join(columns()), *(",".join(map(str, row)) for row in rows), ""])
-    )
+    return columns_at(scene(), scene().clock.instants)
 
 
 def write_database(file: Path) -> None:
@@ -88,7 +77,7 @@ def write_database(file: Path) -> None:
 
 
 BESIDE: dict[str, Callable[[Path], object]] = {
-    "run.csv": write_csv,
+    "run.csv": lambda file: write_csv(file, columns()),
     "run.json": lambda file: file.write_text(json.dumps(columns())),
     "run.xml": lambda file: recordings.write_aem(file, recordings.aem(columns())),
     "run.db3": write_database,

@@ -105,6 +105,18 @@ def nested_cells(depth: int) -> bytes:
     return b"".join([*reversed(beginnings), inner])
 
 
+def structs(count: int, names: bytes) -> bytes:
+    """So many structs with names of one letter, and no content."""
+    fields = element(5, struct.pack("<i", 1)) + element(1, names)
+    return matrix(2, b"s", fields, (1, count))
+
+
+def packed(content: bytes) -> bytes:
+    """A compressed array."""
+    data = zlib.compress(content)
+    return struct.pack("<II", 15, len(data)) + data
+
+
 def packed_zeros() -> bytes:
     """Gigabytes of zeros in some megabytes of a compressed array."""
     packer = zlib.compressobj()
@@ -124,6 +136,10 @@ MATLAB: Mapping[str, tuple[Callable[[], bytes], str]] = {
         lambda: matrix(6, b"a", element(9, bytes(8))) * (COLUMNS.most + 1),
         f"expected at most {COLUMNS.most} columns",
     ),
+    "fields": (lambda: packed(structs(1001, b"a" * 10**6)), "1000 columns, got 1001000000"),
+    "nameless": (lambda: packed(structs(2**31 - 1, b"")), "1000 columns, got 2147483647"),
+    # Each eight zeros are an element without data.
+    "zeros": (lambda: packed(bytes(10**7)), "expected at most 1000 columns, got 1001 @"),
 }
 
 
@@ -156,6 +172,16 @@ def test_objects_in_a_mat_file_are_never_made(tmp_path: Path) -> None:
     savemat(tmp_path / "run.mat", {**arrays, **dict.fromkeys(OMEGA, np.zeros(3))})
     (note,) = read(tmp_path / "run.mat").notes
     assert note == "not read, because they hold no real numbers: c, s, z"
+
+
+def test_objects_of_matlab_are_refused_with_the_way_to_save_them(tmp_path: Path) -> None:
+    """A timeseries is no array: the refusal says how to save its numbers."""
+    names = b"".join(element(1, name) for name in (b"run", b"MCOS", b"timeseries"))
+    content = element(14, element(6, struct.pack("<II", 17, 0)) + names)
+    (tmp_path / "run.mat").write_bytes(HEADER + content)
+    expected = "got the object `run` of class timeseries .*save the numbers: s.t = run.Time"
+    with pytest.raises(Refused, match=expected):
+        read(tmp_path / "run.mat")
 
 
 # HDF5.

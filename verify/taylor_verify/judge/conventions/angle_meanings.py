@@ -6,7 +6,7 @@ departures from how they were read is found; several that do as well are said to
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
@@ -16,7 +16,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.judge.conventions.axis_vectors import Vector, vectors
 from taylor_verify.judge.conventions.convention_search import attitudes_at, beginnings
 from taylor_verify.judge.conventions.fits import AS_WELL, EXPLAINS, FLOAT64, Finding
 from taylor_verify.judge.conventions.meanings import rotations
@@ -43,6 +42,14 @@ _TURNS: Final = {"z": "yaw", "y": "pitch", "x": "roll"}
 _NOISE: Final = 64 * FLOAT64
 # Quaternions that are integrated without restoring their length stay as near to it.
 _UNIT: Final = 0.1
+# Factors of an angle, with the words for what the numbers are then.
+_OF_ANGLES: Final = {
+    Fraction(1): "{}",
+    DEGREE: "{} in degrees",
+    Fraction(2): "{} with half of the angle",
+    Fraction(1, 2): "{} with twice the angle",
+}
+_VECTORS: Final = ("rotvec", "mrp", "gibbs")
 
 
 @dataclass(frozen=True)
@@ -77,7 +84,9 @@ class Angles:
     def quaternion(self, angles: Sequence[Fraction]) -> Sequence[Value]:
         """Return the exact quaternion of a row."""
         turns = [self.factors[k] * angles[k] for k in self.places]
-        return FORMS[self._moving].quaternion(turns[::-1] if self.is_fixed else turns)
+        # Turns about fixed axes are the same turns about axes that move along, in the opposite order.
+        order = -1 if self.is_fixed else 1
+        return FORMS[self.sequence[::order]].quaternion(turns[::order])
 
     def quaternions(self, angles: Floats) -> Floats:
         """Return the quaternions of rows in doubles."""
@@ -90,10 +99,42 @@ class Angles:
             q = np.array(rotation.product(list(first), list(then)))
         return q.T
 
-    @property
-    def _moving(self) -> str:
-        """The sequence of the same turns about axes that move along, in the opposite order."""
-        return self.sequence[::-1] if self.is_fixed else self.sequence
+
+@dataclass(frozen=True)
+class Vector:
+    """A form of the attitude, with the factor of its angles and the places of its numbers.
+
+    ``is_turned`` if it takes space to body axes. Without a ``form`` it is a quaternion.
+    """
+
+    form: str
+    factor: Fraction = Fraction(1)
+    places: tuple[int, ...] = ()
+    is_turned: bool = False
+
+    def words(self, own: str) -> list[str]:
+        """Return the departures from the form that the numbers were read by."""
+        noun = FORMS[self.form].words if self.form else "a quaternion"
+        noun = "an angle and an axis" if self.places else noun
+        is_other = self != Vector(own, is_turned=self.is_turned)
+        words = [f"are {_OF_ANGLES[self.factor].format(noun)}"] if is_other else []
+        return [*words, *["take space to body axes"] * self.is_turned]
+
+    def quaternion(self, numbers: Sequence[Fraction]) -> Sequence[Value]:
+        """Return the exact quaternion of a row, not of unit length."""
+        ordered = [numbers[k] for k in self.places] or list(numbers)
+        if not self.form:
+            return ordered
+        form = FORMS[self.form]
+        angles = [name in form.angles for name in form.columns]
+        turns = [self.factor * x if a else x for x, a in zip(ordered, angles, strict=True)]
+        q = form.quaternion(turns)
+        return [q[0], *(-part for part in q[1:])] if self.is_turned else q
+
+    def quaternions(self, rows: Floats) -> Floats:
+        """Return the quaternions of rows in doubles; NaN where the numbers are none."""
+        exact = (self.quaternion([Fraction(x) for x in row]) for row in rows.tolist())
+        return np.array([[float(part) for part in q] for q in exact])
 
 
 # A meaning of the numbers of a row.
@@ -103,7 +144,7 @@ Meaning = Angles | Vector
 @cache
 def _meanings(own: str) -> tuple[Meaning, ...]:
     """Return the meanings with few departures, the fewest first; the own one is the first of all."""
-    return _sequences(own) if own in SEQUENCES else tuple(vectors(own))
+    return _sequences(own) if own in SEQUENCES else tuple(_vectors(own))
 
 
 def _sequences(own: str) -> tuple[Angles, ...]:
@@ -122,6 +163,19 @@ def _sequences(own: str) -> tuple[Angles, ...]:
     counted = [(len(meaning.words(own)), meaning) for meaning in every]
     counted.sort(key=itemgetter(0))
     return tuple(meaning for count, meaning in counted if count <= _MOST)
+
+
+def _vectors(own: str) -> Iterator[Vector]:
+    """Yield the meanings of the numbers of a form, or of a quaternion, that form itself first."""
+    yield Vector(own)
+    forms = _VECTORS if own in _VECTORS else ("axis_angle",)
+    orders: list[tuple[int, ...]] = [()] if own in _VECTORS else [(), (1, 2, 3, 0)]
+    for form, places in product(forms, orders):
+        for factor in _OF_ANGLES if FORMS[form].angles else (Fraction(1),):
+            for is_turned in (False, True):
+                meaning = Vector(form, factor, places, is_turned)
+                if meaning != Vector(own):
+                    yield meaning
 
 
 @np.errstate(over="ignore", invalid="ignore")  # an answer may diverge

@@ -155,12 +155,8 @@ def _read_matrices(frames: Frames, order: tuple[int, int, int], rows: Array, _: 
 
 
 def rotations(quaternions: Array) -> Array:
-    """Return R(q/|q|) for every row; NaN where q is zero."""
-    if quaternions.dtype == object:
-        lengths = norms(quaternions)
-        lengths = np.array([length if length else mp.nan for length in lengths], dtype=object)
-    else:
-        lengths = np.linalg.norm(quaternions, axis=1)
-        lengths = np.where(lengths > 0, lengths, np.nan)
+    """Return R(q/|q|) for every row of doubles; NaN where q is zero."""
+    lengths = np.linalg.norm(quaternions, axis=1)
+    lengths = np.where(lengths > 0, lengths, np.nan)
     rows = rotation_rows(list((quaternions / lengths[:, None]).T))
     return np.array(rows).transpose(2, 0, 1)

@@ -7,7 +7,6 @@ the file begins at the scene's initial state.
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -89,19 +88,12 @@ def _clocks(scene: Scene, times: Sequence[Fraction]) -> Iterator[World]:
     for scale, unit in ((Fraction(1), ""), *_SCALES):
         words = (f"t counts {unit}",) if unit else ()
         yield World(scene, scale, time_words=words)
-        if _is_among(start / scale, times):
+        if start / scale in times:
             continue
         for origin in dict.fromkeys((start, instants[0])):
             if shift := scale * first - origin:
                 late = f"t is {'late' if shift > 0 else 'early'} by {float(abs(shift)):.15g}"
                 yield World(scene, scale, shift, (*words, late))
-
-
-def _is_among(time: Fraction, times: Sequence[Fraction]) -> bool:
-    """Return True if a time is among strictly monotonic times."""
-    sign = 1 if times[-1] >= times[0] else -1
-    place = bisect_left(times, sign * time, key=lambda t: sign * t)
-    return place < len(times) and times[place] == time
 
 
 def _other_bodies(scene: Scene) -> list[tuple[Scene, str]]:

@@ -65,7 +65,7 @@ class FileRows(ByRows):
         return iter((*self.file.groups, *momenta_names))
 
     def rows(self, places: Sequence[int]) -> dict[str, Array]:
-        asked, bits = _within(self.places, places), self.rung.bits + _SPARE_BITS
+        asked, bits = [self.places[k] for k in places], self.rung.bits + _SPARE_BITS
         values = {name: rows.as_mpf(asked, bits) for name, rows in self.file.groups.items()}
         if "attitude" in values:
             values["attitude"] = values["attitude"].reshape(-1, 3, 3)
@@ -122,13 +122,6 @@ def _on_instants(times: Sequence[Fraction], scene: Scene, rung: Rung) -> Sequenc
         return times
     instants = {rung.round(start + instant.time): start + instant.time for instant in taken}
     return tuple(instants.get(rung.round(time), time) for time in times)
-
-
-def _within(rows: range, places: Sequence[int]) -> Sequence[int]:
-    """Return the indices of some of these rows in the file."""
-    if isinstance(places, range) and places.step == 1:
-        return rows[places.start : places.stop]
-    return [rows[k] for k in places]
 
 
 def first_flaw(file: TrajectoryFile, quantity: str) -> str:

@@ -59,6 +59,11 @@ class Reading:
         vector = self.vector(node, text, what, length=1, default=only)
         return None if vector is None else vector[0]
 
+    def inner(self, node: Node, name: str, length: int = 3) -> Vector | None:
+        """Return the numbers in the child of this name; None where there is none."""
+        child = node.child(name)
+        return None if child is None else self.vector(child, child.text, name, length)
+
     def positive(self, node: Node, text: str | None, what: str) -> Fraction | None:
         """Return one number that is greater than zero."""
         number = self.number(node, text, what)

@@ -20,6 +20,7 @@ from taylor_verify.scenes.imported.water import (
     Water,
     balance,
     coefficients,
+    displaced_mass,
     is_hydrodynamics,
     of_gazebo,
     of_uuv,
@@ -111,8 +112,7 @@ class _Surroundings:
     def water(self, item: Scoped) -> Water | None:
         """Return the water that a plugin puts about the link; None for any other plugin."""
         if is_hydrodynamics(item.node):
-            name = item.node.child("link_name")
-            is_meant = name is not None and self._is_link(item.scope, name.text.strip())
+            is_meant = self._is_link(item.scope, item.node.written("link_name"))
             return of_gazebo(item.node, self.reading) if is_meant else None
         for node in item.node.named("link"):
             if self._is_called(item.scope, node) and node.child("hydrodynamic_model"):
@@ -159,14 +159,9 @@ class _Surroundings:
 
     def _with_volume(self, water: Water, stated: Node, plugin: Node) -> Water:
         """Return the water with weight and buoyancy from the volume that the plugin states."""
-        volume, place = stated.child("volume"), stated.child("center_of_volume")
-        density, reading = plugin.child("fluid_density"), self.reading
-        size = None if volume is None else reading.positive(volume, volume.text, "volume")
-        at = None if place is None else reading.vector(place, place.text, place.name)
-        heavy = reading.number(density, density.text, density.name) if density else _FRESH
-        mass = Fraction(size or 0) * Fraction(heavy or 0)
-        shape = volumes.Displaced(mass, at or self.link.centre, "the volume is the plugin's")
-        return self._floating(water, shape)
+        mass = displaced_mass(stated, plugin, _FRESH, self.reading)
+        at = self.reading.inner(stated, "center_of_volume") or self.link.centre
+        return self._floating(water, volumes.Displaced(mass, at, "the volume is the plugin's"))
 
     def _floating(self, water: Water, displaced: volumes.Displaced) -> Water:
         """Return the water with weight and buoyancy; the volume is the mass that the link displaces."""

@@ -115,6 +115,7 @@ def _loads(water: Water) -> list[str]:
 
 
 def _exact(vector: Vector) -> str:
+    """Return each entry as a decimal where it ends, else as a fraction."""
     return ", ".join(decimal(entry) or f'"{entry}"' for entry in vector)
 
 
@@ -122,9 +123,7 @@ def _matrix(key: str, matrix: Matrix) -> str:
     """Return the entries exactly; if some are long fractions, all entries come before as short decimals."""
     is_long = any(decimal(entry) is None for row in matrix for entry in row)
     short = [f"#   {', '.join(map(float_text, row))}" for row in matrix]
-    # A decimal where it ends, else a fraction.
-    exact = [[decimal(entry) or f'"{entry}"' for entry in row] for row in matrix]
-    rows = [f"  [{', '.join(row)}]," for row in exact]
+    rows = [f"  [{_exact(row)}]," for row in matrix]
     return "\n".join([*["# In short decimals:", *short] * is_long, f"{key} = [", *rows, "]"])
 
 

@@ -32,7 +32,7 @@ def with_thruster(
     water: Water, link: Link, item: Scoped, everything: Sequence[Scoped], reading: Reading
 ) -> Water:
     """Return the water with one more thruster of this link, its thrust zero until it is written."""
-    name = _text(item.node, "joint_name") or _text(item.node, "jointName")
+    name = item.node.written("joint_name") or item.node.written("jointName")
     joints = [i.node for i in everything if i.node.name == "joint" and i.scope == item.scope]
     joint = next((node for node in joints if node.attributes.get("name") == name), None)
     if joint is not None and f"{item.scope}{_linked(joint, 'parent')}" != link.name:
@@ -51,11 +51,6 @@ def with_thruster(
         (*texts, *term(entry, thrust)) for texts, entry in zip(water.terms, six, strict=True)
     )
     return replace(water, terms=terms, thrusts=(*water.thrusts, (thrust, name)))
-
-
-def _text(node: Node, name: str) -> str:
-    child = node.child(name)
-    return "" if child is None else child.text.strip()
 
 
 def _linked(joint: Node, end: str) -> str:
@@ -78,7 +73,7 @@ def _line(
         links = [node for end in ends for name, node in named if name == end]
         poses = [_of_sdf(part, reading) for part in (*links, joint)]
         pose = _between(*poses) if len(poses) == 3 else None
-        text = (_text(node, "xyz") if node else "") or "0 0 1"
+        text = (node.written("xyz") if node else "") or "0 0 1"
     axis = reading.vector(joint, text, "axis")
     if pose is None or axis is None or not any(axis):
         return None

@@ -44,6 +44,11 @@ class Node:
         """Return the first child of this name."""
         return next(iter(self.named(name)), None)
 
+    def written(self, name: str) -> str:
+        """Return the text of the first child of this name; empty where there is none."""
+        child = self.child(name)
+        return "" if child is None else child.text.strip()
+
 
 class Scoped(NamedTuple):
     """A node of a model, with the names of the models that it is in."""

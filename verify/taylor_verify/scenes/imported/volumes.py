@@ -55,25 +55,21 @@ def _volume(collision: Node, reading: Reading) -> Fraction | None:
     shapes = [shape for node in collision.named("geometry") for shape in node.children]
     if len(shapes) != 1:
         return None
-
-    def numbers(name: str, length: int = 1) -> Vector | None:
-        node = shapes[0].child(name)
-        return None if node is None else reading.vector(node, node.text, name, length)
-
-    match shapes[0].name:
+    (shape,) = shapes
+    match shape.name:
         case "box":
-            edges = numbers("size", 3)
+            edges = reading.inner(shape, "size")
             return reduce(mul, edges) if edges else None
         case "sphere":
-            radius = numbers("radius")
+            radius = reading.inner(shape, "radius", 1)
             return _PI * 4 / 3 * radius[0] ** 3 if radius else None
         case "ellipsoid":
-            radii = numbers("radii", 3)
+            radii = reading.inner(shape, "radii")
             return _PI * 4 / 3 * reduce(mul, radii) if radii else None
         case "cylinder" | "capsule":
-            radius, length = numbers("radius"), numbers("length")
+            radius, length = (reading.inner(shape, name, 1) for name in ("radius", "length"))
             if not radius or not length:
                 return None
-            ends = Fraction(4, 3) * radius[0] if shapes[0].name == "capsule" else 0
+            ends = Fraction(4, 3) * radius[0] if shape.name == "capsule" else 0
             return _PI * radius[0] ** 2 * (length[0] + ends)
     return None

@@ -94,12 +94,10 @@ def of_gazebo(plugin: Node, reading: Reading) -> Water:
         elif match := _DRAG.fullmatch(child.name):
             number = reading.number(child, child.text, child.name)
             terms[_FORCES.index(match[1])] += term(number, _speeds(*match.groups()[1:]))
-    current = plugin.child("default_current")
-    flow = current and reading.vector(current, current.text, "default_current")
     return Water(
         _added_mass(added, plugin, reading, "disable_added_mass"),
         tuple(map(tuple, terms)),
-        current=flow if isinstance(flow, tuple) else ZERO_VECTOR,
+        current=reading.inner(plugin, "default_current") or ZERO_VECTOR,
         remarks=(
             "The added mass is minus xDotU and its like of the plugin Hydrodynamics; its drag stands in "
             "force and couple.",
@@ -113,14 +111,10 @@ def _switched_off(plugin: Node) -> Iterator[str]:
         ("disable_added_mass", "the added mass is not in the scene"),
         ("disable_coriolis", "the scene has the Coriolis terms of the added mass all the same"),
     ):
-        if _is_true(plugin.child(name)):
+        if is_true(plugin.written(name)):
             yield f"the plugin says <{name}>: {lost}"
     if lookups := [c.name for c in plugin.children if c.name.startswith("lookup_current")]:
         yield f"the current of <{lookups[0]}> is left out: write `current`, a constant, in [body]"
-
-
-def _is_true(node: Node | None) -> bool:
-    return node is not None and is_true(node.text)
 
 
 def _speeds(first: str, form: str | None, second: str | None) -> str:
@@ -148,14 +142,14 @@ def _added_mass(
         mend = "write both entries of each pair alike"
         reading.fault("a symmetric added mass", "one that is not", node, mend)
         return None
-    is_zero = not any(map(any, matrix)) or _is_true(node.child(switch))
+    is_zero = not any(map(any, matrix)) or is_true(node.written(switch))
     return None if is_zero else matrix
 
 
 def of_uuv(link: Node, mass: Fraction, centre: Vector, plugin: Node, reading: Reading) -> Water:
     """Return the water of uuv_simulator's plugin for a link; faults are recorded."""
     model = link.child("hydrodynamic_model") or link
-    kind = (child := model.child("type")) and child.text.strip()
+    kind = model.written("type")
     if kind and kind != "fossen":
         named = f"uuv_simulator computes added mass and drag of the type {kind} itself"
         return Water(left_out=(f"{named}: they are left out",))
@@ -206,20 +200,20 @@ def _buoyant(
     link: Node, mass: Fraction, centre: Vector, plugin: Node, reading: Reading
 ) -> tuple[tuple[str, Hanging], ...]:
     """Return weight and buoyancy; neither where the file has no volume."""
-    place = link.child("center_of_buoyancy")
-    at = None if place is None else reading.vector(place, place.text, place.name)
-    if _is_true(link.child("neutrally_buoyant")):
-        displaced: Fraction | None = mass
-    else:
-        volume, density = link.child("volume"), plugin.child("fluid_density")
-        size = None if volume is None else reading.positive(volume, volume.text, "volume")
-        heavy = reading.number(density, density.text, density.name) if density else _SEA
-        displaced = size * heavy if size and heavy else None
-    if displaced is None:
-        return ()
-    return balance(
-        mass, centre, displaced, at or ZERO_VECTOR, (Fraction(0), Fraction(0), -_GRAVITY)
-    )
+    at = reading.inner(link, "center_of_buoyancy") or ZERO_VECTOR
+    is_neutral = is_true(link.written("neutrally_buoyant"))
+    displaced = mass if is_neutral else displaced_mass(link, plugin, _SEA, reading)
+    gravity = (Fraction(0), Fraction(0), -_GRAVITY)
+    return balance(mass, centre, displaced, at, gravity) if displaced else ()
+
+
+def displaced_mass(link: Node, plugin: Node, density: Fraction, reading: Reading) -> Fraction:
+    """Return the mass of the stated volume, by the plugin's density or this one; 0 without a volume."""
+    volume, heavy = link.child("volume"), plugin.child("fluid_density")
+    size = None if volume is None else reading.positive(volume, volume.text, "volume")
+    if heavy is not None:
+        density = reading.number(heavy, heavy.text, heavy.name) or Fraction(0)
+    return (size or Fraction(0)) * density
 
 
 def balance(

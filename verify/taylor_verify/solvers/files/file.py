@@ -25,7 +25,6 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
-from taylor_verify.solvers.files.columns.scalar import Start
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.formats.column import Column
@@ -155,8 +154,7 @@ def from_columns(
     files, agreed, known = [], list[str](), {**COLUMNS, **own}
     for part in parts.of_rows(times, place, faults):
         instants = tuple(times[k] for k in part.places)
-        start = Start.of(scene, instants, part.groups) if selection.is_doubtful else None
-        groups, form, settled = one_attitude(part.groups, selection, start, place, faults)
+        groups, form, settled = one_attitude(part.groups, selection, scene, instants, place, faults)
         agreed += settled
         turned = groups.keys() & {"quaternion", "attitude"}
         in_space = () if turned else tuple(g for g in selection.in_space if g in groups)

@@ -26,28 +26,19 @@ def apart(
 ) -> tuple[list[Taken], list[Column], Request]:
     """Return the columns of states of the scene's own, the others, and what is asked of those."""
     names = {name for group in own.values() for name in group}
-    asked = _asked([pair for pair in wanted if pair[0] in names], columns, place, faults)
-    ours_of = {name: name for name in names - asked.keys()}
-    ours_of |= {theirs: ours for ours, theirs in asked.items()}
-    apart = [Taken(ours_of[column.name], column) for column in columns if column.name in ours_of]
-    left = [column for column in columns if column.name not in ours_of]
-    return apart, left, tuple(pair for pair in wanted if pair[0] not in names)
-
-
-def _asked(
-    wanted: Request, columns: Sequence[Column], place: str, faults: Faults
-) -> dict[str, str]:
-    """Return the file's name for each of ours."""
-    names = {column.name for column in columns}
-    asked: dict[str, str] = {}
-    for ours, theirs in wanted:
-        if theirs not in names:
+    there, asked = {column.name for column in columns}, dict[str, str]()
+    for ours, theirs in (pair for pair in wanted if pair[0] in names):
+        if theirs not in there:
             faults.add(f"a column of the file for {ours}", f"`{cut(theirs)}`", place)
         elif ours in asked:
             faults.add("every name once", f"{ours} again", place)
         else:
             asked[ours] = theirs
-    return asked
+    ours_of = {name: name for name in names - asked.keys()}
+    ours_of |= {theirs: ours for ours, theirs in asked.items()}
+    apart = [Taken(ours_of[column.name], column) for column in columns if column.name in ours_of]
+    left = [column for column in columns if column.name not in ours_of]
+    return apart, left, tuple(pair for pair in wanted if pair[0] not in names)
 
 
 def whole(

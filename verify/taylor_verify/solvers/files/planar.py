@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from taylor_verify.scenes.scene import Scene
@@ -29,13 +29,12 @@ def with_zeros(
     is_planar = named >= set(_VELOCITIES) and named.isdisjoint(_ZEROS[0][1])
     if scene is None or scene.model != "kirchhoff" or not is_planar:
         return list(columns), ()
-    added = list(_added(named))
-    zeros = ["0"] * len(by_name["u"].values)
+    added = [
+        zero
+        for names, zeros in _ZEROS
+        for zero in zeros
+        if named >= set(names) and named.isdisjoint(zeros)
+    ]
+    noughts = ["0"] * len(by_name["u"].values)
     note = f"a planar motion: {' '.join(added)} are not in the file, and are taken as 0"
-    return [*columns, *(Column(name, zeros) for name in added)], (note,)
-
-
-def _added(there: Collection[str]) -> Iterator[str]:
-    for names, zeros in _ZEROS:
-        if set(there).issuperset(names) and set(there).isdisjoint(zeros):
-            yield from zeros
+    return [*columns, *(Column(name, noughts) for name in added)], (note,)

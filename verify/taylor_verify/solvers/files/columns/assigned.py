@@ -106,26 +106,20 @@ def _of_group(
     if group == "time":
         return [("t", theirs)]
     ends = theirs.split(":")
-    places = {end: place for end in ends if (place := _place(end, names)) is not None}
-    if len(ends) == 2 and places:
-        return _between(GROUPS[group], ends, places, names, at, faults)
+    if len(ends) == 2 and any(_place(end, names) is not None for end in ends):
+        return _between(GROUPS[group], ends, names, at, faults)
     return _of_stem(group, theirs, names, at, faults)
 
 
 def _between(
-    ours: Sequence[str],
-    ends: Sequence[str],
-    places: Mapping[str, int],
-    names: Sequence[Name],
-    at: str,
-    faults: Faults,
+    ours: Sequence[str], ends: Sequence[str], names: Sequence[Name], at: str, faults: Faults
 ) -> list[tuple[str, str]]:
     """Return the columns from one end to the other."""
-    if missing := [end for end in ends if end not in places]:
+    first, last = (_place(end, names) for end in ends)
+    if first is None or last is None:
         expected = f"a column of the file, by its name or by a number up to {len(names)}"
-        faults.add(expected, f"`{cut(missing[0])}`", at)
+        faults.add(expected, f"`{cut(ends[first is not None])}`", at)
         return []
-    first, last = (places[end] for end in ends)
     step = 1 if first <= last else -1
     texts = [names[k].text for k in range(first, last + step, step)]
     if len(texts) != len(ours):

@@ -1,12 +1,15 @@
 """The one attitude of a file, of all its descriptions: a quaternion, a matrix, angles or a vector.
 
 Several descriptions have to agree. Four numbers that do not say where their scalar is are settled by
-another description, or by the scene's start. What a program's manual says of its names is applied.
+another description, or by the scene's start. Read with the scalar first or last, the row there has the
+scene's attitude or another one. Where both readings have it, the turn to the next row tells which of them
+moves as the angular velocity says. What a program's manual says of its names is applied.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from math import inf, nan
 from typing import Any, Final, NamedTuple
 
@@ -18,9 +21,9 @@ from taylor_verify.numbers.rotation import conjugate
 from taylor_verify.records.faults import Faults
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.choice import Choice
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.scalar import Start, angles, rotations
 from taylor_verify.solvers.files.columns.selection import ATTITUDES, Selection
 from taylor_verify.solvers.files.columns.spelling import Turn
 from taylor_verify.solvers.files.compact_rows import Floats, Rows
@@ -33,6 +36,8 @@ Numbers = Sequence[Any]
 # Two descriptions of one attitude differ by no more, in radians: programs print angles with two decimals.
 _AGREE: Final = 0.01
 _COMPARED: Final = 24
+# A reading whose turn is so much nearer to that of the angular velocity than the other one is taken.
+_NEARER: Final = 4
 
 
 class _Description(NamedTuple):
@@ -52,16 +57,18 @@ class _Description(NamedTuple):
         doubles = self.rows.doubles(evenly(len(self.rows), _COMPARED))
         if self.group == "attitude":
             return doubles.reshape(-1, 3, 3)
-        return rotations(doubles)
+        return _rotations(doubles)
 
 
 def one_attitude(
-    groups: Groups, selection: Selection, start: Start | None, place: str, faults: Faults
+    groups: Groups,
+    selection: Selection,
+    scene: Scene | None,
+    times: Sequence[Fraction],
+    place: str,
+    faults: Faults,
 ) -> tuple[Groups, str, list[str]]:
-    """Return the groups with one description of the attitude, its form, and how it was settled.
-
-    ``start`` is where these rows are at the scene's start.
-    """
+    """Return the groups with one description of the attitude, its form, and how it was settled."""
     choices = [choice for choice in selection.attitudes if choice.group in groups]
     every = [
         description
@@ -70,7 +77,8 @@ def one_attitude(
     ]
     left = {name: rows for name, rows in groups.items() if name not in ATTITUDES}
     if selection.is_doubtful and every:
-        first, notes = _settled_by_start(every, start, place, faults)
+        fitting = _fitting(every, scene, times, groups)
+        first, notes = _settled_by_start(every, fitting, place, faults)
     else:
         first, notes = _settled(every, choices, place, faults)
     if first:
@@ -100,19 +108,45 @@ def _descriptions(choice: Choice, rows: Rows) -> Iterator[_Description]:
         yield _Description(choice, rows)
 
 
+def _fitting(
+    every: Sequence[_Description],
+    scene: Scene | None,
+    times: Sequence[Fraction],
+    groups: Groups,
+) -> list[int] | None:
+    """Return the numbers of the readings that begin as the scene does, the one that also moves so if any.
+
+    None where no row is at the scene's start.
+    """
+    if scene is None or scene.clock.start not in times:
+        return None
+    row, turn = times.index(scene.clock.start), None
+    omega = groups["omega"][row] if "omega" in groups else scene.initial.parts().get("omega")
+    if omega is not None and row + 1 < len(times):
+        turn = _turn([w * (times[row + 1] - times[row]) for w in omega])
+    places = [row, row + 1] if turn is not None else [row]
+    frames = [_rotations(each.rows.doubles(places)) for each in every]
+    begins = _matrix(scene.initial.attitude)
+    fit = [k for k, each in enumerate(frames) if _angles(each[0], begins) <= _AGREE]
+    if len(fit) < len(every) or turn is None:
+        return fit
+    errors = [_angles(first.T @ second, turn) for first, second in frames]
+    best = int(np.argmin(errors))
+    is_clear = all(_NEARER * errors[best] <= errors[k] for k in fit if k != best)
+    return [best] if is_clear else fit
+
+
 def _settled_by_start(
-    every: Sequence[_Description], start: Start | None, place: str, faults: Faults
+    every: Sequence[_Description], fitting: Sequence[int] | None, place: str, faults: Faults
 ) -> tuple[_Description | None, list[str]]:
-    """Return the only one of the two readings that begins and moves as the scene does, or a fault."""
-    choice = every[0].choice
-    fit = start.fitting([each.rows for each in every], _AGREE) if start else []
-    if len(fit) != 1:
-        got, ours = f"{choice.shown}: {choice.doubt}", " ".join(COLUMNS["quaternion"])
-        got += ", and neither begins with the scene's attitude" if start and not fit else ""
+    """Return the only one of the two readings that is fitting, or a fault."""
+    choice, ours = every[0].choice, " ".join(COLUMNS["quaternion"])
+    if fitting is None or len(fitting) != 1:
+        got = f"{choice.shown}: {choice.doubt}"
+        got += ", and neither begins with the scene's attitude" if fitting == [] else ""
         faults.add(ours, got, place, f"say which: --columns {choice.scalar_requests}")
         return None, []
-    first = every[fit[0]]
-    ours = " ".join(COLUMNS["quaternion"])
+    first = every[fitting[0]]
     why = "only so has the row at the scene's start the scene's attitude"
     return first, [f"{choice.shown} taken as {ours}: the scalar is {first.order}, {why}"]
 
@@ -140,9 +174,35 @@ def _settled(
 
 def _apart(left: Floats, right: Floats) -> float:
     """Return the largest angle between rotations, in radians; infinite where none can be compared."""
-    sizes = angles(left, right)
+    sizes = _angles(left, right)
     finite = sizes[np.isfinite(sizes)]
     return float(np.max(finite)) if len(finite) else inf
+
+
+def _turn(vector: Sequence[Any]) -> Floats | None:
+    """Return the rotation by a vector; None for one that is no number."""
+    if not all(isinstance(part, Fraction) for part in vector):
+        return None
+    return _matrix(FORMS["rotvec"].quaternion(vector))
+
+
+def _rotations(quaternions: Floats) -> Floats:
+    """Return the rotations (n, 3, 3) of quaternions (n, 4) of any length, scalar first; NaN for zero."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squares = np.sum(quaternions**2, axis=1)
+        return np.moveaxis(np.array(rotation(list(quaternions.T))) / squares, -1, 0)
+
+
+def _matrix(q: Sequence[Any]) -> Floats:
+    """Return the rotation of one quaternion, as `_rotations` does."""
+    one: Floats = _rotations(np.array([[float(part) for part in q]]))[0]
+    return one
+
+
+def _angles(left: Floats, right: Floats) -> Floats:
+    """Return the angle between each two rotations that are near to each other, in radians."""
+    sizes: Floats = np.linalg.norm(left - right, axis=(-2, -1)) / np.sqrt(2)
+    return sizes
 
 
 # From a row to a row, in any arithmetic.

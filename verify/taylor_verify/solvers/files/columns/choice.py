@@ -13,11 +13,10 @@ from typing import Final
 from taylor_verify.records.faults import cut
 from taylor_verify.solvers.files.columns.column_units import OWN, Unit, in_brackets
 from taylor_verify.solvers.files.columns.forms import FORMS
-from taylor_verify.solvers.files.columns.names import GROUPS
+from taylor_verify.solvers.files.columns.names import GROUPS, TO_SPACE
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.spelling import Spelling
 
-_TO_SPACE: Final = "body axes to space axes"
 MOST_NAMED: Final = 8
 _NUMBERED: Final = re.compile(r"[a-z]\d")
 
@@ -73,7 +72,7 @@ class Choice:
             return ""
         form, spelling = FORMS.get(self.group), self.spelling
         parts = [f"{self.shown} taken as {form.words if form else ' '.join(GROUPS[self.group])}"]
-        parts += [_TO_SPACE] if form and not spelling.turn else []
+        parts += [TO_SPACE] if form and not spelling.turn else []
         parts += [self._remark] if self._remark and not is_plain and not form else []
         parts += [str(spelling.turn)] if spelling.turn else []
         parts += [f"in {' and in '.join(words)}"] if words else []

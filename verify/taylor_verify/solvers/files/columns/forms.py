@@ -62,19 +62,14 @@ def _of_euler(axes: Sequence[int], angles: Numbers) -> Sequence[Value]:
 
 
 def _of_axis(numbers: Numbers) -> Sequence[Value]:
-    *axis, angle = numbers
+    """Return the turn about an axis of any length; its length is the angle where there is no other."""
+    axis, *stated = numbers[:3], *numbers[3:]
     with gmpy2.context(precision=STAND_IN_BITS + _SPARE_BITS):
         length = gmpy2.sqrt(sum(_mpfr(part) ** 2 for part in axis))
+        angle = _mpfr(stated[0]) if stated else length
         if not angle:
             return (Fraction(1), *[Fraction(0)] * 3)
-        return _exact(_half_turn([_mpfr(part) / length for part in axis], _mpfr(angle)))
-
-
-def _of_vector(vector: Numbers) -> Sequence[Value]:
-    with gmpy2.context(precision=STAND_IN_BITS + _SPARE_BITS):
-        length = gmpy2.sqrt(sum(_mpfr(part) ** 2 for part in vector))
-        unit = [_mpfr(part) / length for part in vector] if length else [length] * 3
-        return _exact(_half_turn(unit, length))
+        return _exact(_half_turn([_mpfr(part) / length for part in axis], angle))
 
 
 def _of_rodrigues(vector: Numbers) -> Sequence[Value]:
@@ -107,7 +102,7 @@ FORMS: Final[Mapping[str, Form]] = {
     form.name: form
     for form in (
         *map(_euler, _TURNS),
-        Form("rotvec", _VECTOR, "a rotation vector", _of_vector, _VECTOR),
+        Form("rotvec", _VECTOR, "a rotation vector", _of_axis, _VECTOR),
         Form("mrp", _numbered("mrp"), "modified Rodrigues parameters", _of_rodrigues),
         Form("gibbs", _numbered("gibbs"), "a Gibbs vector", _of_gibbs),
         Form("axis_angle", _AXIS, "an axis and an angle", _of_axis, _AXIS[3:]),

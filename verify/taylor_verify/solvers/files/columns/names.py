@@ -53,14 +53,14 @@ _P: Final = ("px", "py", "pz")
 _L: Final = ("lx", "ly", "lz")
 _DOUBT: Final = "the scalar is the first of them or the last, and the names do not say which"
 
-_TO_SPACE: Final = "body axes to space axes"
-_TO_BODY_SHOWS: Final = f"{_TO_SPACE}; one that takes space to body shows as transposed"
+TO_SPACE: Final = "body axes to space axes"
+_TO_BODY_SHOWS: Final = f"{TO_SPACE}; one that takes space to body shows as transposed"
 _AXES: Final = {"omega": "body axes", "linear_velocity": "of the body's origin, in body axes"}
 _REMARKS: Final = {
     **_AXES,
     "quaternion": "scalar first",
-    "attitude": _TO_SPACE,
-    **{form.name: f"{form.words}, {_TO_SPACE}" for form in FORMS.values()},
+    "attitude": TO_SPACE,
+    **{form.name: f"{form.words}, {TO_SPACE}" for form in FORMS.values()},
 }
 
 
@@ -87,7 +87,7 @@ def _spellings() -> Iterator[Spelling]:
     yield Spelling(
         "quaternion", ("w", *_LETTERS), is_whole=True, unless=frozenset({"u", "v", "p", "r"})
     )
-    for stems, remark in ((_MATRICES, _TO_SPACE), (_COSINES, _TO_BODY_SHOWS)):
+    for stems, remark in ((_MATRICES, TO_SPACE), (_COSINES, _TO_BODY_SHOWS)):
         for stem, pairs in product(stems.split(), COMPONENTS["attitude"]):
             yield Spelling("attitude", tuple(stem + c for c in pairs), remark)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Final, NamedTuple
 
 from taylor_verify.solvers.files.columns.column_units import (
@@ -77,8 +77,9 @@ class Name:
     column: Column
 
     @classmethod
+    @lru_cache(4096)
     def of(cls, text: str) -> Name:
-        """Return a name without a column."""
+        """Return a name without a column; headers and objects repeat many."""
         return cls(Column(text, ()))
 
     @cached_property

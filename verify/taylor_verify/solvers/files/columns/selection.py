@@ -30,7 +30,7 @@ from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.columns.names import GROUP_OF, GROUPS, SPELLINGS
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.columns.spelling import Turn
-from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.files.formats.column import Column, listed
 from taylor_verify.solvers.files.stated_step import STEP_COLUMNS
 
 # Printed by `publish reference` beside the motion, or a statement of the step: no part of the motion.
@@ -242,9 +242,7 @@ class _Chooser:
                 yield f"{shown_names(present)} not taken: nothing in the file is {' '.join(lacking)}"
         ignored = [n for n in self.candidates.names if n not in used and n.text not in _SILENT]
         if ignored:
-            more = len(ignored) - MOST_NAMED
-            named = shown_names(ignored[:MOST_NAMED])
-            yield f"ignored: {named}{f' and {more} more' if more > 0 else ''}"
+            yield f"ignored: {listed([f'`{cut(n.text)}`' for n in ignored], MOST_NAMED, ' ')}"
 
 
 def _distinct(choices: Sequence[Choice]) -> list[Choice]:

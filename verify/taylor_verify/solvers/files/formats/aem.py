@@ -23,7 +23,7 @@ from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.column_units import DEGREE
 from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.formats.ccsds import Segment, is_turning, segment
-from taylor_verify.solvers.files.formats.column import Column, Table, alike
+from taylor_verify.solvers.files.formats.column import Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.values import Value, exact
 
@@ -257,16 +257,14 @@ def _of_spin(read: Segment) -> tuple[list[Column], str]:
 
 
 def _rows(texts: Sequence[Sequence[str]], path: Path, faults: Faults) -> list[Row]:
-    """Return the numbers by rows; what is none is a fault."""
+    """Return the numbers by rows up to the first fault."""
     rows: list[Row] = []
-    with alike(faults, str(path)) as wrong:
-        for row in zip(*texts, strict=True):
-            try:
-                rows.append([exact(text) for text in row])
-            except ValueError as error:
-                got, place = cut(" ".join(row)), f"{path}, state {len(rows) + 1}"
-                wrong(str(error), got, place)
-                break
+    for row in zip(*texts, strict=True):
+        try:
+            rows.append([exact(text) for text in row])
+        except ValueError as error:
+            faults.add(str(error), cut(" ".join(row)), f"{path}, state {len(rows) + 1}")
+            break
     return rows
 
 

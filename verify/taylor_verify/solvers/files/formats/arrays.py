@@ -16,12 +16,18 @@ import numpy as np
 
 from taylor_verify.records.faults import refusal
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.formats.column import BYTES, COLUMNS, Column, Table, check_size
+from taylor_verify.solvers.files.formats.column import (
+    BYTES,
+    COLUMNS,
+    Column,
+    Table,
+    check_size,
+    listed,
+)
 
 # Decimals in text are numbers too.
 _NUMBERS: Final = "fiuU"
 _SIGNALS: Final = ".signals.values"
-_MOST_LISTED: Final = 8
 _MOST_OF_MATRIX: Final = 30
 
 
@@ -117,7 +123,7 @@ def _without_common_group(arrays: list[Array]) -> list[Array]:
 def _refuse_several(arrays: Sequence[Array], place: object) -> None:
     groups = sorted({a.group for a in arrays if a.is_time})
     if len(groups) > 1 and "" not in groups:
-        got = f"times in the groups {_listed(groups)}"
+        got = f"times in the groups {listed(groups)}"
         raise refusal("one trajectory", got, place, f"name one of them: FILE#{groups[0]}")
 
 
@@ -163,9 +169,9 @@ def _left_out(arrays: Sequence[Array], read: Sequence[Array], rows: int) -> Iter
     names = {array.name for array in read}
     other = [array for array in arrays if array.name not in names]
     if short := [array.name for array in other if array.kind in _NUMBERS]:
-        yield f"not read, because they have no {rows} rows: {_listed(short)}"
+        yield f"not read, because they have no {rows} rows: {listed(short)}"
     if strange := [array.name for array in other if array.kind not in _NUMBERS]:
-        yield f"not read, because they hold no real numbers: {_listed(strange)}"
+        yield f"not read, because they hold no real numbers: {listed(strange)}"
 
 
 def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
@@ -178,8 +184,3 @@ def _matrices(read: Sequence[Array], rows: int) -> Iterator[str]:
             shown = ", ".join(names[:_MOST_OF_MATRIX])
             more = f" ... {names[-1]}" if width > _MOST_OF_MATRIX else ""
             yield f"the columns of {array.name} are {shown}{more}, as in --columns {example},..."
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = len(names) - _MOST_LISTED
-    return ", ".join(names[:_MOST_LISTED]) + (f" and {more} more" if more > 0 else "")

@@ -30,7 +30,6 @@ from taylor_verify.solvers.files.formats.column import (
     Column,
     Table,
     check_size,
-    refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.missing_library import unbroken
@@ -80,9 +79,8 @@ class _Header(NamedTuple):
         return values.reshape(self.shape, order=self.order)
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return the arrays; every header is checked before the data of any is read."""
-    refuse_part(part, path)
     if file.beginning(6) == np.lib.format.MAGIC_PREFIX:
         return _of_one(file, path)
     with unbroken("an NPZ archive", path, _BROKEN):

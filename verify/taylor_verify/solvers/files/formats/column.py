@@ -5,12 +5,11 @@ Every format holds a file to these limits before it makes anything of its conten
 
 from __future__ import annotations
 
-from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.records.faults import Faults, Refused, cut, refusal
+from taylor_verify.records.faults import Faults, cut
 from taylor_verify.records.limit import Limit
 from taylor_verify.scenes.reading.time_table import MOST_SAMPLES
 
@@ -36,6 +35,7 @@ ELEMENTS: Final = Limit(4_000_000, "elements", "a state of an ephemeris has ten:
 # Entries of a column that are worked on at once.
 CHUNK: Final = 4096
 _MOST_ALIKE: Final = 3
+MOST_LISTED: Final = 8
 
 
 class Column(NamedTuple):
@@ -59,20 +59,6 @@ def check_size(columns: int, rows: int, place: object) -> None:
     VALUES.check(columns * rows, place)
 
 
-def refuse_part(part: str, place: object) -> None:
-    """Refuse FILE#PART of a format that holds one trajectory in a file."""
-    if part:
-        raise refusal("a file of one trajectory by its name alone", f"`#{part}`", place)
-
-
-def no_utf8(start: bytes, place: object) -> Refused:
-    """Return the refusal of text in another encoding, told by the first bytes of its file."""
-    is_utf16 = start[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
-    return refusal(
-        "text in UTF-8", "UTF-16 (save it as UTF-8)" if is_utf16 else "other bytes", place
-    )
-
-
 @contextmanager
 def alike(faults: Faults, place: str) -> Iterator[Callable[[str, str, str], None]]:
     """Add the first three of the block's faults of one kind, and the number of the others."""
@@ -87,6 +73,12 @@ def alike(faults: Faults, place: str) -> Iterator[Callable[[str, str, str], None
     yield add
     if count > _MOST_ALIKE:
         faults.lines.append(f"and {count - _MOST_ALIKE} more of this kind @ {place}")
+
+
+def listed(texts: Sequence[str], most: int = MOST_LISTED, between: str = ", ") -> str:
+    """Return the first texts in one line, and the number of the others."""
+    more = f" and {len(texts) - most} more" if len(texts) > most else ""
+    return between.join(texts[:most]) + more
 
 
 def shown(value: object) -> str:

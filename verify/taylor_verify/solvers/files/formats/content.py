@@ -10,8 +10,9 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import BinaryIO, Final, final
 
+from taylor_verify.records.faults import Refused, refusal
 from taylor_verify.records.limit import Limit
-from taylor_verify.solvers.files.formats.column import LINE, LINES, no_utf8
+from taylor_verify.solvers.files.formats.column import LINE, LINES
 
 _BEGINNING: Final = 4096
 _CONTROL: Final = frozenset({*range(32), 127}) - frozenset(b"\t\n\r\f")
@@ -69,7 +70,7 @@ class Content:
         try:
             return self.whole(most).decode(self._encoding)
         except UnicodeDecodeError:
-            raise no_utf8(self.beginning(2), self.path) from None
+            raise self._other_bytes from None
 
     def lines(self, longest: Limit = LINE) -> Iterator[str]:
         """Yield the lines of a text in UTF-8, Latin-1 or UTF-16, blank ones too, each with its end.
@@ -83,12 +84,17 @@ class Content:
                 if len(line) > longest.most:
                     raise longest.refusal("more", f"{self.path}, line {number}")
                 if "\0" in line:
-                    raise no_utf8(self.beginning(2), self.path)
+                    raise self._other_bytes
                 if number > LINES.most:
                     raise LINES.refusal("more", self.path)
                 yield line
         except UnicodeDecodeError:
-            raise no_utf8(self.beginning(2), self.path) from None
+            raise self._other_bytes from None
+
+    @property
+    def _other_bytes(self) -> Refused:
+        got = "UTF-16 (save it as UTF-8)" if self._encoding == "utf-16" else "other bytes"
+        return refusal("text in UTF-8", got, self.path)
 
     @cached_property
     def _text(self) -> TextIOWrapper:

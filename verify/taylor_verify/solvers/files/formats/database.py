@@ -40,6 +40,7 @@ class Database:
     def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
         self._connection, self._path = connection, path
         self._million = 0
+        connection.row_factory = sqlite3.Row
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MESSAGE_BYTES.most)
         connection.set_authorizer(_permission)
         connection.set_progress_handler(self._goes_on, _STEPS_AT_ONCE)
@@ -48,56 +49,48 @@ class Database:
     def topics(self) -> list[Stored]:
         """Return the topics."""
         rows = self._rows(f"SELECT * FROM topics LIMIT {COLUMNS.most + 1}")
-        names = [name for name, *_ in rows.description]
-        topics = [_topic(dict(zip(names, row, strict=True))) for row in self._each(rows)]
+        topics = [_topic(dict(row)) for row in rows]
         COLUMNS.check(len(topics), self._path)
         return topics
 
     def counts(self) -> Counter[int]:
         """Return the number of messages by the number of their topic."""
-        rows = self._rows("SELECT topic_id, count(*) FROM messages GROUP BY topic_id")
-        return Counter(dict(self._each(rows)))
+        return Counter(
+            dict(self._rows("SELECT topic_id, count(*) FROM messages GROUP BY topic_id"))
+        )
 
     def messages(self, topics: Sequence[int]) -> Iterator[bytes]:
         """Yield the messages of some topics by the time of their recording."""
         among = f"topic_id IN ({', '.join(map(str, topics))}) LIMIT {ROWS.most + 1}"
         rows = self._rows(f"SELECT timestamp, rowid FROM messages WHERE {among}")
         # They are sorted here: without an index SQLite would sort the messages themselves.
-        for _, row in sorted(self._each(rows)):
+        for _, row in sorted(map(tuple, rows)):
             # As a list: a reader that ends early must leave no cursor behind.
             one = self._rows(f"SELECT data FROM messages WHERE rowid = {row}")
-            yield from [data for (data,) in self._each(one)]
+            yield from [data for (data,) in one]
 
     def _check_tables(self) -> None:
         """Refuse a database whose topics or messages are a view or a virtual table, which has no page."""
         rows = self._rows("SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0")
-        names = {name for (name,) in self._each(rows)}
+        names = {name for (name,) in rows}
         if missing := [name for name in _TABLES if name not in names]:
             raise refusal("the tables topics and messages", f"no {missing[0]}", self._path)
 
-    def _rows(self, query: str) -> sqlite3.Cursor:
-        with self._interruptible():
-            return self._connection.execute(query)
-
-    def _each(self, rows: sqlite3.Cursor) -> Iterator[tuple[Any, ...]]:
-        with self._interruptible():
-            yield from rows
-
-    def _goes_on(self) -> bool:
-        """Return True to stop SQLite. Python raises KeyboardInterrupt here, and sqlite3 swallows it."""
-        self._million += 1
-        return self._million > _STEPS.most
-
-    @contextmanager
-    def _interruptible(self) -> Iterator[None]:
+    def _rows(self, query: str) -> Iterator[Any]:
+        """Yield the rows of a query, each by number or by name."""
         try:
-            yield
+            yield from self._connection.execute(query)
         except sqlite3.OperationalError as error:
             if error.sqlite_errorcode != sqlite3.SQLITE_INTERRUPT:
                 raise
             if self._million <= _STEPS.most:
                 raise KeyboardInterrupt from None
             raise _STEPS.refusal("more", self._path) from None
+
+    def _goes_on(self) -> bool:
+        """Return True to stop SQLite. Python raises KeyboardInterrupt here, and sqlite3 swallows it."""
+        self._million += 1
+        return self._million > _STEPS.most
 
 
 @contextmanager

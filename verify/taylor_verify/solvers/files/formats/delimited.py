@@ -19,7 +19,6 @@ from taylor_verify.solvers.files.formats.column import (
     Table,
     alike,
     check_size,
-    refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.header import (
@@ -38,18 +37,8 @@ _ROWS_AT_ONCE: Final = 1000
 _DECIMAL_COMMA: Final = re.compile(r"\s*[+-]?\d*(?:,\d+)?(?:[eE][+-]?\d+)?\s*")
 
 
-def read(file: Content, path: Path, part: str) -> Table:
-    """Return the columns; # and % begin a comment line. The rows are counted before any is kept."""
-    refuse_part(part, path)
-    texts = (text for text in file.lines() if text.strip() and not is_comment(text))
-    for count, _ in enumerate(texts):
-        if count > ROWS.most:
-            raise ROWS.refusal("more", path)
-    return table(file, path, first=1)
-
-
-def table(file: Content, path: Path, first: int, marks: Sequence[str] = MARKS) -> Table:
-    """Return the columns of the table that stands from the ``first`` line on."""
+def read(file: Content, path: Path, first: int = 1, marks: Sequence[str] = MARKS) -> Table:
+    """Return the columns of the table from the ``first`` line on; # and % begin a comment line."""
     try:
         top = head(_first_lines(file, first), marks)
         if top is None:
@@ -82,31 +71,29 @@ def _first_lines(file: Content, first: int) -> list[Line]:
     return sorted([*comments, *others])
 
 
-class _Rows:
-    """The cells of each line below the head; ``number`` is that of the last line."""
+def _numbered_rows(file: Content, top: Head) -> Iterator[tuple[int, list[str]]]:
+    """Yield the cells of each row below the head, and the number of its last line."""
+    number = 0
 
-    def __init__(self, file: Content, top: Head) -> None:
-        self._file, self._top, self.number = file, top, 0
-
-    def __iter__(self) -> Iterator[list[str]]:
-        return rows(self._texts(), self._top.mark)
-
-    def _texts(self) -> Iterator[str]:
-        for line in _lines(self._file, self._top.first):
-            self.number = line.number
+    def texts() -> Iterator[str]:
+        nonlocal number
+        for line in _lines(file, top.first):
+            number = line.number
             if not is_rule(line.text):
                 yield line.text
+
+    for cells in rows(texts(), top.mark):
+        yield number, cells
 
 
 def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]]:
     """Return the names of the columns, a number where there is none, and the texts of each."""
-    lines = _Rows(file, top)
-    width = len(top.names) or len(next(iter(lines)))
+    width = len(top.names) or len(next(_numbered_rows(file, top))[1])
     faults, count, parts = Faults(), 0, list[Any]()
     with alike(faults, f"{path}, more lines") as ragged:
 
         def sound() -> Iterator[list[str]]:
-            for row in lines:
+            for number, row in _numbered_rows(file, top):
                 if not any(row) or not any(map(str.strip, row)):
                     # Spreadsheets end in rows of nothing.
                     continue
@@ -116,12 +103,13 @@ def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]
                     yield row
                 else:
                     of = "in the header" if top.names else "in the first row"
-                    place = f"{path}, line {lines.number}"
-                    ragged(f"{width} values as {of}", str(len(row)), place)
+                    ragged(f"{width} values as {of}", str(len(row)), f"{path}, line {number}")
 
         whole = sound()
         while batch := list(islice(whole, _ROWS_AT_ONCE)):
             count += len(batch)
+            if count > ROWS.most:
+                raise ROWS.refusal("more", path)
             check_size(width, count, path)
             # As a string of Python each text takes 50 bytes more.
             parts.append(np.array(batch, dtype=np.dtypes.StringDType()).T)

@@ -22,7 +22,6 @@ from taylor_verify.solvers.files.formats.column import (
     VALUES,
     Column,
     Table,
-    refuse_part,
     shown,
 )
 from taylor_verify.solvers.files.formats.content import Content
@@ -35,9 +34,8 @@ _KEY_OR_BRACKET: Final = re.compile(r"[\[{]|\"\s*:")
 _EXPECTED: Final = 'an object of column arrays {"t": [...], "w1": [...]}'
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return the columns of a document, or of an object in each line."""
-    refuse_part(part, path)
     if path.suffix.lower() in _LINES or _is_of_lines(file):
         return table(_objects(file, path), path)
     document = _document(file, path)
@@ -111,8 +109,6 @@ def _parsed(text: str, place: object) -> Any:
             parse_constant=float,
             object_pairs_hook=named_once,
         )
-    except Refused:
-        raise
     except (ValueError, RecursionError) as error:
         reason = "brackets nested too deeply" if isinstance(error, RecursionError) else error
         raise refusal("a JSON document", f"a fault in it: {reason}", place) from None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from taylor_verify.records.faults import cut, refusal
-from taylor_verify.solvers.files.formats.column import KEYS, Table, refuse_part
+from taylor_verify.solvers.files.formats.column import KEYS, Table
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.entries import Entries, table
 
@@ -31,9 +31,8 @@ def is_one(file: Content) -> bool:
     return _START.match(file.beginning(_BEGINNING)) is not None
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return a column for each number in the messages, by its path."""
-    refuse_part(part, path)
     return table(_messages(file, path), path)
 
 

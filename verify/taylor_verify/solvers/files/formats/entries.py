@@ -17,10 +17,9 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.solvers.files.columns.readings import Name
-from taylor_verify.solvers.files.formats.column import Column, Table, check_size
+from taylor_verify.solvers.files.formats.column import Column, Table, check_size, listed
 
 _DEEPEST: Final = 10
-_MOST_NAMED: Final = 8
 _COMPONENT: Final = re.compile(r"(.*\D)?(?:[0-9]+|[wxyz])")
 _NOTHING: Final = ""
 _SHAPES: Final = Limit(1000, "different sets of fields", "messages of one type have some tens")
@@ -41,7 +40,7 @@ class Shape(NamedTuple):
         if parent:
             return parent in self.inner
         stem = _stem(name)
-        return stem in self.vectors if stem else _is_time(name)
+        return stem in self.vectors if stem else Name.of(name).is_time
 
 
 @dataclass
@@ -98,9 +97,8 @@ def table(rows: Iterable[Entries], path: Path) -> Table:
     if not columns:
         raise refusal('objects {"t": ..., "w1": ...}', "none with a number", path)
     zero = [name for name in columns if _fill(columns[name], name, of_rows, shapes)]
-    more = f" and {len(zero) - _MOST_NAMED} more" if len(zero) > _MOST_NAMED else ""
-    named = ", ".join(f"`{cut(name)}`" for name in zero[:_MOST_NAMED])
-    notes = (f"read as 0 where it is left out: {named}{more}",) if zero else ()
+    named = listed([f"`{cut(name)}`" for name in zero])
+    notes = (f"read as 0 where it is left out: {named}",) if zero else ()
     return Table([Column(name, values) for name, values in columns.items()], notes)
 
 
@@ -111,11 +109,6 @@ def _fill(values: list[Any], name: str, of_rows: Sequence[Shape], shapes: Iterab
         if shape in lacking:
             values[k] = "0"
     return bool(lacking)
-
-
-@lru_cache
-def _is_time(name: str) -> bool:
-    return Name.of(name).is_time
 
 
 @lru_cache(4096)

@@ -13,7 +13,7 @@ from typing import Final
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.regular_file import regular_file
 from taylor_verify.solvers.files.formats import delimited
-from taylor_verify.solvers.files.formats.column import BYTES, Column, Table, refuse_part
+from taylor_verify.solvers.files.formats.column import BYTES, Column, Table
 from taylor_verify.solvers.files.formats.content import Content
 
 _TIME: Final = "time"
@@ -26,10 +26,9 @@ _COLUMNS: Final = {
 }
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return the times, the attitude and the angular velocity of a folder."""
     del file
-    refuse_part(part, path)
     if path.stem not in _COLUMNS:
         named = ", ".join(f"{stem}.42" for stem in _COLUMNS)
         raise refusal(f"one of {named}", cut(path.name), path)
@@ -47,7 +46,7 @@ def _of(path: Path) -> Iterator[Column]:
     names = _COLUMNS[path.stem]
     with regular_file(path, "a report of 42", BYTES) as opened:
         content = Content(opened, path)
-        columns = delimited.table(content, path, first=1).columns
+        columns = delimited.read(content, path).columns
     if len(columns) != len(names):
         raise refusal(f"{len(names)} numbers in a line", str(len(columns)), path)
     yield from (Column(name, column.values) for name, column in zip(names, columns, strict=True))

@@ -11,7 +11,6 @@ import csv
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import pairwise
 from typing import Final, NamedTuple
 
@@ -206,12 +205,7 @@ def _fitting(cells: Sequence[str], row: Sequence[str]) -> list[str]:
 
 
 def _known(names: Sequence[str]) -> int:
-    return sum(map(_is_known, names))
-
-
-@lru_cache(4096)
-def _is_known(name: str) -> bool:
-    return bool(Name.of(name).readings)
+    return sum(bool(Name.of(name).readings) for name in names)
 
 
 # Units.

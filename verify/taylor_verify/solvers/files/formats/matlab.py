@@ -97,12 +97,8 @@ def _hdf5_arrays(content: Any, path: Path) -> Iterator[Array]:
         if "MATLAB_object_decode" in dataset.attrs:
             kind = class_name
         shape = tuple(reversed(dataset.shape or ()))
-        yield Array(name, shape, kind, dataset.dtype.itemsize, partial(_transposed, dataset))
-
-
-def _transposed(dataset: Any) -> np.ndarray[Any, Any]:
-    values: np.ndarray[Any, Any] = dataset[()].T
-    return values
+        load = partial(np.transpose, dataset)
+        yield Array(name, shape, kind, dataset.dtype.itemsize, load)
 
 
 # Versions 5 to 7.

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple
 from taylor_verify.records.faults import cut, refusal
 from taylor_verify.records.limit import Limit
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.solvers.files.formats.column import ROWS, Column, Table
+from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, listed
 
 _MOST_LISTED: Final = 20
 MESSAGE_BYTES: Final = Limit(2**20, "bytes in a message", "one that tells a motion has a thousand")
@@ -84,9 +84,7 @@ def chosen(topics: Sequence[Topic], part: str, path: Path) -> Topic:
 
 
 def _listed(topics: Sequence[Topic]) -> str:
-    more = len(topics) - _MOST_LISTED
-    listed = ", ".join(map(str, topics[:_MOST_LISTED]))
-    return listed + (f" and {more} more" if more > 0 else "") or "none"
+    return listed([*map(str, topics)], _MOST_LISTED) or "none"
 
 
 def table(topic: Topic, messages: Iterable[Any], path: Path) -> Table:

@@ -13,7 +13,7 @@ from taylor_verify.records.faults import cut, refusal
 from taylor_verify.solvers.files.columns.column_units import DIMENSION, OWN
 from taylor_verify.solvers.files.columns.readings import Name
 from taylor_verify.solvers.files.formats import delimited
-from taylor_verify.solvers.files.formats.column import Column, Table, check_size, refuse_part
+from taylor_verify.solvers.files.formats.column import Column, Table, check_size
 from taylor_verify.solvers.files.formats.content import Content
 
 _MOST_LINES: Final = 1000
@@ -26,15 +26,14 @@ _ELEMENTS: Final = {
 }
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return the columns; what the header says of rows, columns and degrees is checked."""
-    refuse_part(part, path)
     top = [line.strip() for line in islice(file.lines(), _MOST_LINES)]
     below = next((k for k, line in enumerate(top, start=1) if line.lower() == _END), None)
     if below is None:
         raise refusal(f"a line `{_END}`", "none", path)
     stated = {key.strip().lower(): text.strip() for key, _, text in (x.partition("=") for x in top)}
-    table = delimited.table(file, path, first=below + 1, marks=_MARKS)
+    table = delimited.read(file, path, first=below + 1, marks=_MARKS)
     rows = len(table.columns[0].values) if table.columns else 0
     for key, count, what in (("nrows", rows, "rows"), ("ncolumns", len(table.columns), "columns")):
         if stated.get(key, str(count)) != str(count):

@@ -22,7 +22,6 @@ from taylor_verify.solvers.files.formats.column import (
     Column,
     Table,
     check_size,
-    refuse_part,
 )
 from taylor_verify.solvers.files.formats.content import Content
 from taylor_verify.solvers.files.formats.memory import bounded_memory
@@ -40,9 +39,8 @@ _NUMBERS: Final = (
 _BROKEN: Final = (pa.ArrowException, OSError, ValueError)
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return the columns; what the footer says of their size is checked before any is read."""
-    refuse_part(part, path)
     with unbroken("a Parquet file", path, _BROKEN), bounded_memory(path):
         footer = parquet.ParquetFile(file.binary)
         names, texts, left = _checked(footer, path)

@@ -1,8 +1,8 @@
 """The formats of a trajectory file: a line of `FORMATS` for each suffix.
 
-To add one: a file beside this one with ``read(file, path, part) -> Table``, and a line here. ``file`` is a
-`Content`, whose every way to read has a limit. ``part`` is the text after # in FILE#PART, which says which
-of several trajectories in a file is read.
+To add one: a module beside this one with ``read(file, path) -> Table``, and a line here. ``file`` is a
+`Content`, whose every way to read has a limit. Where a file may hold several trajectories, the module is
+in `_OF_PARTS`, and ``read`` is given the text after # in FILE#PART too, which says which of them is read.
 """
 
 from __future__ import annotations
@@ -70,6 +70,8 @@ FORMATS: Final[Mapping[str, Format]] = {
     ".db3": Format("a topic of a rosbag of ROS 2; its folder is read too", "rosbag", "rosbags"),
 }
 
+# Those whose files may hold several trajectories.
+_OF_PARTS: Final = frozenset({"aem", "oem", "hdf5", "matlab", "mcap", "rosbag"})
 # A file of any other name that is text.
 _TEXT: Final = FORMATS[".txt"]
 
@@ -89,8 +91,9 @@ def read_table(file: str | os.PathLike[str]) -> Table:
             table = rosbag.read_folder(path, part)
         else:
             with regular_file(path, "a trajectory file", BYTES) as opened:
+                # Its text ends with the file, and not before.
                 content = Content(opened, path)
-                table = _reader(content, path).read(content, path, part)
+                table = _read(content, path, part)
     ROWS.check(max((len(column.values) for column in table.columns), default=0), path)
     return table
 
@@ -123,17 +126,28 @@ def parted(file: str) -> tuple[Path, str]:
     return Path(file), ""
 
 
-def _reader(content: Content, path: Path) -> Any:
-    """Return the file beside this one that reads the format."""
+def _read(content: Content, path: Path, part: str) -> Table:
+    """Return the columns that the format's own file beside this one reads."""
+    name = _reader(content, path)
+    reader: Any = import_module(f"{__package__}.{name}")
+    if part and name not in _OF_PARTS:
+        raise refusal("a file of one trajectory by its name alone", f"`#{part}`", path)
+    given = (content, path, part) if name in _OF_PARTS else (content, path)
+    table: Table = reader.read(*given)
+    return table
+
+
+def _reader(content: Content, path: Path) -> str:
+    """Return the name of the file beside this one that reads the format."""
     if message := ccsds.kind(content):
-        return import_module(f"{__package__}.{message}")
+        return message
     if echo.is_one(content):
-        return echo
+        return "echo"
     known = FORMATS.get(path.suffix.lower(), _TEXT if content.looks_like_text else None)
     if known is None:
         expected = f"a file that ends in {', '.join([*FORMATS, *plugged()])}"
         raise refusal(expected, path.suffix or "no suffix", path)
-    return import_module(f"{__package__}.{known.module}")
+    return known.module
 
 
 def _is_there(package: str) -> bool:

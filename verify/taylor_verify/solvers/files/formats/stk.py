@@ -15,7 +15,7 @@ from typing import Final
 from taylor_verify.records.faults import Faults, Refused, cut, refusal
 from taylor_verify.solvers.files.columns.forms import FORMS
 from taylor_verify.solvers.files.formats.ccsds import is_turning
-from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, alike, refuse_part
+from taylor_verify.solvers.files.formats.column import ROWS, Column, Table, alike
 from taylor_verify.solvers.files.formats.content import Content
 
 _LAST: Final = ("q1", "q2", "q3", "q0")
@@ -35,9 +35,8 @@ _POINTS, _AXES, _FORMAT = "numberofattitudepoints", "coordinateaxes", "timeforma
 _FIXED: Final = ("fixed", "fixednolibration", "ecf", "custom", "topocentric")
 
 
-def read(file: Content, path: Path, part: str) -> Table:
+def read(file: Content, path: Path) -> Table:
     """Return t, q0 ... q3 and, where the file has it, w1 w2 w3."""
-    refuse_part(part, path)
     keywords, names, rows = dict[str, str](), tuple[str, ...](), list[list[str]]()
     faults = Faults()
     with alike(faults, str(path)) as ragged:
