@@ -80,7 +80,9 @@ def conventions(file: TrajectoryFile, scene: Scene, rung: Rung) -> Conventions:
     Raises Unsettled if there is no exact motion, and NotRepresentable if the rung cannot represent the
     scene.
     """
-    searches = [_Search(file, scene, rung, rows) for rows in beginnings(file)]
+    parts = beginnings(file)
+    every = _Search(file, scene, rung, tuple(sorted({k for rows in parts for k in rows})))
+    searches = [_Search(file, scene, rung, rows, every) for rows in parts]
     if not searches or searches[-1].is_explained:
         return Conventions((), World(scene), {})
     # Shorter beginnings come first, and max takes the first of equal ranks.
@@ -115,12 +117,16 @@ def beginnings(file: TrajectoryFile) -> list[tuple[int, ...]]:
 
 @dataclass(frozen=True)
 class _Search:
-    """Some rows of the file as floats, for comparison with the exact motion in any world."""
+    """Some rows of the file as floats, for comparison with the exact motion in any world.
+
+    In the scene's own world the exact motion is that of ``every`` row of all beginnings.
+    """
 
     file: TrajectoryFile
     scene: Scene
     rung: Rung
     rows: tuple[int, ...]
+    every: _Search | None = None
 
     def conventions(self) -> Conventions:
         """Return the conventions that these rows show."""
@@ -242,7 +248,13 @@ class _Search:
     @cached_property
     def own_truth(self) -> _Truth:
         """The rows within reach in the scene's own world, and the exact motion there."""
-        return self._truth(World(self.scene))
+        if self.every is None:
+            return self._truth(World(self.scene))
+        near, truth = self.every.own_truth
+        place = {self.every.rows[k]: i for i, k in enumerate(near)}
+        rows = [k for k, row in enumerate(self.rows) if row in place]
+        some = [place[self.rows[k]] for k in rows]
+        return rows, {name: part[some] for name, part in truth.items()}
 
     def _may_explain(self, world: World) -> bool:
         """Return False for a world that is not possible, or whose motion in float64 explains nothing."""
