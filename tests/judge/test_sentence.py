@@ -133,7 +133,7 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
     ),
     "lost": (
         lambda: changed(lambda omega, t: np.where((t == 3) & (omega == omega), np.nan, omega)),
-        repr, ErrorKind.NOT_FINITE, "not a finite number since t = 3; w1 is nan in row 4, t = 3",
+        repr, ErrorKind.NOT_FINITE, "not a finite number, first at t = 3; w1 is nan in row 4, t = 3",
     ),
 }  # fmt: skip
 

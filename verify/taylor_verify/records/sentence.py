@@ -54,7 +54,8 @@ def _description(verdict: Verdict) -> str:
 def _digits(verdict: Verdict) -> str:
     digits = verdict.digits
     if digits is None or verdict.max is None:
-        return f"not a finite number{_since(verdict)}"
+        first = "" if verdict.since is None else f", first at t = {verdict.since:g}"
+        return f"not a finite number{first}"
     size = f"{verdict.max:.2g}{' rad' if verdict.unit == 'rad' else ''}"
     if not digits:
         return f"no digit is right at t = {verdict.at:g} (error {size})"

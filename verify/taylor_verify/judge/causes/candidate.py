@@ -17,6 +17,9 @@ from taylor_verify.words.causes import with_numbers
 
 # A change below this part of its natural size is none.
 _SAME: Final = 1e-10
+# A number with so many digits, to this part of it, may have been written; by chance one in some hundred is.
+_WRITTEN: Final = 5
+_NEAR: Final = 3e-8
 # Nor is a step, or the damping of a step, below this part.
 _SLIGHT: Final = 1e-6
 
@@ -71,8 +74,19 @@ class Candidate:
             return True
         if self.kind == "damping step":
             return not self.numbers[0] > _SLIGHT * self.family.scale[0]
-        is_factor = self.kind == "clock" or self.family.name.startswith("factor")
+        is_factor = self.kind == "clock" or "factor" in self.family.name
         return is_factor and f"{self.numbers[0]:.6g}" == "1"
+
+
+def has_few_digits(candidate: Candidate) -> bool:
+    """Return True if a candidate has no fitted number, or others that somebody may have written."""
+    pairs = zip(candidate.numbers, candidate.family.right, strict=True)
+    return not candidate.count or all(_is_written(x, right) for x, right in pairs)
+
+
+def _is_written(number: float, right: float) -> bool:
+    written = float(f"{number:.{_WRITTEN}g}")
+    return abs(written - number) <= _NEAR * abs(number) and written != right
 
 
 @dataclass(frozen=True)

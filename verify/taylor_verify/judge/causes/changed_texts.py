@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, product
 from typing import Final
 
 from taylor_verify.judge.causes.many_flows import Floats
@@ -20,6 +20,9 @@ from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
 
 NAME: Final = re.compile(r"\b[A-Za-z_]\w*\b")
 _COMPONENT: Final = re.compile(r"\babs\(([uw])[123]\)")
+_LENGTH: Final = re.compile(r"norm\(\s*([uw])1\s*,\s*(?:\1)2\s*,\s*(?:\1)3\s*\)")
+# Of more numbers than these, two that are exchanged are too many pairs.
+_MOST_EXCHANGED: Final = 6
 _AXES: Final = (1, 2, 3)
 _PAIRS: Final = tuple(product(_AXES, repeat=2))
 _TENSOR: Final = frozenset(INERTIA)
@@ -64,6 +67,13 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
             "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
             speeds,
         )
+    by_components = _by_components(loads)
+    if by_components != loads:
+        yield (
+            "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
+            by_components,
+        )
+    yield from _exchanged(loads)
     yield from _hung_otherwise(loads)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
@@ -73,6 +83,45 @@ def _speed(component: re.Match[str]) -> str:
     """Return the text of the length of the vector that has a component."""
     squares = " + ".join(f"{component.group(1)}{i}*{component.group(1)}{i}" for i in _AXES)
     return f"sqrt({squares})"
+
+
+def _by_components(loads: Loads) -> Loads:
+    """Return the loads with the size of one component for each length of a whole velocity."""
+    lengths = {
+        name: match.group(1)
+        for name, text in loads.definitions
+        if isinstance(text, str) and (match := _LENGTH.fullmatch(text.strip()))
+    }
+    for place in [place for place in places(loads) if place.path[0] == "vectors"]:
+        if isinstance(place.entry, str):
+            axis = int(place.path[-1]) + 1
+
+            def size(match: re.Match[str], axis: int = axis) -> str:
+                letter = lengths.get(match.group())
+                return f"abs({letter}{axis})" if letter else match.group()
+
+            text = _LENGTH.sub(rf"abs(\g<1>{axis})", place.entry)
+            loads = replace(place, loads=loads).put(NAME.sub(size, text))
+    return loads
+
+
+def _exchanged(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield two numbers of [define] exchanged, of scenes with a few."""
+    numbers = [k for k, (_, entry) in enumerate(loads.definitions) if _is_number(entry)]
+    for i, k in combinations(numbers, 2) if len(numbers) <= _MOST_EXCHANGED else ():
+        (one, first), (other, second) = loads.definitions[i], loads.definitions[k]
+        if first != second:
+            definitions = [*loads.definitions]
+            definitions[i], definitions[k] = (one, second), (other, first)
+            yield f"{one} and {other} exchanged", replace(loads, definitions=tuple(definitions))
+
+
+def _is_number(entry: Entry) -> bool:
+    try:
+        Fraction(entry)
+    except (ValueError, ZeroDivisionError):
+        return False
+    return True
 
 
 def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:

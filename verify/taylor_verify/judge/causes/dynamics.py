@@ -13,7 +13,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
-from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.fit import (
@@ -62,6 +62,8 @@ _ALIKE: Final = 0.3
 _NEARLY: Final = 0.02
 # Of the numbers that a fit may begin at, so many are tried: the best one may fit these arcs alone.
 _BEGINS: Final = 2
+# The pace of a motion by a coarse method is wrong by no more than this part.
+_COARSE_PACE: Final = 0.05
 # Fits that end so near to each other, as a part of the scale, are one.
 _APART: Final = 0.01
 
@@ -159,16 +161,21 @@ class Search:
         if not self.is_clear:
             return None
         is_stepped = self.answer.stepping is not None
-        candidates, linear, has_methods = [*faults], list[_Linear](), is_stepped
+        candidates, linear = [*faults], list[_Linear]()
+        has_methods, is_blind = is_stepped, False
         for group in self._groups(families, candidates):
             of_group = self._linear(group)
             linear += of_group
             candidates += self._families(of_group, candidates)
             # Methods cost as much as many families of one number, which may be exact.
-            if not has_methods and not any(map(self._is_exact, candidates)):
+            is_exact = any(map(self._is_exact, candidates))
+            is_blind = any(map(self._is_pace, candidates))
+            if not has_methods and (is_blind or not is_exact):
                 stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
                 candidates += replays(self.answer, stride)
             has_methods = True
+        if is_blind:
+            return self.choice.cause([*filter(has_few_digits, candidates)])
         if not is_stepped and not any(map(self._is_exact, candidates)):
             budget = self.answer.budget
             with suppress(Spent), budget.at_most(budget.left / 4):
@@ -206,6 +213,15 @@ class Search:
         Nor is it seen to leave less than the arcs are wrong by.
         """
         return candidate.defects < max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
+
+    def _is_pace(self, candidate: Candidate) -> bool:
+        """Return True for another pace of the motion that is as exact, and no more than a method's error.
+
+        Such a motion has one pace, as a decay or a steady precession has: it does not tell the error of a
+        method from any number of the equations that sets the pace.
+        """
+        is_near = candidate.kind == "clock" and abs(candidate.numbers[0] - 1) < _COARSE_PACE
+        return is_near and self._is_exact(candidate)
 
     # Evidence.
 

@@ -23,6 +23,7 @@ from taylor_verify.judge.causes.other_frames import (
     degrees,
     frame_that_turns,
     is_near,
+    is_of_steady_turn,
     mean_turn,
     other_columns,
 )
@@ -366,7 +367,8 @@ def _attitudes(answer: Answer) -> Iterator[Reading]:
     if not any(is_near(q, rows) for rows in columns.values()):
         yield from _both_frames(q, truth)
     rate, relative = frame_that_turns(answer, q, truth)
-    yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, relative)
+    if not is_of_steady_turn(answer, rate):
+        yield Reading(f"is {_THAT_TURNS} {numbers(rate)}", 3, relative)
     for words, rows in late_rows(answer, "attitude"):
         yield Reading(words, 3, rows)
 

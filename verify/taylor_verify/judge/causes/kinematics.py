@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, moved, row_to_row
-from taylor_verify.judge.causes.candidate import Candidate, Cause
+from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
 from taylor_verify.judge.causes.changed_equations import (
     AFTER,
     Changes,
@@ -24,6 +24,7 @@ from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.fit import Family, fault, linear
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
 from taylor_verify.judge.causes.many_flows import Floats, flow
+from taylor_verify.judge.causes.other_frames import steady_rate
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
@@ -79,7 +80,11 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
     candidates = [*_updates(turns, method)]
     if method is None:
         faults = [fault(name, "kinematics", {"turns": np.array(pair)}) for name, pair in _WRONG]
-        candidates += [*search.without_numbers(faults), *search.fitted(_families(answer, right))]
+        fitted = search.fitted(_families(answer, right))
+        if steady_rate(answer) is not None:
+            # Such a turn does not tell the error of a method from a factor.
+            fitted = filter(has_few_digits, fitted)
+        candidates += [*search.without_numbers(faults), *fitted]
         name = (
             "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
         )

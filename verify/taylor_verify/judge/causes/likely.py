@@ -81,29 +81,34 @@ def causes_of_file(
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = material_of_file(first, rung, conventions, judged.verdicts, every)
         if answer is not None:
-            known, facts = explained(answer), (*facts, *_not_finite(file, answer))
+            known, facts = explained(answer), (*facts, *_lost_rows(file, answer))
             # A convention tells the story of the rows: no load is missing beside it.
             missing = () if conventions.findings else known.missing_load
             return replace(known, facts=facts, missing_load=missing)
     return Explained(facts=facts)
 
 
-def _not_finite(file: TrajectoryFile, answer: Answer) -> tuple[str, ...]:
-    """Return the fact that some rows of a file are not finite, and whether all others are right."""
-    values = np.hstack(
-        [rows.doubles().reshape(len(file.times), -1) for rows in file.groups.values()]
-    )
-    wrong = np.flatnonzero(~np.all(np.isfinite(values), axis=1))
+def _lost_rows(file: TrajectoryFile, answer: Answer) -> tuple[str, ...]:
+    """Return the fact that some rows of a file are not finite or zero, and whether all others are right."""
+    groups = {
+        name: rows.doubles().reshape(len(file.times), -1) for name, rows in file.groups.items()
+    }
+    values = np.hstack([*groups.values()])
+    is_zero = np.zeros(len(values), dtype=bool)
+    for name in groups.keys() & {"quaternion", "attitude"}:
+        is_zero |= np.all(groups[name] == 0, axis=1)
+    wrong = np.flatnonzero(~np.all(np.isfinite(values), axis=1) | is_zero)
     if not len(wrong):
         return ()
+    what = "zero" if np.all(is_zero[wrong]) else "not finite"
     times = [float(file.times[row]) for row in wrong]
     is_end = wrong[-1] == len(values) - 1 and len(wrong) == wrong[-1] - wrong[0] + 1 > 1
     if is_end:
-        words, others = f"all rows from t = {times[0]:.6g} on are not finite", "those before"
+        words, others = f"all rows from t = {times[0]:.6g} on are {what}", "those before"
     elif len(wrong) == 1:
-        words, others = f"one row is not finite (t = {times[0]:.6g})", "all others"
+        words, others = f"one row is {what} (t = {times[0]:.6g})", "all others"
     else:
-        words = f"{len(wrong)} rows are not finite (first at t = {times[0]:.6g})"
+        words = f"{len(wrong)} rows are {what} (first at t = {times[0]:.6g})"
         others = "all others"
     are_all = answer.count + len(wrong) == len(values)
     right = others if are_all else f"all of {answer.count} examined rows"

@@ -6,10 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import Answer, conjugate, product
+from taylor_verify.judge.causes.float_answer import Answer, conjugate, matrices, product
 from taylor_verify.judge.causes.many_flows import Floats
 
 NEAR: Final = 1e-2
+# A body turns steadily to this part; the error of a method is slower than this part of its rate.
+_STEADY: Final = 1e-4
+_SLOW: Final = 0.05
 
 
 def other_columns(truth: Floats) -> dict[str, Floats]:
@@ -56,6 +59,27 @@ def frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> tuple[Floats, 
         rate = rate + _rate(rest, elapsed)
     # The frame turns as much one way as what is seen from it turns the other way.
     return -rate, turned
+
+
+def steady_rate(answer: Answer) -> Floats | None:
+    """Return the rate of turn, space axes, of a motion that turns steadily; None of any other."""
+    assert answer.truth.q is not None
+    right, v = answer.right, answer.truth.v
+    nu = v @ right.inverse.T if right.has_momenta else v
+    omega = np.einsum("nij,nj->ni", matrices(answer.truth.q), nu[:, -3:])
+    mean = np.mean(omega, axis=0)
+    off = float(np.max(np.linalg.norm(omega - mean, axis=1)))
+    return mean if off < _STEADY * np.linalg.norm(mean) else None
+
+
+def is_of_steady_turn(answer: Answer, rate: Floats) -> bool:
+    """Return True for a slow rate about the axis of a steady turn, as the error of a method makes it."""
+    turn = steady_rate(answer)
+    if turn is None:
+        return False
+    size, slow = float(np.linalg.norm(turn)), float(np.linalg.norm(rate))
+    is_along = np.linalg.norm(np.cross(turn, rate)) < _STEADY * size * slow
+    return bool(is_along and slow < _SLOW * size)
 
 
 def _rate(turns: Floats, elapsed: Floats) -> Floats:

@@ -198,7 +198,7 @@ class Choice:
         right, changes = self.answer.right, candidate.changes
         if candidate.kind == "body" and candidate.count > 1:
             mass = nearest_factor(right, changes["mass"])
-            free = ", known up to a common factor" * is_up_to_a_factor(right)
+            free = ", all entries known up to one factor" * is_up_to_a_factor(right)
             words = with_numbers(candidate.family.name + free, *entries(right.mass, mass))
             return words, {"mass": mass}
         words = structure(candidate.family, candidate.numbers)

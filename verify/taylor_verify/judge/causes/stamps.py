@@ -152,7 +152,7 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
     jumps = np.flatnonzero(np.abs(np.diff(late)) > 0.2 * size)
     if 0 < len(jumps) <= max(3, len(times) // 50) and answer.stride > 0:
         rows = np.diff(late)[jumps] / spacing * answer.stride
-        if np.max(np.abs(rows - np.rint(rows))) < _PATTERN:
+        if np.max(np.abs(rows - np.rint(rows))) < _PATTERN and np.all(np.rint(rows)):
             firsts, off = answer.places[jumps + 1] + 1, np.cumsum(np.rint(rows)).astype(int)
             words = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
             return f"rows dropped or doubled: row k holds the state {', '.join(words)}"

@@ -51,6 +51,8 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         return cause
     if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
         return None
+    if len(bad) > 1 and bad[0] == 0 and bad[1] == 1:
+        return None  # what dies away from the start on, as behind a filter, is no jump
     first = 1 if len(bad) and bad[0] == 0 else 0
     if len(bad) <= first:
         return _from_a_row(answer, first) if first else None
