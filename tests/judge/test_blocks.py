@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.trajectories import write_csv
-from mpmath import mp, mpf
+from mpmath import mp
 
 from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
@@ -184,19 +184,6 @@ def test_a_few_rows_have_the_scale_of_all(name: str) -> None:
         assert len(few.radius) <= 4
         for invariant in invariants(scene):
             assert invariant.scale(few) == invariant.scale(motion)
-
-
-def test_numbers_come_back_from_blocks_over_the_last_scale() -> None:
-    """Equal numbers of different blocks stay equal, and numbers of one block are divided once."""
-    series = Series()
-    series.add(np.array([mpf(1), mpf(2)]), mpf(3))
-    series.add(np.array([mpf(2)]), mpf(7))
-    values, scale = series.joined()
-    assert scale == 7
-    assert values[1] == values[2] == pytest.approx(2 / 7, rel=SAME)
-    one = Series()
-    one.add(np.array([mpf(1)]), mpf(3))
-    assert one.joined()[0].tolist() == [1 / 3]
 
 
 def test_rows_are_formed_as_their_values_are() -> None:

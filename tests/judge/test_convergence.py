@@ -34,19 +34,6 @@ def test_rounding_hides_no_order(order: int, seed: int) -> None:
     assert fit.order == pytest.approx(order, abs=0.14)
 
 
-@pytest.mark.parametrize("steps", [[0.1, 0.1, 0.2], [0.1, 0.0, 0.2], [0.1, -0.1, 0.2]])
-def test_steps_are_positive_and_distinct(steps: list[float]) -> None:
-    """Else the call is wrong, and says so."""
-    with pytest.raises(ValueError, match="expected positive steps, no two the same"):
-        convergence(steps, [1.0, 1.0, 1.0])
-
-
-def test_every_step_has_an_error() -> None:
-    """Unlike lengths are a wrong call."""
-    with pytest.raises(ValueError, match="got 2 errors and 3 floors"):
-        convergence([0.1, 0.2, 0.4], [1.0, 2.0])
-
-
 # Small fixed-step integrators of the test's own.
 
 
