@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -76,12 +75,6 @@ def test_importing_the_package_imports_no_library_of_numbers() -> None:
     } | {f"taylor_verify.{name}" for name in beside}
 
 
-@pytest.mark.parametrize("name", TYPES)
-def test_a_type_is_exported_by_its_name(name: str) -> None:
-    """It is the class itself, and no module has another of this name."""
-    assert getattr(taylor_verify, name).__name__ == name
-
-
 def named_in(hint: Any) -> Iterator[type]:
     """The classes of this package that an annotation names."""
     if isinstance(hint, type) and hint.__module__.startswith("taylor_verify"):
@@ -99,12 +92,6 @@ def test_the_hints_of_what_functions_take_and_return_are_types() -> None:
             known.add(each)
             waiting += chain.from_iterable(map(named_in, get_type_hints(each).values()))
     assert {taylor_verify.Motion, taylor_verify.Trajectory, taylor_verify.Judgement} <= known
-
-
-@pytest.mark.parametrize("function", FUNCTIONS, ids=NAMES)
-def test_a_function_goes_to_another_process(function: FunctionType) -> None:
-    """Pickled and read again it is the same function."""
-    assert pickle.loads(pickle.dumps(function)) is function
 
 
 # What they return.
