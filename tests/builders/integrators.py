@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
@@ -41,8 +40,8 @@ def rk4(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Float
 
 def turned(q: Floats, angle: Floats) -> Floats:
     """q times the exponential of half a rotation vector in body axes."""
-    size = float(np.linalg.norm(angle))
-    s, v = math.cos(size / 2), math.sin(size / 2) / size * angle
+    half = np.linalg.norm(angle) / 2
+    s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
     return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))])
 
 

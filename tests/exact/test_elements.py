@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import vector
+from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
@@ -28,24 +28,21 @@ from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 30
 # A number of 30 digits, times rates of some units, moves a motion by less than this.
 CLOSE = mpf("1e-26")
-CLOCK = Clock(Fraction(0), (Fraction(1),))
 
 
 def rigid(inertia: Vector, omega: Vector) -> Scene:
-    body = RigidBody(tensors.diagonal(inertia))
-    return Scene("drawn", "drawn", "euler", frozenset(), body, Spin(omega), CLOCK)
+    return one_instant(RigidBody(tensors.diagonal(inertia)), Spin(omega))
 
 
 def immersed(body: Clebsch, linear: Vector, angular: Vector) -> Scene:
-    start = Impulse(linear, angular)
-    return Scene("drawn", "drawn", "kirchhoff", frozenset(), body.body(), start, CLOCK)
+    return one_instant(body.body(), Impulse(linear, angular))
 
 
 def nutation(scene: Scene) -> Nutation:
@@ -226,7 +223,7 @@ def test_a_disturbance_of_a_steady_rotation_has_the_linearised_spectrum(
         tensor = tensors.product(tensors.product(P, tensor), tensors.transpose(P))
         omega = tensors.apply(P, omega)
     body = RigidBody(tensor)
-    scene = Scene("drawn", "drawn", "euler", frozenset(), body, Spin(omega), CLOCK)
+    scene = one_instant(body, Spin(omega))
     K, H = np.array(body.inverse_inertia, dtype=float), tensors.apply(tensor, omega)
     eigenvalues = np.linalg.eigvals(_euler_jacobian(K, np.array(H, dtype=float)))
     largest = max(eigenvalues, key=abs)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from builders.free_spins import OBLIQUE, rotation
 from builders.numbers import apart
-from builders.scenes import TENSOR, vector
+from builders.scenes import TENSOR, one_instant, vector
 from builders.turns import by_turns
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -23,7 +23,7 @@ from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Clock, Quaternion, Spin
+from taylor_verify.scenes.motion import Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 30
@@ -104,11 +104,10 @@ MOTIONS = {
 }
 
 
-def scene_of(free: FreeGyrostat, *instants: Fraction | int) -> Scene:
+def scene_of(free: FreeGyrostat) -> Scene:
     """The scene of a motion, its attitude tracked."""
-    clock = Clock(Fraction(0), tuple(map(Fraction, instants or (1,))))
     body, start = RigidBody(free.inertia, rotor=free.rotor), Spin(free.omega, TILTED)
-    return Scene("wheels", "wheels", "euler", frozenset({"attitude"}), body, start, clock)
+    return one_instant(body, start, "attitude")
 
 
 def paced(free: FreeGyrostat, instants: Sequence[Fraction]) -> list[Fraction]:

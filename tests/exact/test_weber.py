@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.numbers import apart, overlap
-from builders.scenes import vector
+from builders.scenes import one_instant, vector
 from flint import ctx
 from mpmath import mp, mpf
 
@@ -35,7 +35,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Clock, Impulse, Motion
+from taylor_verify.scenes.motion import Impulse, Motion
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -56,8 +56,7 @@ def built(
 ) -> Scene:
     """A scene whose T is sum (p_i x_i^2 + r_i y_i^2)/2 and a multiple of x.y, which is nothing here."""
     body = ImmersedBody(tensors.diagonal(p), tensors.diagonal((coupling,) * 3), tensors.diagonal(r))
-    clock = Clock(Fraction(0), (Fraction(1),))
-    return Scene("built", "built", "kirchhoff", frozenset(), body, Impulse(x, y), clock)
+    return one_instant(body, Impulse(x, y))
 
 
 def second(r: Vector, theta: Fraction, shared: Fraction = Fraction(4)) -> Vector:

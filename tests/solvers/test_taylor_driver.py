@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.processes import PATIENCE, interruptible
+from builders.scenes import sampled
 from builders.written_loads import euler
 from hypothesis import given
 from hypothesis import strategies as st
@@ -279,16 +280,6 @@ def test_what_would_take_days_is_not_begun() -> None:
 
 
 # As much work as the scene asks for, and no more.
-
-
-def sampled(scene: Scene, count: int) -> Scene:
-    """The same span at so many equally spaced instants."""
-    clock = scene.clock
-    span = clock.instants[-1] - clock.start
-    return replace(
-        scene,
-        clock=Clock(clock.start, EquallySpaced(clock.start, span / (count - 1), count)),
-    )
 
 
 @pytest.mark.parametrize("name", ["euler/generic", "kirchhoff/whole-motion"])
