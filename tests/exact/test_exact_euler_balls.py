@@ -43,8 +43,8 @@ TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
 # Measures
 
 
-def scene(spin: FreeSpin, attitude: Quaternion = TILTED) -> Scene:
-    return one_instant(RigidBody(spin.inertia), Spin(spin.omega, attitude), "attitude")
+def scene(spin: FreeSpin) -> Scene:
+    return one_instant(RigidBody(spin.inertia), Spin(spin.omega, TILTED), "attitude")
 
 
 def times(*entries: int | str | Fraction) -> list[Fraction]:

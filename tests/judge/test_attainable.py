@@ -168,11 +168,7 @@ def test_floor_does_not_know_the_units(shift: int, model: str) -> None:
     """
     asked = replace(RIGID, track=frozenset()) if model == "euler" else REVOLVED
     factor = power_of_two(shift)
-    if isinstance(asked.initial, Spin):
-        start: Spin | Impulse = Spin(tensors.scaled(factor, asked.initial.omega))
-    else:
-        x, y = (tensors.scaled(factor, v) for v in (asked.initial.linear, asked.initial.angular))
-        start = replace(asked.initial, linear=x, angular=y)
+    start = asked.initial.with_moving(tuple(factor * v for v in asked.initial.moving))
     times = tuple(t / factor for t in asked.clock.instants)
     scaled = replace(asked, initial=start, clock=Clock(Fraction(0), times))
     for one, other in zip(_all_floors(asked), _all_floors(scaled), strict=True):

@@ -249,11 +249,7 @@ def test_units_are_chosen_so_that_a_rescaled_scene_is_the_same_problem(exponent:
     faster = replace(
         scene,
         body=_scaled_body(scene.body, factor),
-        initial=replace(
-            scene.initial,
-            linear=tensors.scaled(1 / factor, scene.initial.linear),
-            angular=tensors.scaled(1 / factor, scene.initial.angular),
-        ),
+        initial=scene.initial.with_moving(tuple(v / factor for v in scene.initial.moving)),
     )
     one, other = pose(scene, rung("f64")), pose(faster, rung("f64"))
     assert (one.parameters, one.initial_momenta, one.times) == (

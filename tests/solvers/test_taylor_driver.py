@@ -97,9 +97,9 @@ def test_rounding_beyond_the_range_is_an_error() -> None:
         rung("f32").round(largest + 2**103)
 
 
-def spinning(omega: tuple[Fraction, ...], end: Fraction, inertia: int = 3) -> Scene:
-    """A free body of moments 1, 2, inertia, sampled eleven times."""
-    moments = (Fraction(1), Fraction(2), Fraction(inertia))
+def spinning(omega: tuple[Fraction, ...], end: Fraction) -> Scene:
+    """A free body of moments 1, 2, 3, sampled eleven times."""
+    moments = (Fraction(1), Fraction(2), Fraction(3))
     clock = Clock(Fraction(0), tuple(end * k / 10 for k in range(11)))
     body = RigidBody(tensors.diagonal(moments))
     return Scene("spinning", "", "euler", frozenset(), body, Spin(omega), clock)
