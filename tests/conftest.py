@@ -73,3 +73,14 @@ def ambient_precision() -> Iterator[None]:
         f"expected mp.prec and flint.ctx.prec as before the test, {before}, got {after}; "
         "scope a precision with mp.workprec, mp.workdps or flint.ctx.workprec"
     )
+
+
+@pytest.fixture
+def without_causes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Search for no causes, which change no verdict: they are most of the work on an answer that fails."""
+    from taylor_verify import chain
+    from taylor_verify.judge.causes.likely import Explained
+    from taylor_verify.judge.files import judgement
+
+    monkeypatch.setattr(judgement, "causes_of_file", lambda *_: Explained())
+    monkeypatch.setattr(chain, "with_causes", lambda judged, *_: judged)

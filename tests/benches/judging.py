@@ -10,8 +10,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
+from builders.scenes import sampled
+
 from benches.ratio import Action, Ratio, Side, Target
-from benches.scenes import sampled
 from taylor_verify.batch.sweeps.chunk import Chunk, judge
 from taylor_verify.batch.sweeps.questions import questions
 from taylor_verify.exact.route import solution

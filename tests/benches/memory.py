@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from builders.scenes import sampled
+
 from benches.ratio import Ratio, Side, Target
-from benches.scenes import sampled
 from taylor_verify.batch.sweeps.sweep import sweep
 from taylor_verify.run import run
 from taylor_verify.scenes.reading.reader import load

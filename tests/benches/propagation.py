@@ -10,8 +10,9 @@ from itertools import product
 from typing import Final
 from unittest import mock
 
+from builders.scenes import sampled
+
 from benches.ratio import RESOLUTION, Action, Ratio, Side, Target
-from benches.scenes import sampled
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load

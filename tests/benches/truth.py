@@ -7,12 +7,14 @@ from fractions import Fraction
 from functools import partial
 from typing import Final
 
+from builders.scenes import tracking_all
+
 from benches.ratio import Action, Ratio, Side
-from benches.scenes import tracking_all
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.models.problem import pose
 from taylor_verify.numbers.precision import rung
+from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.taylor.driver import Taylor
 
 _WHOLE: Final = ("euler/with-attitude", "kirchhoff/whole-motion")
@@ -23,7 +25,7 @@ _WIDER_RUNG: Final = "mp237"
 
 
 def _mpmath_over_balls(name: str) -> tuple[Side, Side]:
-    scene = tracking_all(name)
+    scene = tracking_all(load(name))
     times = [10 * k + Fraction(1, 7) for k in range(_ROUTES_INSTANTS)]
     sides = []
     for route in ("mpmath", "arb"):
@@ -37,7 +39,7 @@ def _motion(exact: object, times: Sequence[Fraction], _: None) -> object:
 
 
 def _enclosure_over_driver(name: str) -> tuple[Side, Side]:
-    scene = tracking_all(name)
+    scene = tracking_all(load(name))
     times, problem = scene.clock.elapsed, pose(scene, rung(_WIDER_RUNG))
     return (
         Action(lambda _: TaylorSolution(scene).motion(times, _ENCLOSED_DIGITS)),

@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 from flint import arb, ctx
 
-from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, vector
+from builders.scenes import GENERAL, LOADED, QUATERNION, one_instant, sample_scene, vector
 from taylor_verify.exact.balls import balls
 from taylor_verify.exact.enclosure import step
 from taylor_verify.exact.enclosure.coefficients import Rows
@@ -21,56 +21,29 @@ from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.tensors import diagonal
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Impulse, Spin, State
+from taylor_verify.scenes.motion import Spin, State
 from taylor_verify.scenes.scene import Scene
 
 WIDE = Fraction(1, 10**6)
 
 CASES = {
-    "euler": (
-        one_instant(
-            RigidBody(diagonal(vector(1, 2, 3))),
-            Spin(vector("0.3", 1, "0.2"), QUATERNION),
-            "attitude",
-        ),
-        6,
-    ),
+    "euler": (sample_scene(RigidBody(diagonal(vector(1, 2, 3))), "attitude"), 6),
     "one axis": (
         one_instant(
             RigidBody(diagonal(vector(2, 1, 1))), Spin(vector(0, 0, 1), QUATERNION), "attitude"
         ),
         2,
     ),
-    "kirchhoff": (
-        one_instant(
-            GENERAL,
-            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
-            "attitude",
-            "centre",
-        ),
-        4,
-    ),
-    "loaded": (
-        one_instant(
-            LOADED,
-            Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1), QUATERNION, vector(1, 2, 3)),
-            "attitude",
-            "centre",
-        ),
-        -3,
-    ),
+    "kirchhoff": (sample_scene(GENERAL, "attitude", "centre"), 4),
+    "loaded": (sample_scene(LOADED, "attitude", "centre"), -3),
 }
 
 
 def moved(start: State, signs: Sequence[int], size: Fraction) -> State:
     """The start with each component of the momenta moved by the size, in the direction of its sign."""
-    if isinstance(start, Spin):
-        return replace(
-            start, omega=tuple(w + s * size for w, s in zip(start.omega, signs, strict=True))
-        )
-    both = zip(start.linear + start.angular, signs, strict=True)
-    z = tuple(value + sign * size for value, sign in both)
-    return replace(start, linear=z[:3], angular=z[3:])
+    return start.with_moving(
+        tuple(v + sign * size for v, sign in zip(start.moving, signs, strict=True))
+    )
 
 
 def enclosed(asked: Scene, time: Fraction, size: Fraction, bits: int) -> Row:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from builders.integrators import turned
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.scenes.bodies import RigidBody
@@ -54,15 +55,8 @@ def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Colum
         if step % every == 0:
             states.append([start + step * h, *w, *q])
         w = kick(inertia, rotor, w, moment, h)
-        q = _turned(q, h * w)
+        q = turned(q, h * w)
+        q /= np.linalg.norm(q)
     table = np.array(states)
     columns = named(("t",), table[:, :1])
     return columns | named(VECTORS["omega"], table[:, 1:4]) | named(QUATERNION, table[:, 4:])
-
-
-def _turned(q: Array, angle: Array) -> Array:
-    """q times the quaternion of a turn about body axes."""
-    half = np.linalg.norm(angle) / 2
-    s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
-    turned = [q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))]
-    return np.array(turned) / np.linalg.norm(turned)

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import gmpy2
 import numpy as np
 
+from builders.integrators import step
 from taylor_verify.scenes.bodies import ImmersedBody
 from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
@@ -133,16 +133,6 @@ def kirchhoff_rates(scenes: Sequence[Scene], array: Callable[[Any], Rows]) -> Ra
     return rates
 
 
-def step(rates: Rates, state: Rows, h: Rows) -> Rows:
-    """Take one step of the classical Runge-Kutta method."""
-    k1 = rates(state)
-    k2 = rates(state + h / 2 * k1)
-    k3 = rates(state + h / 2 * k2)
-    k4 = rates(state + h * k3)
-    after: Rows = state + h / 6 * (k1 + 2 * (k2 + k3) + k4)
-    return after
-
-
 # The answers.
 
 
@@ -164,13 +154,13 @@ def answers(
 def _answers(scenes: Sequence[Scene], numbers: Arithmetic, every: int, push: Push) -> list[Answer]:
     array = numbers.array
     make = kirchhoff_rates if isinstance(scenes[0].body, ImmersedBody) else euler_rates
-    advance = partial(step, make(scenes, array))
+    rates = make(scenes, array)
     state = array([_start(scene) for scene in scenes])
     h = array([[scene.clock.elapsed[1] / every] for scene in scenes])
     rows = [state]
     for _ in scenes[0].clock.elapsed[1:]:
         for _ in range(every):
-            state = push(state, advance(state, h))
+            state = push(state, step(lambda _, now: rates(now), 0, state, h))
         rows.append(state)
     return [_columns(scene, np.array([row[k] for row in rows])) for k, scene in enumerate(scenes)]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
@@ -15,54 +14,52 @@ from taylor_verify.models.problem import Problem
 Floats = np.ndarray[Any, Any]
 
 
-def euler_rates(problem: Problem, number: type) -> Callable[[Floats], Floats]:
+def euler_rates(problem: Problem) -> Callable[[Floats], Floats]:
     inertia = np.array(problem.given.body.inertia, dtype=float)
-    inverse = np.linalg.inv(inertia).astype(number)
-    inertia = inertia.astype(number)
+    inverse = np.linalg.inv(inertia)
     return lambda w: inverse @ cross(inertia @ w, w)
 
 
-def explicit_euler(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+def explicit_euler(f: Callable[[Floats], Floats], w: Floats, h: float) -> tuple[Floats, Floats]:
     return w + h * f(w), w
 
 
-def rk4(f: Callable[[Floats], Floats], w: Floats, h: Any) -> tuple[Floats, Floats]:
+def rk4(f: Callable[[Floats], Floats], w: Floats, h: float) -> tuple[Floats, Floats]:
     """The step, and the mean of the angular velocities at its four stages."""
-    two = type(h)(2)
     k1 = f(w)
-    w2 = w + h / two * k1
+    w2 = w + h / 2 * k1
     k2 = f(w2)
-    w3 = w + h / two * k2
+    w3 = w + h / 2 * k2
     k3 = f(w3)
     w4 = w + h * k3
-    weights = (w + two * w2 + two * w3 + w4) / type(h)(6)
-    return w + h / type(h)(6) * (k1 + two * k2 + two * k3 + f(w4)), weights
+    mean = (w + 2 * w2 + 2 * w3 + w4) / 6
+    return w + h / 6 * (k1 + 2 * k2 + 2 * k3 + f(w4)), mean
 
 
 def turned(q: Floats, angle: Floats) -> Floats:
     """q times the exponential of half a rotation vector in body axes."""
-    size = float(np.linalg.norm(angle))
-    s, v = math.cos(size / 2), math.sin(size / 2) / size * angle
+    half = np.linalg.norm(angle) / 2
+    s, v = np.cos(half), np.sinc(half / np.pi) * angle / 2
     return np.array([q[0] * s - q[1:] @ v, *(q[0] * v + s * q[1:] + cross(q[1:], v))])
 
 
-def fixed_step(
-    method: Callable[..., tuple[Floats, Floats]], number: type = np.float64, attitude: bool = False
-) -> Callable[[Problem, float], Floats]:
+def fixed_step(method: Callable[..., tuple[Floats, Floats]]) -> Callable[[Problem, float], Floats]:
+    """Rows of omega and the quaternion at the samples, by steps that divide their spans."""
+
     def solve(problem: Problem, step: float) -> Floats:
-        f = euler_rates(problem, number)
+        f = euler_rates(problem)
         initial = problem.given.initial
-        w = np.array([float(v) for v in initial.omega]).astype(number)
+        w = np.array([float(v) for v in initial.omega])
         q = np.array([float(v) for v in initial.attitude])
         q /= np.linalg.norm(q)
-        rows = [[*w, *q] if attitude else [*w]]
+        rows = [[*w, *q]]
         for a, b in pairwise(float(t) for t in problem.given.clock.elapsed):
             count = round((b - a) / step)
-            h = number((b - a) / count)
+            h = (b - a) / count
             for _ in range(count):
                 w, mean = method(f, w, h)
-                q = turned(q, float(h) * mean.astype(float)) if attitude else q
-            rows.append([*w, *q] if attitude else [*w])
+                q = turned(q, h * mean)
+            rows.append([*w, *q])
         return np.array(rows)
 
     return solve

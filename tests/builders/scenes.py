@@ -12,6 +12,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
@@ -69,6 +70,13 @@ def everything(scene: Scene) -> Scene:
     """A scene that tracks all that its model has, from another attitude and centre."""
     place = {} if isinstance(scene.initial, Spin) else {"centre": PLACE}
     return replace(tracking_all(scene), initial=replace(scene.initial, attitude=FRAME, **place))
+
+
+def sampled(scene: Scene, rows: int) -> Scene:
+    """The scene with so many samples, equally spaced over its own time."""
+    start, end = scene.clock.start, scene.clock.instants[-1]
+    instants = EquallySpaced(start, (end - start) / (rows - 1), rows)
+    return replace(scene, clock=Clock(start, instants))
 
 
 def tracking_all(scene: Scene) -> Scene:

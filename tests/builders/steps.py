@@ -10,7 +10,7 @@ from typing import Any, final
 from builders.verdicts import by_quantity
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.numbers.precision import rung
 from taylor_verify.records.observed_order import SAME, Convergence, convergence
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.scene import Scene
@@ -37,11 +37,9 @@ class AtStep(Solver):
         return replace(trajectory, steps=ceil(float(span) / self.step))
 
 
-def by_step(
-    scene: Scene, answer: Answer, steps: Sequence[float], rung: str = "f64"
-) -> dict[str, Convergence]:
+def by_step(scene: Scene, answer: Answer, steps: Sequence[float]) -> dict[str, Convergence]:
     """The convergence of every quantity that is measured."""
-    problem = pose(scene, rung_named(rung))
+    problem = pose(scene, rung("f64"))
     solvers = [AtStep(answer, step) for step in steps]
     judged = [by_quantity(judgement(problem, s, s.solve(problem))) for s in solvers]
     orders = {}

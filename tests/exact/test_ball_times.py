@@ -7,23 +7,16 @@ from functools import cache
 from typing import Any
 
 import pytest
-from builders.numbers import overlap
-from builders.routes import closed_routes, has_route
+from builders.routes import has_route
 from builders.scenes import everything
-from builders.turns import by_turns
 from flint import arb, ctx
-from mpmath import mp
 
 from taylor_verify.exact.balls import Enclosed
-from taylor_verify.exact.carried import carried
 from taylor_verify.exact.route import solution
-from taylor_verify.exact.solution import Solution
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-
-DIGITS = 25
 
 
 @cache
@@ -42,30 +35,6 @@ def all_that_is_closed(scene: Scene) -> Scene:
     """The scene with all that its closed form knows."""
     whole = everything(scene)
     return whole if has_route(whole, "arb") else scene
-
-
-def as_it_is(rows: dict[str, Any], elapsed: Any, number: Any) -> None:
-    """Leave every quantity as it is."""
-
-
-def at_numbers(inner: Solution) -> Solution:
-    """The motion at times that are numbers of its route, each within a rounding of the rational."""
-    return carried(inner, as_it_is, clock=lambda t, number: number(t))
-
-
-@pytest.mark.parametrize(
-    ("name", "route"),
-    # By turns a form has one route, the other, and none.
-    by_turns((name, route) for name in free_forms() for route in closed_routes(load(name))),
-)
-def test_a_ball_of_a_rational_gives_the_motion_at_the_rational(name: str, route: str) -> None:
-    """They agree within both radii before the start, at it and beyond the end, with attitude and centre."""
-    inner = solution(all_that_is_closed(load(name)), route)
-    end = load(name).clock.elapsed[-1]
-    times = [end / 7, Fraction(0), -end / 3, 5 * end]
-    here, there = (body.motion(times, DIGITS) for body in (inner, at_numbers(inner)))
-    assert overlap(here, there)
-    assert max(there.radius) <= mp.mpf(10) ** -DIGITS
 
 
 @pytest.mark.parametrize("name", free_forms())

@@ -71,15 +71,6 @@ def test_the_precision_rises_until_the_balls_are_narrow(lost: int) -> None:
     assert encloses(motion, {"omega": [[third, Fraction(1)]]})
 
 
-@pytest.mark.parametrize("size", [-400, 400])
-def test_a_radius_is_relative_to_numbers_of_any_size(size: int) -> None:
-    """A vector of 1e-400 or 1e400 is known to as many digits as one of order 1."""
-    value = Fraction(10) ** size / 3
-    motion = Told(lambda elapsed, bits: {"omega": [[ball(value)]]}).motion(NOW, DIGITS)
-    assert 0 < motion.radius[0] <= mpf(10) ** -DIGITS
-    assert encloses(motion, {"omega": [[value]]})
-
-
 @pytest.mark.parametrize(
     "solution",
     [
@@ -127,21 +118,6 @@ def test_one_bad_number_is_enough(quantity: str, row: int, bad: arb) -> None:
         motion,
         {"omega": [[t + 1] * 3 for t in times], "attitude": [[[t + 2] * 3] * 3 for t in times]},
     )
-
-
-def test_the_ambient_precision_is_restored() -> None:
-    """An attempt works at its own precision and leaves that of python-flint alone, failing or not."""
-    precisions = []
-
-    def looking(elapsed: Sequence[Fraction], bits: int) -> Enclosure:
-        precisions.append((ctx.prec, bits))
-        raise Undecidable
-
-    before = ctx.prec
-    with pytest.raises(Unsettled):
-        Told(looking).motion(NOW, DIGITS)
-    assert ctx.prec == before
-    assert all(prec == bits for prec, bits in precisions)
 
 
 # What a radius says. Balls are made whose true value lies in a corner: no radius may be smaller.
@@ -248,14 +224,6 @@ def test_widths_of_rows_are_those_of_each(
             assert sum(e * e for e in errors) <= exact_value(radius) ** 2 * least
     for radius, double in zip(radii, doubles.tolist(), strict=True):
         assert double == radius or double != double
-
-
-def test_of_a_vector_that_is_zero_the_radius_is_absolute() -> None:
-    """Zero held exactly has radius zero; a ball about zero has no relative radius at all."""
-    assert module.width([arb(0)] * 3) == 0
-    assert not mp.isfinite(module.width([arb(0), arb(0, 1e-30)]))
-    assert not mp.isfinite(module.width([NOT_A_NUMBER]))
-    assert not mp.isfinite(module.width([arb(1), INFINITE]))
 
 
 # Between rationals, balls and mpmath.

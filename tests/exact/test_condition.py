@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from builders.scenes import (
     CLEBSCH,
-    IMPULSE,
     LOADED,
     MOMENT,
     QUATERNION,
@@ -23,7 +22,6 @@ from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.by_differences import derivatives
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
-from taylor_verify.exact.conditioning.linearised import Flow
 from taylor_verify.exact.conditioning.path_times import many
 from taylor_verify.exact.conditioning.variation import integrated
 from taylor_verify.exact.taylor import TaylorSolution
@@ -33,10 +31,9 @@ from taylor_verify.numbers.tensors import (
     diagonal,
     inverse,
     product,
-    scaled,
     transpose,
 )
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -135,31 +132,6 @@ def test_a_body_at_rest() -> None:
     assert abs(flow.norms("omega", "momentum")[0] / stiffest - 1) <= 1e-10
 
 
-def test_norms_follow_the_units() -> None:
-    """In another unit of impulse, a million times larger, each norm scales as its units do."""
-    solid = sample_scene(CLEBSCH, "attitude", "centre")
-    body = CLEBSCH
-    factor = Fraction(2**20)
-    # x, y -> factor x, y; the same motion needs T's coefficients divided by the factor.
-    blocks = (body.linear, body.coupling, body.angular)
-    heavy = ImmersedBody(*(tuple(scaled(1 / factor, row) for row in block) for block in blocks))
-    start = replace(
-        IMPULSE,
-        linear=tuple(factor * e for e in IMPULSE.linear),
-        angular=tuple(factor * e for e in IMPULSE.angular),
-    )
-    light_norms = transition(solid, times(0, 2))
-    heavy_norms = transition(sample_scene(heavy, "attitude", "centre", start=start), times(0, 2))
-    for out, into, scale in (
-        ("linear_impulse", "angular_impulse", 1.0),
-        ("attitude", "linear_impulse", 2.0**-20),
-        ("centre", "angular_impulse", 2.0**-20),
-        ("centre", "attitude", 1.0),
-    ):
-        expected = light_norms.norms(out, into)[1] * scale
-        assert abs(heavy_norms.norms(out, into)[1] - expected) <= 1e-12 * expected
-
-
 @pytest.mark.parametrize(
     "start",
     [
@@ -246,16 +218,6 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, times(0, 250)) is None
-
-
-@pytest.mark.parametrize("heavier", [Fraction(2) ** 20, Fraction(2) ** -20])
-def test_the_unit_of_time_is_that_of_a_heavier_body(heavier: Fraction) -> None:
-    """A damped body whose moments are all larger turns alike, and is damped alike."""
-    light, heavy = (
-        sample_scene(RigidBody(tuple(scaled(factor, row) for row in TENSOR), damping=Fraction(3)))
-        for factor in (Fraction(1), heavier)
-    )
-    assert Flow.of(light).time == Flow.of(heavy).time
 
 
 @pytest.mark.slow

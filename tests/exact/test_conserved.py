@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import isqrt
 from typing import Any
 
@@ -133,13 +132,6 @@ def of_rows(scene: Scene, rows: list[list[Any]]) -> Motion:
 # The algebra.
 
 
-def test_the_square_of_a_unit_quaternion_is_one() -> None:
-    """Polynomials on unit quaternions have one form: |q|^4 is the number 1."""
-    q = [symbols_of(())[f"q{k}"] for k in range(4)]
-    square = sum(multiplied(a, a) for a in q)
-    assert multiplied(square, square) == 1
-
-
 def test_a_product_without_end_is_refused() -> None:
     """Sums whose product has more terms than are looked at raise TooLong, and nothing is found there."""
     long = sum(symbols_of(f"a{k}" for k in range(isqrt(MOST_TERMS))).values())
@@ -147,11 +139,3 @@ def test_a_product_without_end_is_refused() -> None:
         multiplied(long, long)
     powers = " * ".join(f"(w1 + w2 + w3 + t + r1{1 + k % 3})" for k in range(9))
     assert conservation(euler([f"{powers} / 7", "0", "0"])) == Conservation()
-
-
-def test_nothing_is_said_of_a_body_without_written_loads() -> None:
-    """Conserved quantities of a free body are those of its kind."""
-    scene = FOUND["weight"][0]
-    free = replace(scene, body=scene.body.with_loads(None))
-    assert conservation(free) == Conservation()
-    assert all(each.is_conserved for each in invariants(free))

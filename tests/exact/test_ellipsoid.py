@@ -217,28 +217,3 @@ def test_a_wrong_sign_in_the_added_inertia_is_caught(monkeypatch: pytest.MonkeyP
     finally:
         monkeypatch.undo()
         ellipsoid.inertias.cache_clear()
-
-
-# Units, and no fluid.
-
-
-@pytest.mark.parametrize("s", [Fraction(1, 8), Fraction(7, 3)])
-def test_other_units_of_length(s: Fraction) -> None:
-    """Lengths scaled by s scale p by s^-3 and r by s^-5, exactly."""
-    small, large = (diagonal(shape(axes).body()) for axes in ((3, 2, 1), (3 * s, 2 * s, s)))
-    scaled = [
-        written(number) / s**power for number, power in zip(small, (3,) * 3 + (5,) * 3, strict=True)
-    ]
-    assert [*map(written, large)] == scaled
-
-
-def test_without_a_fluid_the_body_is_alone() -> None:
-    """In a fluid of no density M and I are those of the solid, 3 M = 4 pi a b c rho and so on, exactly."""
-    body = shape((3, 2, 1), fluid=0).body()
-    mass = 8 * PI
-    assert [*map(written, diagonal(body))] == [
-        1 / mass,
-        1 / mass,
-        1 / mass,
-        *(5 / (mass * squares) for squares in (5, 10, 13)),
-    ]

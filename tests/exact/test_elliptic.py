@@ -69,23 +69,3 @@ def test_no_digit_is_lost_at_either_end_or_over_many_periods(
     (sn, cn, dn), (s, c, d) = jacobi(*given_one), theta_route(*given_one)
     assert max(abs(sn - s), abs(cn - c)) <= FEW_ULP * mp.eps
     assert ulps(dn, d) <= FEW_ULP
-
-
-@given(st.integers(1, 10**6 - 1).map(lambda n: mpf(n) / 10**6))
-@settings(max_examples=30, deadline=None)
-def test_complete_integral_is_the_hypergeometric_one(m: mpf) -> None:
-    """K = pi/2 F(1/2, 1/2; 1; m), summed by a route that knows no mean."""
-    with mp.workdps(DIGITS + 10):
-        K = Landen(m, 1 - m).quarter_period
-        series = mp.pi / 2 * mp.hyp2f1(mpf(1) / 2, mpf(1) / 2, 1, m)
-    assert ulps(+K, series) <= FEW_ULP
-
-
-@pytest.mark.parametrize("m_prime", ["1e-12", "1e-24", "1e-60"])
-def test_complete_integral_near_the_separatrix(m_prime: str) -> None:
-    """K = L + (L - 1) m'/4 + O(m'^2 L) with L = log(4/k') (DLMF 19.12.1)."""
-    small = mpf(m_prime)
-    L = mp.log(4 / mp.sqrt(small))
-    K = Landen(1 - small, small).quarter_period
-    # The next term of the series is (9/64)(L - 7/6) m'^2.
-    assert abs(K - (L + (L - 1) * small / 4)) <= L * small**2 + 200 * mp.eps

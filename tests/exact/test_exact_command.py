@@ -238,15 +238,6 @@ def test_without_a_closed_form_the_answer_is_enclosed_by_taylor_series(exact: As
     assert len(document["rows"]) == 1
 
 
-def test_a_motion_that_does_not_settle_is_undecided(exact: Asked) -> None:
-    """Where the Taylor route gives up, the exit is 3 and the reason is told."""
-    document = exact("euler/constant-moment", "--at", "1e30", "--route", "taylor")
-    assert exact.status == 3
-    assert document["rows"] == []
-    assert "undecided" in exact.error
-    assert "undecided" in document["because"]
-
-
 @pytest.mark.parametrize(
     ("arguments", "fragment"),
     [

@@ -15,13 +15,10 @@ from builders.free_spins import (
     ON_SEPARATRIX,
     SPINS,
     near_separatrix,
-    rotation,
     spinning,
     turned,
 )
 from builders.scenes import vector
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from mpmath import mp, mpf
 
 from taylor_verify.exact.euler.jacobi import free_rotation
@@ -57,21 +54,6 @@ FAR = {
     "axisymmetric, long": (SPINS["axisymmetric, irrational axis"], LONG),
     "max-axis, long": (SPINS["max-axis, full tensor"], -LONG),
 }
-
-
-# Bodies drawn at random
-
-SMALL = st.integers(-20, 20)
-QUATERNIONS = st.tuples(SMALL, SMALL, SMALL, SMALL).filter(any)
-MOMENTS = st.lists(st.integers(1, 60), min_size=3, max_size=3, unique=True)
-OMEGAS = st.tuples(SMALL, SMALL, SMALL).filter(any)
-
-
-@st.composite
-def spins(draw: st.DrawFn) -> FreeSpin:
-    """A body with three different moments in any orientation, spinning anyhow at a rate up to 2."""
-    omega = tuple(Fraction(entry, 10) for entry in draw(OMEGAS))
-    return turned(rotation(*draw(QUATERNIONS)), spinning(vector(*draw(MOMENTS)), omega))
 
 
 # Measures
@@ -133,15 +115,6 @@ def test_regime_beside_the_separatrix(sign, exponent):
     """One part in 1e400 more or less of one component decides which axis is encircled."""
     spin = near_separatrix(Fraction(sign, 10**exponent))
     assert spin.regime == ("max-axis" if sign > 0 else "min-axis")
-
-
-@given(spins())
-@settings(max_examples=50, deadline=None)
-def test_invariants_do_not_depend_on_the_axes(spin):
-    """The turned motion has the same characteristic polynomial, separation and T."""
-    other = turned(OBLIQUE, spin)
-    for name in ("cubic", "discriminant", "separation", "twice_energy"):
-        assert getattr(other, name) == getattr(spin, name)
 
 
 @pytest.mark.parametrize("name", FAR)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from builders.free_spins import EXTREMES, SPINS, spinning
 from builders.numbers import overlap
-from builders.scenes import vector
+from builders.scenes import one_instant, vector
 from builders.turns import by_turns
 from flint import arb
 from mpmath import mp, mpf
@@ -31,7 +31,7 @@ from taylor_verify.exact.lattice import Lattice
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion, Spin
+from taylor_verify.scenes.motion import IDENTITY, Quaternion, Spin
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 50
@@ -43,12 +43,8 @@ TILTED: Quaternion = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
 # Measures
 
 
-def scene(spin: FreeSpin, attitude: Quaternion = TILTED) -> Scene:
-    clock = Clock(Fraction(0), (Fraction(1),))
-    start = Spin(spin.omega, attitude)
-    return Scene(
-        "free", "", "euler", frozenset({"attitude"}), RigidBody(spin.inertia), start, clock
-    )
+def scene(spin: FreeSpin) -> Scene:
+    return one_instant(RigidBody(spin.inertia), Spin(spin.omega, TILTED), "attitude")
 
 
 def times(*entries: int | str | Fraction) -> list[Fraction]:

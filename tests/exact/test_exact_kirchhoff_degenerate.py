@@ -10,10 +10,10 @@ from fractions import Fraction
 import pytest
 from builders.clebsch import STOUT
 from builders.numbers import apart
-from builders.scenes import one_instant, vector
+from builders.scenes import one_instant
 from mpmath import mp, mpf
 
-from taylor_verify.exact.kirchhoff.quartic import Nutation, Polynomial, repeated_root, value
+from taylor_verify.exact.kirchhoff.quartic import Nutation, repeated_root
 from taylor_verify.exact.kirchhoff.regime import regime
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.taylor import TaylorSolution
@@ -114,31 +114,3 @@ def test_a_double_root_anywhere(place: str) -> None:
         with mp.workdps(DIGITS + 20):
             motion = exact.motion(times, DIGITS)
             assert apart(truth, motion) <= 2 * mpf(10) ** -DIGITS
-
-
-def _times(a: Polynomial, b: Polynomial) -> Polynomial:
-    product = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, c in enumerate(a):
-        for j, d in enumerate(b):
-            product[i + j] += c * d
-    return tuple(product)
-
-
-@pytest.mark.parametrize(
-    ("factor", "times"), [((1, 0, 1), 2), ((1, 5), 3), ((1, -1, -3), 2), ((2,), 2)]
-)
-def test_a_single_repeated_root_is_found(factor: tuple[int, ...], times: int) -> None:
-    """The repeated root is exact, whatever the others are."""
-    root = Fraction(-7, 3)
-    polynomial = vector(*factor)
-    for _ in range(times):
-        polynomial = _times(polynomial, (Fraction(1), -root))
-    assert value(polynomial, root) == 0
-    assert repeated_root(polynomial) == root
-
-
-@pytest.mark.parametrize("square", [(1, 0, -2), (1, 0, 1), (1, -1, 0)])
-def test_two_repeated_roots_are_not_one(square: tuple[int, ...]) -> None:
-    """A square of a quadratic with distinct roots has no single repeated root."""
-    assert repeated_root(_times(vector(*square), vector(*square))) is None
-    assert repeated_root(vector(*square)) is None

@@ -6,18 +6,17 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from builders.scenes import vector
+from builders.scenes import one_instant, vector
 from mpmath import mp
 
 from taylor_verify.exact.elements import Elements, elements
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
 from taylor_verify.exact.route import solution
 from taylor_verify.numbers import tensors
-from taylor_verify.scenes.bodies import Body, ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Spin, State
+from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
+from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.scene import Scene
 
-CLOCK = Clock(Fraction(0), (Fraction(1),))
 X, Y = vector("0.5", "0.2", "0.3"), vector("0.3", "0.5", 1)
 
 
@@ -26,11 +25,7 @@ def immersed(b: Fraction, x: tensors.Vector = X) -> Scene:
     one = vector(1, 1, 1)
     A, B = (tensors.diagonal(tensors.scaled(Fraction(k), one)) for k in (2, b))
     body = ImmersedBody(A, B, tensors.diagonal(vector(1, 2, 3)))
-    return scene_of("kirchhoff", body, Impulse(x, Y))
-
-
-def scene_of(model: str, body: Body, start: State) -> Scene:
-    return Scene("drawn", "drawn", model, frozenset(), body, start, CLOCK)
+    return one_instant(body, Impulse(x, Y))
 
 
 def story_of(orbit: Elements) -> str:
@@ -76,7 +71,7 @@ def test_a_body_whose_wheels_cancel_its_momentum_has_one_steady_spin() -> None:
     omega = vector("1/2", "1/4", "1/3")
     inertia = tensors.diagonal(vector(1, 2, 3))
     rotor = tensors.scaled(Fraction(-1), tensors.apply(inertia, omega))
-    orbit = elements(scene_of("euler", RigidBody(inertia, rotor=rotor), Spin(omega)), 20)
+    orbit = elements(one_instant(RigidBody(inertia, rotor=rotor), Spin(omega)), 20)
     assert orbit.regime == "steady"
     assert orbit["H2"].value == 0
     assert not [name for name in orbit if name.startswith("spin_")]

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from builders.free_spins import rotation
 from builders.numbers import apart as distance
-from builders.scenes import vector
+from builders.scenes import one_instant, vector
 from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
@@ -18,7 +18,7 @@ from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
+from taylor_verify.scenes.motion import Impulse, Motion, Spin
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 40
@@ -27,11 +27,8 @@ FRAME = (ONE, Fraction(-2), Fraction(1, 3), TWO)
 
 
 def loaded(inertia: Matrix, moment: Vector, omega: Vector, attitude: bool = False) -> Scene:
-    track = frozenset({"attitude"} if attitude else ())
-    clock = Clock(Fraction(0), (Fraction(0), ONE))
-    return Scene(
-        "drawn", "drawn", "euler", track, RigidBody(inertia, moment), Spin(omega, FRAME), clock
-    )
+    track = ("attitude",) if attitude else ()
+    return one_instant(RigidBody(inertia, moment), Spin(omega, FRAME), *track)
 
 
 def apart(one: Motion, other: Motion) -> mpf:

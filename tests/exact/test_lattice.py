@@ -8,8 +8,6 @@ from fractions import Fraction
 
 import pytest
 from flint import acb, arb, ctx
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 from taylor_verify.exact.balls import Undecidable
 from taylor_verify.exact.lattice import Lattice, lattice
@@ -105,21 +103,6 @@ def test_p_obeys_its_equation(invariants: Invariants) -> None:
             assert close(cubic / slope**2, acb(1))
 
 
-@pytest.mark.parametrize("name", PERIODIC)
-def test_p_has_its_period(name: str) -> None:
-    """p(u + L) = p(u), and on the real line it is above its least value, which is at L/2."""
-    with at_work(CASES[name]) as (cell, length):
-        period = cell.period
-        assert period is not None
-        for u in points(length):
-            assert same(cell.p(u + period), cell.p(u))
-        least, level = cell.p(acb(period / 2))
-        assert level.contains(0)
-        assert abs(level) <= NARROW * abs(least) ** 2 + NARROW
-        for k in (1, 3, 6, 7):
-            assert cell.p(acb(period * k / 8))[0].real > least.real
-
-
 @pytest.mark.parametrize("name", ["large roots close", "small roots close"])
 def test_a_period_loses_no_bits_to_roots_that_are_close(name: str) -> None:
     """Also where the roots share half of the bits and more."""
@@ -141,22 +124,6 @@ def test_the_argument_leads_back_to_its_point(invariants: Invariants) -> None:
             point = cell.p(cell.argument(*there))
             assert same(point, there)
             assert not point[1].overlaps(-there[1])
-
-
-fractions = st.fractions(-3, 3, max_denominator=50)
-
-
-@settings(max_examples=40)
-@given(fractions, fractions, st.integers(-5, 5), st.integers(-5, 5))
-def test_any_argument_in_any_lattice(g2: Fraction, g3: Fraction, a: int, b: int) -> None:
-    """Whatever the invariants and the point."""
-    assume((a, b) != (0, 0))
-    with at_work((g2, g3)) as (cell, length):
-        u = acb(length * a, length * b)
-        there = cell.p(u)
-        assume(all(value.is_finite() for value in there))
-        assume(not there[1].contains(0))
-        assert same(cell.p(cell.argument(*there)), there)
 
 
 @pytest.mark.parametrize("root", [1, 0, -1])
@@ -200,18 +167,6 @@ def test_beside_a_half_period_both_signs_are_covered(name: str) -> None:
 
 
 # The jets of s
-
-
-@by_case
-def test_s_is_odd_with_a_simple_zero(invariants: Invariants) -> None:
-    """s(-u) = -s(u); s(0) = s''(0) = 0 and s'(0) is not zero."""
-    with at_work(invariants) as (cell, length):
-        for u in points(length):
-            assert close(cell.jet(-u, 0)[0] / cell.jet(u, 0)[0], acb(-1))
-        value, slope, bend = cell.jet(acb(0), 2)
-        assert value.contains(0)
-        assert bend.contains(0)
-        assert not slope.contains(0)
 
 
 @by_case

@@ -14,7 +14,6 @@ from builders.written_loads import euler, kirchhoff
 from mpmath import mp
 
 from taylor_verify.exact.conditioning.condition import path, transition
-from taylor_verify.exact.rates import rates
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.exact.route import solution
 from taylor_verify.scenes.scene import Scene
@@ -88,11 +87,3 @@ def test_an_orbit_carries_the_attitude_that_a_load_reads_though_nobody_tracks_it
     scene = replace(SCENES["attitude"], track=frozenset())
     assert path(scene).blocks == ("momentum", "attitude")
     assert path(replace(SCENES["clock"], track=frozenset())).blocks == ("momentum",)
-
-
-def test_rates_refuse_written_loads() -> None:
-    """The equations of constant loads give no rates of a body under written ones."""
-    scene = SCENES["clock"]
-    motion = solution(scene).motion(TIMES, 15)
-    with pytest.raises(ValueError, match="written loads"):
-        rates(scene, motion)

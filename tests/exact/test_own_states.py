@@ -1,4 +1,4 @@
-"""States of a scene's own in the truth: closed forms, an independent integrator, and broken twins."""
+"""States of a scene's own in the truth: closed forms, arcs, boxes of starts, and a broken twin."""
 
 from __future__ import annotations
 
@@ -56,31 +56,18 @@ inertia = [1.2, 0.9, 1.6]
 omega = [0.3, -0.5, 0.4]
 attitude = [0.5, 0.6, -0.4, 0.45]
 [time]
-end = {end}
+end = 1
 samples = 2
 """
 SATELLITES = {
-    "wheels": (
-        'rotor = ["h1", "h2", "h3"]',
-        'h = { start = [0.1, 0, -0.05], rate = ["0.8*q1 + w1/2", "0.8*q2 + w2/2", "0.8*q3 + w3/2"] }',
-    ),
     "wheel of a text": (
         'rotor = ["tanh(2*h)", "sin(t)/5", 0.1]\nmoment = [0.03, 0, "-w3/9"]',
         'h = { start = "1/3", rate = "q1 - h/3 + w1*w2" }',
-    ),
-    "integral": (
-        'moment = ["-0.8*q1 - i1/10 - 0.6*w1 + 0.02", "-0.8*q2 - i2/10 - 0.6*w2", "0.015*sin(t/3)"]',
-        'i = { start = [0, 0], rate = ["q1 - i1/50", "q2 - i2/50"] }',
     ),
     "sampled": (
         'rotor = [0.05, 0, 0.1]\nmoment = ["a1", "a2", "m1/3"]',
         'm = { every = "1/5", value = ["-0.8*q1 - w1/2", "clip(-0.8*q2 - w2/2, -0.15, 0.15)"] }\n'
         'a = { every = "1/5", offset = "1/10", start = [0, 0], value = ["m1", "m2"] }',
-    ),
-    "relay": (
-        'moment = ["m1", "m2", 0]',
-        'm = { every = "1/4", start = [0, 0], value = ["0.1*(1 if w1 < m1 else -1)", '
-        '"-floor(10*w2)/40 if abs(w2) > 0.2 else sign(q2)/50"] }',
     ),
 }
 
@@ -96,9 +83,9 @@ def about_axes(states: str, body: str, omega: str = "[0, 0, 0]", end: str = "4")
     return read(text, "about-axes")
 
 
-def satellite(name: str, end: str = "1") -> Scene:
+def satellite(name: str) -> Scene:
     body, states = SATELLITES[name]
-    text = SATELLITE.format(track=named(states), states=states, body=body, end=end)
+    text = SATELLITE.format(track=named(states), states=states, body=body)
     return read(text, "satellite")
 
 
@@ -270,9 +257,6 @@ def test_instants_cost_bits_and_no_digits() -> None:
         w = w[0] - w[1] / 10, w[1] + w[0] / 10
     got = motion(scene, "80")
     assert_near(got, "omega", 0, [*w, 0])
-
-
-# An independent integrator, by other equations: the momentum in space for wheels.
 
 
 def test_arcs_begin_with_own_states_of_their_own() -> None:

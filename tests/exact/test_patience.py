@@ -30,10 +30,3 @@ def test_an_explanation_says_what_it_left_out(monkeypatch: pytest.MonkeyPatch) -
     assert any(warning.startswith("left out: the run") for warning in content["warnings"])
     assert [row["verdict"] for row in content["gates"]] == ["undecided"]
     assert content["orbit"]["period"]
-
-
-def test_a_short_run_is_explained_whole() -> None:
-    """The limit changes nothing of what is quick."""
-    assert not any(
-        warning.startswith("left out") for warning in explain("euler/generic")["warnings"]
-    )

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 from builders.numbers import apart
 from builders.routes import motions_of_taylor
+from builders.scenes import one_instant
 from mpmath import mp, mpf
 
 from taylor_verify.exact.kirchhoff.plane import plane, regime
@@ -15,7 +16,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.bodies import ImmersedBody
-from taylor_verify.scenes.motion import Clock, Impulse
+from taylor_verify.scenes.motion import Impulse
 from taylor_verify.scenes.scene import Scene
 
 DIGITS = 25
@@ -59,11 +60,7 @@ def built(k: int, p: tuple[str, ...], start: tuple[str, ...]) -> Scene:
     x[i], x[j], y[k] = (Fraction(v) for v in start)
     frame = (Fraction(1), Fraction(2), Fraction(-1), Fraction(3))
     place = (Fraction(1), Fraction(-2), Fraction(1, 3))
-    clock = Clock(Fraction(0), (Fraction(1),))
-    initial = Impulse(tuple(x), tuple(y), frame, place)
-    return Scene(
-        "built", "built", "kirchhoff", frozenset({"attitude", "centre"}), body, initial, clock
-    )
+    return one_instant(body, Impulse(tuple(x), tuple(y), frame, place), "attitude", "centre")
 
 
 def matrix(rows: list[list[Fraction]]) -> Matrix:

@@ -10,13 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from builders.turns import by_turns
-from flint import arb, ctx
-from mpmath import mp, mpf
 
-from taylor_verify.exact import balls, proving
-from taylor_verify.exact.printed import _printed, document
+from taylor_verify.exact.printed import document
 from taylor_verify.exact.route import solution
-from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import load
 
 ROUTES = ("arb", "mpmath", "taylor")
@@ -66,34 +62,6 @@ def test_printed_digits_are_within_the_radius_on_every_route(scene: str, digits:
             for other in ROUTES:
                 room = radius + Fraction(sharp[other][k]["radius"])
                 assert max(errors(row, sharp[other][k]).values()) <= room**2
-
-
-def test_both_routes_in_balls_measure_alike() -> None:
-    """The norm of the radii by the least norm that the balls allow, for vectors and for matrices."""
-    with ctx.workprec(100):
-        vector = [arb(3, 1e-20), arb(4, 0), arb(0, 1e-30)]
-        matrix = [*vector, *vector, *vector]
-        for entries in (vector, matrix):
-            width = balls.width(entries)
-            assert proving.Size(0.0).radius(entries, 60) == (width, int(mp.mag(width)) + 60)
-            assert mpf("2e-21") <= width <= mpf("2.0001e-21")
-    # Of a vector from which zero is not excluded no digit is known; far below its own size it is told.
-    small = [arb(0, 1e-90), arb(0)]
-    assert balls.width(small) == mp.inf
-    assert proving.Size(0.0).radius(small, 60) == (balls.size(small), int(mp.mag(1e-90)) + 1060)
-    assert proving.Size(0.0).radius([arb(0, 1e-30)], 60)[1] > 0
-
-
-@pytest.mark.parametrize("error", [0, mpf("1e-22"), mpf("1e-3")])
-def test_the_rounding_of_the_digits_is_in_the_printed_radius(error: mpf) -> None:
-    """The error of a midpoint and half a last digit of each entry, both by the norm of the truth."""
-    digits = 20
-    # The truth is 1, and the midpoint is as far from it as its error allows.
-    printed = _printed(np.array([1 + error], dtype=object), np.array([error + mpf(0)]), digits)
-    assert abs(Fraction(printed.text[0]) - 1) <= exact_value(printed.radius)
-    figures = len(printed.text[0].replace(".", ""))
-    assert printed.radius <= 6 * mpf(10) ** -figures
-    assert printed.absolute == 0
 
 
 CANCELLING = """

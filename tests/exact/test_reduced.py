@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from builders.numbers import apart
 from builders.routes import closed_routes, motions_of_taylor
-from builders.scenes import COUPLE, FORCE, GENERAL, IMPULSE, one_instant, vector
+from builders.scenes import COUPLE, FORCE, GENERAL, one_instant, vector
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mp, mpf
@@ -20,7 +20,7 @@ from mpmath import mp, mpf
 from taylor_verify.exact.carried import Back
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.kirchhoff import displaced, isotropic
-from taylor_verify.exact.kirchhoff.displaced import about, centred, moved, symmetric_origin
+from taylor_verify.exact.kirchhoff.displaced import about, centred, moved
 from taylor_verify.exact.kirchhoff.isotropic import less_coupling, less_linear
 from taylor_verify.exact.kirchhoff.reduced import Reduced
 from taylor_verify.exact.kirchhoff.solid import solid, velocities
@@ -91,19 +91,6 @@ def closed_motions(scene: Scene, times: list[Fraction] = TIMES) -> list[Motion]:
 
 
 # The reductions themselves.
-
-
-def test_b_is_symmetric_about_one_origin() -> None:
-    """There the displacement to it is zero, and it is found again from any other origin."""
-    scene = one_instant(GENERAL, IMPULSE)
-    d = symmetric_origin(GENERAL)
-    there = moved(scene, d)
-    body, _ = solid(there)
-    assert tensors.is_symmetric(body.coupling)
-    assert tensors.is_symmetric(body.linear)
-    assert not any(symmetric_origin(body))
-    back = symmetric_origin(solid(moved(there, AWAY))[0])
-    assert back == tensors.scaled(Fraction(-1), AWAY)
 
 
 REDUCTIONS: dict[str, Callable[[Reduced], Reduced]] = {
@@ -266,13 +253,6 @@ def test_what_is_nearly_isotropic_is_not(block: str, i: int, j: int) -> None:
     near = moved(replace(scene, body=body), AWAY)
     assert solution(moved(scene, AWAY)).regime == "max-axis"
     assert solution(near).regime == NO_CLOSED_FORM
-
-
-@pytest.mark.parametrize("k", range(3))
-def test_a_part_of_b_that_is_not_symmetric_is_only_another_origin(k: int) -> None:
-    """B and A made so by a displacement of 10^-60: closed, for it is the same body."""
-    d = tuple(LITTLE * (n == k) for n in range(3))
-    assert solution(moved(isotropic_body(), d)).regime == "max-axis"
 
 
 @pytest.mark.parametrize("k", range(3))

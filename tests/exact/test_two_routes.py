@@ -9,7 +9,7 @@ import pytest
 from builders.free_spins import rotation
 from builders.numbers import overlap
 from builders.routes import has_route
-from builders.scenes import FRAME, PLACE, everything
+from builders.scenes import FRAME, PLACE, everything, one_instant
 from builders.turns import by_turns
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -21,7 +21,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix
 from taylor_verify.scenes.bodies import Clebsch, RigidBody
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -128,9 +128,7 @@ def spins(draw: st.DrawFn) -> Scene:
         turn = rotation(draw(st.integers(1, 5)), draw(st.integers(-5, 5)), 1, 2)
         inertia = tensors.product(tensors.product(turn, inertia), tensors.transpose(turn))
         omega = tensors.apply(turn, omega)
-    clock = Clock(Fraction(0), (Fraction(1),))
-    spin = Spin(omega, FRAME)
-    return Scene("drawn", "", "euler", frozenset({"attitude"}), RigidBody(inertia), spin, clock)
+    return one_instant(RigidBody(inertia), Spin(omega, FRAME), "attitude")
 
 
 @st.composite
@@ -161,10 +159,7 @@ def nutations(draw: st.DrawFn) -> Scene:
         x = tensors.scaled(Fraction(1, 10 ** draw(st.integers(1, 12))), x)
     assume(q * q < p * r and q_prime * q_prime < p_prime * r_prime)
     body = Clebsch(p, p_prime, q, q_prime, r, r_prime).body()
-    clock = Clock(Fraction(0), (Fraction(1),))
-    impulse = Impulse(x, y, FRAME, PLACE)
-    track = frozenset({"attitude", "centre"})
-    return Scene("drawn", "", "kirchhoff", track, body, impulse, clock)
+    return one_instant(body, Impulse(x, y, FRAME, PLACE), "attitude", "centre")
 
 
 def _overlap(examples: int, scenes: st.SearchStrategy[Scene]) -> Callable[[], None]:
@@ -198,11 +193,10 @@ def test_on_starts_beside_a_pole_that_is_passed(e: int, p: int, p_prime: Fractio
     mpmath had divided zero by zero at 1e-21, and found another motion at 1e-80.
     """
     body = Clebsch(*map(Fraction, (p, p_prime, 0, 0, 4, "1/100"))).body()
-    clock, track = Clock(Fraction(0), (Fraction(1),)), frozenset({"attitude", "centre"})
     for sign in (1, -1):
         x = (Fraction(0), sign * Fraction(5, 7) / 10**e, Fraction(6, 25))
         start = Impulse(x, (Fraction(7, 20), Fraction(0), Fraction(0)), FRAME, PLACE)
-        scene = Scene("beside a pole", "", "kirchhoff", track, body, start, clock)
+        scene = one_instant(body, start, "attitude", "centre")
         assert agree(scene, [Fraction(-7, 3), Fraction(5)])
 
 

@@ -25,6 +25,7 @@ from taylor_verify.scenes.library import cases_directory
 from taylor_verify.solvers.registry import solver_named
 from taylor_verify.tradeoff.recommendation import recommend
 
+pytestmark = pytest.mark.usefixtures("without_causes")
 SCENE = "euler/generic"
 FILE = cases_directory() / "euler" / "generic.toml"
 COARSE = "geometric:splitting?step=0.1"
@@ -190,7 +191,7 @@ def test_answers_whose_square_is_no_double_are_judged(size: Any) -> None:
 
 @pytest.fixture(scope="module")
 def judgement() -> Judgement:
-    return taylor_verify.run(SCENE, COARSE)
+    return taylor_verify.run(SCENE, COARSE, causes=False)
 
 
 @pytest.mark.parametrize(
@@ -271,6 +272,3 @@ def test_the_machines_faults_are_not_called_ours(
     monkeypatch.setattr("taylor_verify.solvers.solver.pose", lambda *_: 1 / 0)
     assert main(["run", SCENE]) == 2
     assert "a fault of taylor-verify" in capsys.readouterr().err
-
-
-# Results.

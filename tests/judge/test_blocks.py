@@ -6,15 +6,15 @@ import math
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import sampled
 from builders.trajectories import write_csv
-from mpmath import mp, mpf
+from mpmath import mp
 
 from taylor_verify import check, solve
 from taylor_verify.exact.invariants import decisive, invariants
@@ -22,11 +22,8 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.errors import measured
 from taylor_verify.judge.errors.state import Series
 from taylor_verify.records.quantities import COLUMNS
-from taylor_verify.scenes.instants import EquallySpaced
-from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.mpfr import in_mpfr, precision
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.compact_rows import Rows
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.values import as_mpf, exact
@@ -39,17 +36,9 @@ BLOCK = 7
 SAME = 1e-13
 
 
-def sampled(name: str, rows: int) -> Scene:
-    """The scene with so many equally spaced samples."""
-    scene = load(name)
-    start, end = scene.clock.start, scene.clock.instants[-1]
-    instants = EquallySpaced(start, (end - start) / (rows - 1), rows)
-    return replace(scene, clock=Clock(start, instants))
-
-
 def columns_of(name: str) -> dict[str, list[float]]:
     """A right answer in doubles, column by column."""
-    scene = sampled(name, ROWS)
+    scene = sampled(load(name), ROWS)
     by_name = {"t": [float(t) for t in scene.clock.instants]}
     for group, rows in solve(scene).quantities.items():
         columns = zip(*rows.tolist(), strict=True)
@@ -184,19 +173,6 @@ def test_a_few_rows_have_the_scale_of_all(name: str) -> None:
         assert len(few.radius) <= 4
         for invariant in invariants(scene):
             assert invariant.scale(few) == invariant.scale(motion)
-
-
-def test_numbers_come_back_from_blocks_over_the_last_scale() -> None:
-    """Equal numbers of different blocks stay equal, and numbers of one block are divided once."""
-    series = Series()
-    series.add(np.array([mpf(1), mpf(2)]), mpf(3))
-    series.add(np.array([mpf(2)]), mpf(7))
-    values, scale = series.joined()
-    assert scale == 7
-    assert values[1] == values[2] == pytest.approx(2 / 7, rel=SAME)
-    one = Series()
-    one.add(np.array([mpf(1)]), mpf(3))
-    assert one.joined()[0].tolist() == [1 / 3]
 
 
 def test_rows_are_formed_as_their_values_are() -> None:

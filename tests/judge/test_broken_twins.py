@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 from builders.routes import closed_routes
+from builders.scenes import tracking_all
 from builders.turns import by_turns
 from mpmath import mp, mpf
 
@@ -29,7 +30,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import TaylorSolution
 from taylor_verify.numbers import rotation
-from taylor_verify.scenes.motion import Motion, Spin
+from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
@@ -80,17 +81,12 @@ STARTS = {
 def scene(regime: str) -> Scene:
     """The shipped scene of a regime with all that its model can track."""
     shipped = load(REGIMES[regime])
-    if isinstance(shipped.initial, Spin):
-        omega = shipped.initial.omega
-        if regime == "min-axis, cn < 0":
-            omega = (*omega[:2], -omega[2])
-        initial = replace(shipped.initial, omega=omega)
-        return replace(shipped, track=frozenset({"attitude"}), initial=initial)
-    start = shipped.initial
+    moving = shipped.initial.moving
+    if regime == "min-axis, cn < 0":
+        moving = (*moving[:2], -moving[2])
     if regime in STARTS:
-        linear, angular = (tuple(map(Fraction, vector)) for vector in STARTS[regime])
-        start = replace(start, linear=linear, angular=angular)
-    return replace(shipped, track=frozenset({"attitude", "centre"}), initial=start)
+        moving = tuple(Fraction(entry) for vector in STARTS[regime] for entry in vector)
+    return tracking_all(replace(shipped, initial=shipped.initial.with_moving(moving)))
 
 
 def off_taylor(asked: Scene, route: str, times: Sequence[Fraction]) -> mpf:

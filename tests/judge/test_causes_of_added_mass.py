@@ -40,12 +40,12 @@ def coriolis(matrix: Array, nu: Array) -> Array:
     return np.block([[np.zeros((3, 3)), -linear], [-linear, -angular]])
 
 
-def body(factor: float = 1.0) -> tuple[Array, Array]:
-    """The rigid body of the vehicle, and its added mass times a factor."""
+def body() -> tuple[Array, Array]:
+    """The rigid body of the vehicle, and its added mass."""
     arm = crossed(np.array([0, 0, 0.02]))
     lower = np.diag([0.12, 4.2, 4.2]) - 31.9 * arm @ arm
     own = np.block([[31.9 * np.eye(3), -31.9 * arm], [31.9 * arm, lower]])
-    return own, factor * np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
+    return own, np.diag([0.86, 30.3, 28.3, 0.035, 3.6, 3.5])
 
 
 def answer(law: Law) -> Columns:

@@ -152,7 +152,10 @@ REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
         (HELD, LATE.replace("clip(-w1,", "clip(-1.3*w1,"), None),
         (WHEELS, WHEELS.replace("rotor", REACTION), "no reaction of the wheels' motors"),
         (WHEELS, WHEELS.replace('"1/2"', '"1/3"'), "d"),
-        (WHEELS, WHEELS.replace("rotor", REACTION).replace('"1/2"', '"9/20"'), None),
+        pytest.param(
+            *(WHEELS, WHEELS.replace("rotor", REACTION).replace('"1/2"', '"9/20"'), None),
+            marks=pytest.mark.slow,
+        ),
     ],
     ids=["late", "continuous", "late and more", "no reaction", "gain", "no reaction and a gain"],
 )

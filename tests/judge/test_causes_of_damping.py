@@ -119,9 +119,9 @@ OF_ENGINES = {
 }
 
 
-def stepped(scene: str, factor: float, h: float = H, every: int = 4) -> dict[str, str]:
+def stepped(scene: str, factor: float) -> dict[str, str]:
     """The causes of the classical method with a factor of the momenta after each step."""
-    return causes(load(scene), runge_kutta(load(scene), h, every, factor=lambda _: factor))
+    return causes(load(scene), runge_kutta(load(scene), H, 4, factor=lambda _: factor))
 
 
 @pytest.mark.parametrize(

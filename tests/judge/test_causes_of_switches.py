@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from builders.turns import by_turns
 from builders.wrong_dynamics import failure
 
 from taylor_verify.judge.causes.float_answer import Motion
@@ -62,11 +63,13 @@ def test_a_load_that_begins_or_ends_at_another_time_is_named(
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        [("t-1", "t-1.4"), ("t-3", "t-3.3")],
-        [("t-3", "t-2.25"), ("0.15*", "0.2*")],
-        [("-0.1*(step(t-1)-step(t-3))", "-0.1*(step(t-1)-step(t-2))"), ("0.25", "0.3")],
-    ],
+    by_turns(
+        [
+            [("t-1", "t-1.4"), ("t-3", "t-3.3")],
+            [("t-3", "t-2.25"), ("0.15*", "0.2*")],
+            [("-0.1*(step(t-1)-step(t-3))", "-0.1*(step(t-1)-step(t-2))"), ("0.25", "0.3")],
+        ]
+    ),
 )
 def test_two_times_or_a_time_and_a_gain_have_no_one_time(changes: list[tuple[str, str]]) -> None:
     """A pulse with two other numbers is not one whose switch comes at another time."""

@@ -8,32 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.verdicts import row
 from mpmath import mpf
 
 from taylor_verify.judge.conventions.meanings import readings
 from taylor_verify.judge.conventions.worlds import worlds
 from taylor_verify.judge.files.coverage import Extent
-from taylor_verify.judge.floor.carrying import Carrying, carrying
-from taylor_verify.judge.judgement import Judgement
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
-
-
-def test_the_table_of_a_judgement_has_its_text_above() -> None:
-    """A notebook shows the text of a judgement without its brackets, whole."""
-    judged = Judgement((row(),), None)
-    assert f">{repr(judged)[1:-1]}<" in judged._repr_html_()
-
-
-def test_the_growth_of_an_error_is_known_until_the_end() -> None:
-    """The last of the times is that of the scene; a growth in proportion has a pace at any size."""
-    scene = load("euler/generic")
-    growth = carrying(scene)
-    assert growth is not None
-    assert growth.times[-1] == float(scene.clock.instants[-1])
-    assert Carrying((0.0, 0.25, 0.5, 1.0), (1.0, 10.0, 20.0, 40.0)).pace == 40
 
 
 @pytest.mark.parametrize("order", [1, -1])

@@ -103,14 +103,6 @@ def test_times_are_one_number_more() -> None:
         assert sizes == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_words_say_what_was_moved() -> None:
-    """The numbers of body and start are counted."""
-    scene = asked_at("euler/generic", Fraction(3, 2))
-    count = len(rounded_input._numbers(scene))
-    words = f"each of the {count} numbers of body and start that are not zero"
-    assert input_rounding(scene, F64).moved.removesuffix(", and every time") == words
-
-
 def test_what_symmetry_makes_equal_counts_once() -> None:
     """A full tensor is six numbers; of a body of revolution axes 1 and 2 have one p, one q and one r."""
     # The coupling of the general one has no symmetry, and two zeros.

@@ -323,16 +323,3 @@ def test_the_answer_comes_first_and_the_arithmetic_on_request(
     assert "omega allowed: " in explained
     assert "attainable = u sqrt(N) x growth" in explained
     assert "--explain" not in explained
-
-
-@pytest.mark.slow
-def test_of_many_runs_an_overview_follows_the_first_sentence(capsys: Captured) -> None:
-    """Then the sentence of every row that is no pass, behind its scene and precision."""
-    solver = "geometric:implicit-midpoint?step=0.01"
-    scenes = [SCENE, "euler/rest", "euler/full-tensor"]
-    assert main(["run", *scenes, "--solver", solver, "--jobs", "1"]) == 1
-    text = capsys.readouterr().out
-    assert re.match(r"fail; worst: euler/\S+ f64 \S+: .*\n\nscene ", text)
-    rows = [line for line in text.splitlines() if line.startswith("fail  euler/")]
-    assert rows
-    assert all(re.match(r"fail  euler/\S+ f64 (omega|T|H2): ", line) for line in rows)

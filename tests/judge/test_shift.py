@@ -24,9 +24,8 @@ from taylor_verify.exact.rates import rates
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.causes.quick_motion import QuickMotion
-from taylor_verify.judge.errors.passage import Passage
 from taylor_verify.judge.errors.shift import Shift, time_shifts
-from taylor_verify.judge.errors.shifted import Compared, Run
+from taylor_verify.judge.errors.shifted import Run
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
@@ -92,32 +91,6 @@ def pushed(scene: Scene, motion: Motion, size: float) -> Motion:
     with mp.workdps(DIGITS):
         omega = motion["omega"] + np.array([[mpf(v) for v in row] for row in across.tolist()])
     return Motion({"omega": omega}, motion.radius)
-
-
-# The rates that a shift is read from.
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_rates_are_the_slopes_of_the_exact_motion(name: str) -> None:
-    """Velocity and acceleration are the central differences of the truth, to the digits of float64."""
-    scene, exact = asked(name)
-    step = Fraction(1, 10**10)
-    elapsed = scene.clock.elapsed
-    before, here, after = (exact.motion([t + k * step for t in elapsed], 45) for k in (-1, 0, 1))
-    derivatives = rates(scene, here)
-    with mp.workdps(45):
-        h = mp.convert(step)
-        for quantity in here.quantities:
-            slope = (after[quantity] - before[quantity]) / (2 * h)
-            bend = (after[quantity] - 2 * here[quantity] + before[quantity]) / h**2
-            for rows, derivative, power in (
-                (derivatives.velocity, slope, 1),
-                (derivatives.acceleration, bend, 2),
-            ):
-                unit = mp.ldexp(1, derivatives.units[quantity] - power * derivatives.time)
-                counted = (derivative / unit).astype(float)
-                # Some ten roundings of numbers of size one; the differences are good to 1e-20.
-                assert np.max(np.abs(rows[quantity] - counted)) <= 1e-13
 
 
 # A shift that was put in comes out.
@@ -479,18 +452,6 @@ def test_float64_follows_the_motion_from_few_rows(name: str, rows: list[int]) ->
         for quantity, exactly in truth.quantities.items():
             off = near[quantity] - exactly.astype(float)
             assert np.max(np.abs(off)) < 1e-5 * max(1.0, np.max(np.abs(exactly.astype(float))))
-
-
-def test_a_distance_is_at_most_that_of_the_exact_motion() -> None:
-    """Rows that lie on the motion at times of their own have none, whatever points are taken."""
-    scene, exact = asked("kirchhoff/general-body")
-    truth = exact.motion(scene.clock.elapsed, DIGITS)
-    answer = exact.motion([t - Fraction(1, 3) for t in scene.clock.elapsed], DIGITS)
-    with mp.workdps(2 * DIGITS):
-        (errors,) = state_errors(scene, truth, answer)
-        compared = Compared(Run(scene, exact, truth, answer, DIGITS), errors)
-        distances = Passage(compared.run, 1.0).distances(compared)
-    assert np.all(distances <= 1e-6)
 
 
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])

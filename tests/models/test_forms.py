@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders.scenes import tracking_all, vector
+from builders.scenes import one_instant, tracking_all, vector
 from builders.turns import by_turns
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -31,23 +31,20 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import Clebsch, ImmersedBody, RigidBody
 from taylor_verify.scenes.library import names
-from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.motion import Impulse, Spin
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 
 SCENES = [name for name in names() if name.startswith(("euler/", "kirchhoff/"))]
-CLOCK = Clock(Fraction(0), (Fraction(0), Fraction(1)))
 LOAD = (Fraction(1, 3), Fraction(-1, 7), Fraction(2))
 
 
 def spinning(inertia: tensors.Matrix, moment: tuple[Fraction, ...] = vector(0, 0, 0)) -> Scene:
-    spin = Spin(vector("0.3", 1, "-0.7"))
-    return Scene("spinning", "", "euler", frozenset(), RigidBody(inertia, moment), spin, CLOCK)
+    return one_instant(RigidBody(inertia, moment), Spin(vector("0.3", 1, "-0.7")))
 
 
 def immersed(body: ImmersedBody) -> Scene:
-    start = Impulse(vector(1, "0.3", "-0.6"), vector("0.2", 1, "0.9"))
-    return Scene("immersed", "", "kirchhoff", frozenset(), body, start, CLOCK)
+    return one_instant(body, Impulse(vector(1, "0.3", "-0.6"), vector("0.2", 1, "0.9")))
 
 
 def about(axis: int, clebsch: Clebsch) -> ImmersedBody:

@@ -19,7 +19,6 @@ from taylor_verify.scenes.families.distributions import (
     linspace,
     logspace,
     number_text,
-    with_decimals,
 )
 from taylor_verify.scenes.families.family import Family
 from taylor_verify.scenes.families.formula import formula
@@ -85,19 +84,6 @@ def test_a_number_reads_back_as_it_was(value: Fraction) -> None:
     """The text of a rational in a scene is that rational, as a decimal where it has one."""
     text = number_text(value)
     assert exact_number(text.strip('"') if text.startswith('"') else Decimal(text)) == value
-
-
-@pytest.mark.parametrize(
-    ("fault", "written"),
-    [
-        ("got -197633/100000 @ body.inertia[0]", "got -1.97633 @ body.inertia[0]"),
-        ("got [0][1] = 1/3 but [1][0] = 3/2 @ body", "got [0][1] = 1/3 but [1][0] = 1.5 @ body"),
-        *((text, text) for text in ('got "-1/4 deg/s"', 'got "1/0"', "got 1/25...", "2x2/5x5")),
-    ],
-)
-def test_faults_have_decimals(fault: str, written: str) -> None:
-    """A fraction in a fault becomes a decimal, but not in quotation marks or where it is cut short."""
-    assert with_decimals(fault) == written
 
 
 def test_the_refusal_of_a_drawn_scene_has_the_number_of_its_file() -> None:

@@ -18,11 +18,6 @@ from taylor_verify.scenes.reading.reader import load
 OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
 
 
-def numbers(bits: int = 600) -> st.SearchStrategy[mpf]:
-    """Numbers of up to so many bits, far longer than what they are computed with."""
-    return st.builds(exactly, st.integers(-(2**bits), 2**bits), st.integers(-2000, 2000))
-
-
 def exactly(count: int, exponent: int) -> mpf:
     with mp.workprec(10_000):
         return mp.ldexp(mpf(count), exponent)
@@ -32,7 +27,11 @@ def column(*values: mpf) -> np.ndarray:
     return np.array(values, dtype=object)
 
 
-@given(numbers(), st.integers(2, 400))
+# Far longer than what they are computed with.
+numbers = st.builds(exactly, st.integers(-(2**600), 2**600), st.integers(-2000, 2000))
+
+
+@given(numbers, st.integers(2, 400))
 def test_the_way_there_and_back_is_exact_at_any_precision(value: mpf, bits: int) -> None:
     """No bit of a number is lost, however low the ambient precision is."""
     with mp.workprec(bits):
@@ -40,7 +39,7 @@ def test_the_way_there_and_back_is_exact_at_any_precision(value: mpf, bits: int)
     assert there_and_back._mpf_ == value._mpf_
 
 
-@given(numbers(), numbers(), st.integers(2, 400))
+@given(numbers, numbers, st.integers(2, 400))
 def test_every_operation_rounds_as_mpmath_does(a: mpf, b: mpf, bits: int) -> None:
     """Sums, differences, products, quotients and roots are mpmath's to the last bit."""
     with mp.workprec(bits):

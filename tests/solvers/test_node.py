@@ -7,11 +7,11 @@ import os
 import re
 import shutil
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from builders.at_once import both
 from builders.scenes import three_instants
 
 from taylor_verify.numbers.precision import rung
@@ -149,6 +149,23 @@ def test_an_environment_is_made_once(script: Script, calls: Calls) -> None:
     shutil.rmtree(first / "node_modules" / "tiny")
     assert (environment() / "node_modules" / "tiny").exists()
     assert len(calls()) > len(made)
+
+
+def both(make: Callable[[], Path], seconds: float) -> list[Path]:
+    """Return what each of two threads has made, of those that ended within the time."""
+    made: list[Path] = []
+    start = threading.Barrier(2)
+
+    def one() -> None:
+        start.wait()
+        made.append(make())
+
+    threads = [threading.Thread(target=one) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(seconds)
+    return made
 
 
 def test_two_at_once_make_it_together(script: Script) -> None:

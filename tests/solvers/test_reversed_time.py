@@ -15,7 +15,6 @@ from mpmath import mp
 from taylor_verify.models.euler import euler_equations
 from taylor_verify.models.form import Named
 from taylor_verify.models.problem import pose
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Impulse, Motion, Spin
@@ -60,10 +59,8 @@ def solved(asked: Scene, name: str, solver: Solver) -> Motion:
 def past_and_future(asked: Scene, name: str, solver: Solver) -> tuple[Motion, Motion]:
     """The motion at the negative times, and that of the body turned about at the positive ones."""
     past = replace(asked, clock=Clock(Fraction(0), tuple(-t for t in INSTANTS)))
-    start = asked.initial
-    names = ("omega",) if isinstance(start, Spin) else ("linear", "angular")
-    moving = {part: tensors.scaled(Fraction(-1), getattr(start, part)) for part in names}
-    future = replace(asked, initial=replace(start, **moving))
+    moving = tuple(-v for v in asked.initial.moving)
+    future = replace(asked, initial=asked.initial.with_moving(moving))
     return solved(past, name, solver), solved(future, name, solver)
 
 

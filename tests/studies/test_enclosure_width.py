@@ -7,11 +7,10 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from builders.scenes import GENERAL, one_instant, vector
+from builders.scenes import GENERAL, sample_scene
 
 from taylor_verify.exact.enclosure.course import Course
 from taylor_verify.plotting.picture import plotting, save
-from taylor_verify.scenes.motion import Impulse
 from taylor_verify_reports.studies import enclosure_width as pictures
 from taylor_verify_reports.studies.enclosure_width import (
     ENCLOSURE,
@@ -34,15 +33,13 @@ TIMES = [Fraction(k, 2) for k in range(1, 9)]
 
 def test_the_middle_errs_by_less_than_the_width() -> None:
     """The enclosure with twice the bits lies within the one with few bits."""
-    moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
-    rows = widths(one_instant(GENERAL, moving), TIMES, 80)
+    rows = widths(sample_scene(GENERAL), TIMES, 80)
     assert [row.t for row in rows] == [float(t) for t in TIMES]
     assert all(0 < row.error <= row.width <= 1e-15 for row in rows)
 
 
 def test_a_width_that_is_too_small_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """An enclosure without its radii is narrower than its true error."""
-    moving = Impulse(vector("0.1", "0.2", 1), vector("0.3", 0, 1))
     sound = Course.rows
 
     def narrowed(*arguments: object) -> object:
@@ -50,7 +47,7 @@ def test_a_width_that_is_too_small_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
             yield time, replace(row, state=[z.mid() for z in row.state])
 
     monkeypatch.setattr(Course, "rows", narrowed)
-    rows = widths(one_instant(GENERAL, moving), TIMES, 80)
+    rows = widths(sample_scene(GENERAL), TIMES, 80)
     assert any(row.error > row.width for row in rows)
 
 

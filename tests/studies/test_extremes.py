@@ -23,7 +23,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Clock, Impulse, Spin
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
@@ -80,12 +80,6 @@ def test_the_table_of_the_readme_has_a_row_for_each() -> None:
 # They are what they are called
 
 
-def _start(scene: Scene) -> tensors.Vector:
-    if isinstance(scene.initial, Spin):
-        return scene.initial.omega
-    return scene.initial.linear
-
-
 DISTANCES = [n for n in NAMES if re.search(r"(axis|spin)-1e-\d+$", n) and "nearly" not in n]
 
 
@@ -93,11 +87,12 @@ DISTANCES = [n for n in NAMES if re.search(r"(axis|spin)-1e-\d+$", n) and "nearl
 def test_the_distance_from_the_unstable_axis_is_as_named(name: str) -> None:
     """The one component off the axis is d, and the motion without it is steady and unstable."""
     scene, d = load(name), Fraction(name.rpartition("-1e")[2].join(["1e", ""]))
-    off = [v for v in _start(scene) if v and abs(v) < Fraction(1, 1000)]
+    first, others = scene.initial.moving[:3], scene.initial.moving[3:]
+    off = [v for v in first if v and abs(v) < Fraction(1, 1000)]
     assert off == [d]
-    axis = tuple(v if v != d else Fraction(0) for v in _start(scene))
-    onto = {"omega": axis} if isinstance(scene.initial, Spin) else {"linear": axis}
-    steady = elements(replace(scene, initial=replace(scene.initial, **onto)), 10)
+    onto = tuple(v if v != d else Fraction(0) for v in first)
+    start = scene.initial.with_moving((*onto, *others))
+    steady = elements(replace(scene, initial=start), 10)
     assert any("unstable" in sentence for sentence in steady.sentences)
 
 
@@ -132,8 +127,8 @@ def test_the_turned_body_is_the_straight_one() -> None:
     assert isinstance(straight.body, RigidBody)
     for power in range(1, 4):
         traces = []
-        for body, omega in ((scene.body, _start(scene)), (straight.body, _start(straight))):
-            vector = omega
+        for body, start in ((scene.body, scene.initial), (straight.body, straight.initial)):
+            omega = vector = start.moving
             for _ in range(power):
                 vector = tensors.apply(body.inertia, vector)
             traces.append(tensors.dot(omega, vector))
@@ -189,19 +184,13 @@ SCALED = [
 def test_a_faster_motion_is_the_same_one_sooner(name: str, scale: Fraction) -> None:
     """omega, x, y times s and time over s: the motion is s times the same, attitude and path alike."""
     scene = extreme(name)
-    slow = replace(scene, initial=_slowed(scene.initial, scale), clock=_longer(scene.clock, scale))
+    slower = scene.initial.with_moving(tuple(v / scale for v in scene.initial.moving))
+    slow = replace(scene, initial=slower, clock=_longer(scene.clock, scale))
     fast, same = at_end(scene), at_end(slow)
     with mp.workdps(_DIGITS + 10):
         for quantity, value in fast.items():
             factor = 1 if quantity in ("attitude", "centre") else mp.convert(scale)
             assert distance(value, same[quantity] * factor) <= 4 * mpf(10) ** -_DIGITS
-
-
-def _slowed(start: Spin | Impulse, scale: Fraction) -> Spin | Impulse:
-    if isinstance(start, Spin):
-        return replace(start, omega=tensors.scaled(1 / scale, start.omega))
-    linear, angular = (tensors.scaled(1 / scale, v) for v in (start.linear, start.angular))
-    return replace(start, linear=linear, angular=angular)
 
 
 def _longer(clock: Clock, scale: Fraction) -> Clock:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -94,7 +95,10 @@ def one_short_ensemble(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("one_short_ensemble")
 def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The page is made of the stored data alone, and the long ensemble stands beside the others."""
+    """The page is made of the stored data alone, and the long ensemble stands beside the others.
+
+    The sheet has each quantity of each ensemble, with its interval and its gate, to the last bit.
+    """
     call = ["publish", "growth", "--periods", "3163", "--from", str(tmp_path), "--json"]
     assert main(call) == 0
     written = [Path(name) for name in json.loads(capsys.readouterr().out)["written"]]
@@ -104,6 +108,14 @@ def test_publish_writes_data_and_page(tmp_path: Path, capsys: pytest.CaptureFixt
     sheet = (tmp_path / "tables/growth.csv").read_text(encoding="utf-8")
     assert STUDY.pages(tmp_path) == {STUDY.path: page, "tables/growth.csv": sheet}
     assert "euler/about-max-axis on f64, taylor" in page
+    asked = [(run, row) for run in pages.GROWTH.load(tmp_path).runs for row in run.quantities]
+    for cells, (run, row) in zip(csv.DictReader(sheet.splitlines()), asked, strict=True):
+        names = (cells["scene"], cells["rung"], cells["quantity"])
+        assert names == (run.scene, run.rung, row.quantity)
+        ends = ("exponent", "low", "high", "rms_last", "late", "late_low", "late_high")
+        numbers = [float(cells[name]) if cells[name] else None for name in ends]
+        assert numbers == [row.exponent, row.low, row.high, row.rms[-1], *row.late]
+        assert cells["gate"] == (row.gate.verdict.value if row.gate else "")
     before = (tmp_path / pages.GROWTH.name).read_bytes()
     assert main([*call, "--long"]) == 0
     assert (tmp_path / pages.GROWTH.name).read_bytes() == before
