@@ -272,34 +272,42 @@ def test_the_load_between_rows_is_in_the_document(tmp_path: Path) -> None:
     assert len(document["missing_load"]) == len(TIMES) - 1
 
 
-def with_nothing_in(made: Columns, rows_: slice) -> Columns:
+def with_nothing_in(made: Columns, rows_: slice, value: float) -> Columns:
     spoilt = {name: np.array(values, dtype=float) for name, values in made.items()}
     for name in spoilt.keys() - {"t"}:
-        spoilt[name][rows_] = np.nan
+        spoilt[name][rows_] = value
     return {name: values.tolist() for name, values in spoilt.items()}
 
 
 @pytest.mark.parametrize(
-    ("tensor", "nothing", "title", "note"),
+    ("tensor", "nothing", "value", "title", "note"),
     by_turns(
         [
-            (TENSOR, np.s_[30:31], [], "one row is not finite (t = 3); all others are right"),
+            (TENSOR, np.s_[30:31], 0.0, [], "one row is zero (t = 3); all others are right"),
+            (
+                TENSOR,
+                np.s_[30:31],
+                np.nan,
+                [],
+                "one row is not finite (t = 3); all others are right",
+            ),
             (
                 TENSOR,
                 np.s_[50:],
+                np.nan,
                 [],
                 "all rows from t = 5 on are not finite; those before are right",
             ),
-            (HEAVIER, np.s_[30:31], ["I_33"], "one row is not finite (t = 3)"),
+            (HEAVIER, np.s_[30:31], np.nan, ["I_33"], "one row is not finite (t = 3)"),
         ],
         3,
     ),
 )
-def test_rows_that_are_not_finite_are_a_fact_of_their_own(
-    tensor: Array, nothing: slice, title: list[str], note: str, tmp_path: Path
+def test_rows_that_are_lost_are_a_fact_of_their_own(
+    tensor: Array, nothing: slice, value: float, title: list[str], note: str, tmp_path: Path
 ) -> None:
     """No load is missing beside them; the other rows are right, or have the cause that they have."""
-    path = write_csv(tmp_path / "mine.csv", with_nothing_in(rigid(tensor), nothing))
+    path = write_csv(tmp_path / "mine.csv", with_nothing_in(rigid(tensor), nothing, value))
     judged = file_judgement(path, read(RIGID.format(load=""), "scene"))
     assert [cause.name.split(" ")[0] for cause in judged.causes] == title
     assert note in judged.notes

@@ -58,6 +58,12 @@ angular_velocity = [0.1, 0.2, -0.3]
 end = 4
 samples = 31
 """
+WHOLE = VEHICLE.replace("abs(u1)", "s").replace("abs(u2)", "s").replace("abs(u3)", "s")
+WHOLE = (
+    WHOLE.replace("0.3*s", "a*s")
+    .replace("0.1*u", "b*u")
+    .replace("[initial]", '[define]\ns = "norm(u1, u2, u3)"\na = "0.3"\nb = "0.1"\n[initial]')
+)
 TOP = """
 title = "Heavy top"
 model = "euler"
@@ -208,6 +214,12 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
                 SPEEDS,
                 "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
             ),
+            (
+                WHOLE,
+                [(f"s*u{i}", f"abs(u{i})*u{i}") for i in (1, 2, 3)],
+                "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
+            ),
+            (WHOLE, [('"0.3"', '"0.1"'), ('"0.1"', '"0.3"')], "a and b exchanged"),
             (VEHICLE, EXCHANGED, "points of weight and buoyancy exchanged"),
             (VEHICLE, ADDED, "factor of the added mass"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),

@@ -17,9 +17,12 @@ from taylor_verify.words.causes import with_numbers
 
 # A change below this part of its natural size is none.
 _SAME: Final = 1e-10
-# A number with so many digits, to this part of it, may have been written; by chance one in some hundred is.
+# A number with so many digits may have been written, if it has them to this part of it, or to so many
+# roundings of the file: of others one in some hundreds is by chance, and of the latter one in ten.
 _WRITTEN: Final = 5
 _NEAR: Final = 3e-8
+_ROUNDINGS: Final = 3.0
+_FAR: Final = 1e-6
 # Nor is a step, or the damping of a step, below this part.
 _SLIGHT: Final = 1e-6
 
@@ -78,15 +81,19 @@ class Candidate:
         return is_factor and f"{self.numbers[0]:.6g}" == "1"
 
 
-def has_few_digits(candidate: Candidate) -> bool:
-    """Return True if a candidate has no fitted number, or others that somebody may have written."""
+def has_few_digits(candidate: Candidate, floor: float) -> bool:
+    """Return True if a candidate has no fitted number, or others that somebody may have written.
+
+    ``floor`` is the rounding of the file as a part of the defects, and so of a change that makes them.
+    """
     pairs = zip(candidate.numbers, candidate.family.right, strict=True)
-    return not candidate.count or all(_is_written(x, right) for x, right in pairs)
+    return not candidate.count or all(_is_written(x, right, floor) for x, right in pairs)
 
 
-def _is_written(number: float, right: float) -> bool:
-    written = float(f"{number:.{_WRITTEN}g}")
-    return abs(written - number) <= _NEAR * abs(number) and written != right
+def _is_written(number: float, right: float, floor: float) -> bool:
+    written, size = float(f"{number:.{_WRITTEN}g}"), abs(number)
+    unknown = min(max(_NEAR * size, _ROUNDINGS * floor * abs(number - right)), _FAR * size)
+    return abs(written - number) <= unknown and written != right
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,7 @@ class Search:
                 candidates += replays(self.answer, stride)
             has_methods = True
         if is_blind:
-            return self.choice.cause([*filter(has_few_digits, candidates)])
+            return self.cause(each for each in candidates if has_few_digits(each, self.floor))
         if not is_stepped and not any(map(self._is_exact, candidates)):
             budget = self.answer.budget
             with suppress(Spent), budget.at_most(budget.left / 4):

@@ -83,7 +83,7 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
         fitted = search.fitted(_families(answer, right))
         if steady_rate(answer) is not None:
             # Such a turn does not tell the error of a method from a factor.
-            fitted = filter(has_few_digits, fitted)
+            fitted = (each for each in fitted if has_few_digits(each, turns.floor))
         candidates += [*search.without_numbers(faults), *fitted]
         name = (
             "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"

@@ -1,0 +1,157 @@
+"""Likely causes of motions of one pace, as a decay: a method may do what a number of the equations does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders.caused_rows import Array, titles
+from builders.trajectories import QUATERNION, VECTORS, Columns, named
+from builders.turns import by_turns
+
+DECAY = """
+title = "Spin with linear drag"
+model = "euler"
+[body]
+inertia = [2, 1.5, 1.2]
+moment = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
+[initial]
+omega = [0, 0, 1]
+[time]
+end = 10
+samples = 51
+"""
+PRECESSION = """
+title = "Free body of revolution"
+model = "euler"
+[body]
+inertia = [2, 2, 0.7]
+[initial]
+omega = [0.6, 0.1, 1.2]
+[time]
+end = 10
+samples = 51
+"""
+STEADY = """
+title = "Steady spin"
+model = "euler"
+track = ["attitude"]
+[body]
+inertia = [1, 2, 3]
+[initial]
+omega = [0, 0, 1.3]
+attitude = [0.8, 0.2, -0.4, 0.4]
+[time]
+end = 10
+samples = 51
+"""
+TIMES, EVERY = np.round(np.arange(51) * 0.2, 6), 0.2
+# The factor by which a step multiplies what decays or turns, of z = h lambda.
+Factor = Callable[[complex], complex]
+EULER: Factor = lambda z: 1 + z  # noqa: E731 (a law in a row of a table)
+BACKWARD: Factor = lambda z: 1 / (1 - z)  # noqa: E731
+TRAPEZOID: Factor = lambda z: (1 + z / 2) / (1 - z / 2)  # noqa: E731
+MIDPOINT: Factor = lambda z: 1 + z + z * z / 2  # noqa: E731
+GAUSS: Factor = lambda z: (1 + z / 2 + z * z / 12) / (1 - z / 2 + z * z / 12)  # noqa: E731
+
+
+def of_omega(rows: Array) -> Columns:
+    return named(("t",), TIMES[:, None]) | named(VECTORS["omega"], rows)
+
+
+def decay(factor: Factor, h: float, inertia: float = 1.2) -> Columns:
+    """Omega towards its last value 0.8, a step of h multiplying the rest by a factor."""
+    a_row = factor(-0.1 * h / inertia).real ** round(EVERY / h)
+    return of_omega(np.outer(0.8 + 0.2 * a_row ** np.arange(51), [0, 0, 1]))
+
+
+def precession(factor: Factor, h: float) -> Columns:
+    """Omega of the body of revolution, whose part across the axis turns by the factors of the steps."""
+    turn = factor(1j * h * (0.7 - 2) / 2 * 1.2) ** round(EVERY / h)
+    across = (0.6 + 0.1j) * turn ** np.arange(51)
+    return of_omega(np.stack([across.real, across.imag, np.full(51, 1.2)], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    by_turns(
+        [
+            (decay(EULER, 0.1), "loads taken every 0.1 and held in between"),
+            (decay(BACKWARD, 0.1), "implicit gyroscopic step: backward Euler, h = 0.1"),
+            (decay(TRAPEZOID, 0.2), "truncation of order 2: implicit midpoint, h = 0.2"),
+            (decay(MIDPOINT, 0.2), "truncation of order 2: midpoint, h = 0.2"),
+        ],
+        2,
+    ),
+)
+def test_a_method_is_named_for_the_number_that_it_imitates(
+    made: Columns, words: str, tmp_path: Path
+) -> None:
+    """Its error is that of another inertia, or of other loads, but the method needs no number to fit."""
+    (title,) = titles(tmp_path, DECAY, made)
+    assert title.startswith(words)
+
+
+def test_a_phase_that_a_method_sets_is_no_other_tensor(tmp_path: Path) -> None:
+    """The trapezoid turns a precession by another angle, as another I_33 would."""
+    (title,) = titles(tmp_path, PRECESSION, precession(TRAPEZOID, 0.1))
+    assert title.startswith("truncation of order 2")
+
+
+@pytest.mark.parametrize("made", [precession(GAUSS, 0.2)], ids=["Gauss of order 4"])
+def test_nothing_is_said_of_a_method_that_is_not_known(made: Columns, tmp_path: Path) -> None:
+    """A long number that a method of another kind makes as well is no cause."""
+    assert titles(tmp_path, PRECESSION, made) == []
+
+
+def test_a_number_that_somebody_wrote_is_said(tmp_path: Path) -> None:
+    """Another inertia of few digits explains what no method does."""
+    (title,) = titles(tmp_path, DECAY, decay(np.exp, 0.2, 1.23))
+    assert title.startswith("I_33 = 1.23 for 1.2 (+2.5 %)")
+
+
+def test_what_dies_away_from_the_start_is_no_jump(tmp_path: Path) -> None:
+    """Behind a filter of first order a decay is soon a decay again, from another start."""
+    pace, filtered = 0.1 / 1.2, 1 / 0.05
+    lagging = np.exp(-pace * TIMES) * filtered / (filtered - pace)
+    lagging += (1 - filtered / (filtered - pace)) * np.exp(-filtered * TIMES)
+    made = of_omega(np.outer(0.8 + 0.2 * lagging, [0, 0, 1]))
+    assert titles(tmp_path, DECAY, made) == []
+
+
+def spun(rate: Array) -> Columns:
+    """The steady spin, its attitude relative to a frame that turns at a rate, space axes."""
+    first = np.array([0.8, 0.2, -0.4, 0.4])
+    turn, frame = (half_turns(omega) for omega in (np.array([0, 0, 1.3]), -rate))
+    q = product(frame, product(first[None], turn))
+    omega = of_omega(np.outer(np.ones(51), [0, 0, 1.3]))
+    return omega | named(QUATERNION, q)
+
+
+def half_turns(omega: Array) -> Array:
+    angle = np.linalg.norm(omega) * TIMES[:, None] / 2
+    return np.hstack([np.cos(angle), np.sin(angle) * omega / np.linalg.norm(omega)])
+
+
+def product(p: Array, q: Array) -> Array:
+    (a, b, c, d), (s, x, y, z) = p.T, q.T
+    rows = [
+        a * s - b * x - c * y - d * z,
+        a * x + b * s + c * z - d * y,
+        a * y - b * z + c * s + d * x,
+        a * z + b * y - c * x + d * s,
+    ]
+    return np.array(rows).T
+
+
+def test_the_error_of_a_steady_turn_is_no_frame_that_turns(tmp_path: Path) -> None:
+    """A method turns such a body at another rate about the same axis; a frame may turn about any."""
+    first = np.array([0.8, 0.2, -0.4, 0.4])
+    axis = product(
+        product(first[None], np.array([[0, 0, 0, 1.0]])), (first * [1, -1, -1, -1])[None]
+    )
+    assert titles(tmp_path, STEADY, spun(1e-4 * axis[0, 1:])) == []
+    (title,) = titles(tmp_path, STEADY, spun(np.array([0, 1e-4, 0])))
+    assert title.startswith("attitude is relative to a frame that turns")
