@@ -70,7 +70,8 @@ def _misread_tensors(right: Equations) -> Iterator[tuple[str, Any]]:
         listed = " ".join(str(i + 1) for i in order)
         yield f"moments of inertia in another order ({listed})", inertia[np.ix_(order, order)]
     moments, axes = np.linalg.eigh(inertia)
-    for order in permutations(range(3)):
+    has_products = np.count_nonzero(inertia) > len(inertia)
+    for order in permutations(range(3)) if has_products else ():
         yield "principal axes dropped", np.diag(moments[list(order)])
     for order in permutations(range(3)):
         for signs in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):

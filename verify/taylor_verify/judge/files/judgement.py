@@ -56,8 +56,8 @@ from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
 NO_CONVENTIONS: Final = (
-    "no convention and no shift of time is corrected: under the loads of this scene a motion at another "
-    "time, or in other axes, is another motion"
+    "no convention and no shift of time is corrected under the loads of this scene, which may read the "
+    "time and the axes; causes are looked for"
 )
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
