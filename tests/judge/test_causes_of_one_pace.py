@@ -100,7 +100,14 @@ def test_a_phase_that_a_method_sets_is_no_other_tensor(tmp_path: Path) -> None:
     assert title.startswith("truncation of order 2")
 
 
-@pytest.mark.parametrize("made", [precession(GAUSS, 0.2)], ids=["Gauss of order 4"])
+@pytest.mark.parametrize(
+    "made",
+    [
+        precession(GAUSS, 0.2),
+        precession(lambda z: 0.99987654321 * np.exp(1.0012345678 * z), 0.2),
+    ],
+    ids=["Gauss of order 4", "one that damps"],
+)
 def test_nothing_is_said_of_a_method_that_is_not_known(made: Columns, tmp_path: Path) -> None:
     """A long number that a method of another kind makes as well is no cause."""
     assert titles(tmp_path, PRECESSION, made) == []

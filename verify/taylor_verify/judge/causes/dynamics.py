@@ -187,7 +187,7 @@ class Search:
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
             budget = self.answer.budget
             with suppress(Spent), budget.at_most(budget.left / 2):
-                cause = self.cause(self._pairs(linear), PAIR)
+                cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
         return cause or self._beside_steps(linear, stride)
 
     def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
@@ -222,6 +222,11 @@ class Search:
         """
         is_near = candidate.kind == "clock" and abs(candidate.numbers[0] - 1) < _COARSE_PACE
         return is_near and self._is_exact(candidate)
+
+    def _telling(self, pairs: list[Candidate]) -> list[Candidate]:
+        """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
+        paces = (part.kind == "clock" for pair in pairs for part in pair.family.parts)
+        return [p for p in pairs if has_few_digits(p, self.floor)] if any(paces) else pairs
 
     # Evidence.
 
