@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -72,6 +73,11 @@ def test_the_hints_of_what_functions_take_and_return_are_types() -> None:
             known.add(each)
             waiting += chain.from_iterable(map(named_in, get_type_hints(each).values()))
     assert {taylor_verify.Motion, taylor_verify.Trajectory, taylor_verify.Judgement} <= known
+
+
+def test_a_function_goes_to_another_process() -> None:
+    """Pickled and read again each public function is the same one."""
+    assert all(pickle.loads(pickle.dumps(function)) is function for function in FUNCTIONS)
 
 
 # What they return.
