@@ -175,13 +175,13 @@ class Search:
                 candidates += replays(self.answer, stride)
             has_methods = True
         if is_blind:
-            return self.cause(each for each in candidates if has_few_digits(each, self.floor))
-        if not is_stepped and not any(map(self._is_exact, candidates)):
+            candidates = [each for each in candidates if has_few_digits(each, self.floor)]
+        elif not is_stepped and not any(map(self._is_exact, candidates)):
             budget = self.answer.budget
             with suppress(Spent), budget.at_most(budget.left / 4):
                 candidates += damped_steps(self.answer, stride)
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
-        if is_stepped:
+        if is_stepped or is_blind:
             return cause
         is_method = any(candidate.kind == "method" for candidate in candidates)
         if cause is None and not is_method and self.floor * _PAIR_ROUNDINGS < 1:
