@@ -83,6 +83,8 @@ class Choice:
                     break
                 if decided:
                     continue
+            if proven and self._is_far_behind(proven[0], candidate):
+                continue
             proof = self._proof(candidate, leaves)
             if proof is None:
                 continue
@@ -106,6 +108,16 @@ class Choice:
         kinds = {each.candidate.kind for each in proven}
         is_worse = other.defects > BETTER * max(simple.defects, self.floor)
         return other.count > 1 or other.kind in kinds or is_worse
+
+    def _is_far_behind(self, first: _Proven, other: Candidate) -> bool:
+        """Return True if another candidate with as many numbers would not be said beside a proven one."""
+        is_whole = "attitude" not in self.answer.failed or _explains_attitude(first)
+        is_alike = other.defects <= self._as_well(first.candidate)
+        return is_whole and not is_alike and other.count == first.candidate.count
+
+    def _as_well(self, best: Candidate) -> float:
+        """Return the defects that a candidate may leave which does as well as the best."""
+        return max(BETTER * best.defects, 5 * self.floor, NOTHING)
 
     def _proof(self, candidate: Candidate, most: float) -> _Proven | None:
         proof = self._left(candidate)
@@ -152,11 +164,9 @@ class Choice:
         if not proven:
             return None
         if "attitude" in self.answer.failed:
-            with_attitude = [p for p in proven if p.leaves.get("attitude", 1.0) <= CAPS[0]]
-            proven = with_attitude or proven
+            proven = [*filter(_explains_attitude, proven)] or proven
         proven.sort(key=lambda each: _simplest(each.candidate))
-        best = proven[0].candidate
-        as_well = max(BETTER * best.defects, 5 * self.floor, NOTHING)
+        as_well = self._as_well(proven[0].candidate)
         alike = [p for p in proven if p.candidate.defects <= as_well]
         # What the scene writes is nearer to its user than a term of the equations.
         alike.sort(key=lambda each: self._nearness(each.candidate))
@@ -223,6 +233,10 @@ def _settled_numbers(
         step = np.linalg.lstsq(slopes, base, rcond=1e-9)[0]
         last, numbers = largest, numbers - scale * step
     return numbers
+
+
+def _explains_attitude(proven: _Proven) -> bool:
+    return proven.leaves.get("attitude", 1.0) <= CAPS[0]
 
 
 def _simplest(candidate: Candidate) -> tuple[int, float]:
