@@ -81,7 +81,8 @@ def names(changed: str, text: str = BODY) -> list[str]:
                     'b = { every = "1/10", offset = "1/20", start = [0, 0, 0], '
                     'value = ["a1", "a2", "a3"] }\n[initial]',
                 ),
-                "a is used one sample late, by 0.1",
+                # A delay of what a passes on is the same delay of a.
+                "m is used one sample late, by 0.1",
             ),
             (
                 BODY.replace(CONTINUOUS, "").replace(
