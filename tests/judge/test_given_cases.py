@@ -113,10 +113,7 @@ def changed(sentence: str, text: str) -> str:
             (
                 "cg_nowhere",
                 "remus",
-                [
-                    "another centre of mass (m r and three moments of inertia)",
-                    "M_15 = 0 for 0.620588",
-                ],
+                ["another centre of mass (m r and three moments of inertia)"],
             ),
             ("no_crb", "remus", ["the Coriolis terms lack the rigid body"]),
             ("br_thrust_on", "bluerov", ["force 1, body axes = 5;"]),
