@@ -120,7 +120,7 @@ def test_a_number_that_somebody_wrote_is_said(tmp_path: Path) -> None:
 
 
 def test_what_dies_away_from_the_start_is_no_jump(tmp_path: Path) -> None:
-    """Behind a filter of first order a decay is soon a decay again, from another start."""
+    """A decay behind a filter of first order is soon a decay again, from another start."""
     pace, filtered = 0.1 / 1.2, 1 / 0.05
     lagging = np.exp(-pace * TIMES) * filtered / (filtered - pace)
     lagging += (1 - filtered / (filtered - pace)) * np.exp(-filtered * TIMES)

@@ -13,7 +13,7 @@ from itertools import combinations, product
 from typing import Final
 
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import HANGING, Place, places
+from taylor_verify.judge.causes.texts import HANGING, Place, places, rational, texts_of_vectors
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Hung, Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
@@ -92,36 +92,27 @@ def _by_components(loads: Loads) -> Loads:
         for name, text in loads.definitions
         if isinstance(text, str) and (match := _LENGTH.fullmatch(text.strip()))
     }
-    for place in [place for place in places(loads) if place.path[0] == "vectors"]:
-        if isinstance(place.entry, str):
-            axis = int(place.path[-1]) + 1
+    for place in texts_of_vectors(loads):
+        axis = int(place.path[-1]) + 1
 
-            def size(match: re.Match[str], axis: int = axis) -> str:
-                letter = lengths.get(match.group())
-                return f"abs({letter}{axis})" if letter else match.group()
+        def size(match: re.Match[str], axis: int = axis) -> str:
+            letter = lengths.get(match.group())
+            return f"abs({letter}{axis})" if letter else match.group()
 
-            text = _LENGTH.sub(rf"abs(\g<1>{axis})", place.entry)
-            loads = replace(place, loads=loads).put(NAME.sub(size, text))
+        text = _LENGTH.sub(rf"abs(\g<1>{axis})", str(place.entry))
+        loads = replace(place, loads=loads).put(NAME.sub(size, text))
     return loads
 
 
 def _exchanged(loads: Loads) -> Iterator[tuple[str, Loads]]:
     """Yield two numbers of [define] exchanged, of scenes with a few."""
-    numbers = [k for k, (_, entry) in enumerate(loads.definitions) if _is_number(entry)]
+    numbers = [k for k, (_, entry) in enumerate(loads.definitions) if rational(entry) is not None]
     for i, k in combinations(numbers, 2) if len(numbers) <= _MOST_EXCHANGED else ():
         (one, first), (other, second) = loads.definitions[i], loads.definitions[k]
         if first != second:
             definitions = [*loads.definitions]
             definitions[i], definitions[k] = (one, second), (other, first)
             yield f"{one} and {other} exchanged", replace(loads, definitions=tuple(definitions))
-
-
-def _is_number(entry: Entry) -> bool:
-    try:
-        Fraction(entry)
-    except (ValueError, ZeroDivisionError):
-        return False
-    return True
 
 
 def rewritten(loads: Loads, change: Callable[[str], str], key: str = "") -> Loads:

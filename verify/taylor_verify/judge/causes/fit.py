@@ -11,7 +11,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, Evidence
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import CAPS
 
@@ -99,7 +99,7 @@ class Sizes:
     @classmethod
     def of(cls, answer: Answer) -> Sizes:
         right, truth = answer.right, answer.truth.v
-        nu = truth @ right.inverse.T if right.has_momenta else truth
+        nu = velocities_of(right, truth)
         momentum = truth if right.has_momenta else truth @ right.mass
         span = float(np.max(np.abs(answer.times - answer.begins))) or 1.0
         pace = max(float(np.max(np.linalg.norm(nu[:, -3:], axis=1))), 1 / span)

@@ -232,8 +232,7 @@ class Answer:
     def begun_at(self, row: int) -> Answer:
         """Return the rows from one on, with this row of the file as the start."""
         part = self.at(np.s_[row:])
-        nu = part.file.v[:1]
-        nu = nu @ self.right.inverse.T if self.right.has_momenta else nu
+        nu = velocities_of(self.right, part.file.v[:1])
         q = self.attitudes[row : row + 1]
         c = part.start.c if part.file.c is None else part.file.c[:1]
         return replace(part, start=Motion(nu, q, c), begins=float(self.times[row]))
@@ -327,6 +326,11 @@ def product(p: Floats, q: Floats) -> Floats:
 
 def conjugate(q: Floats) -> Floats:
     return np.asarray(q * np.array([1.0, -1.0, -1.0, -1.0]))
+
+
+def velocities_of(right: Equations, rows: Floats) -> Floats:
+    """Return nu of rows of v, (rows, components)."""
+    return np.asarray(rows @ right.inverse.T) if right.has_momenta else rows
 
 
 def matrices(q: Floats) -> Floats:

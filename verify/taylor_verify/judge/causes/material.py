@@ -14,7 +14,13 @@ from taylor_verify.exact.route import solution
 from taylor_verify.judge.causes.basis import basis
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices, steady_signs
+from taylor_verify.judge.causes.float_answer import (
+    Answer,
+    Motion,
+    matrices,
+    steady_signs,
+    velocities_of,
+)
 from taylor_verify.judge.causes.last_place import half_units
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.own_rates import ASIDE, rates_of_attitudes
@@ -133,8 +139,7 @@ def material(
     first = np.array(given.initial.attitude, dtype=float)
     motion = exact.at(instants, has_momenta).signed_as(first)
     start, truth = motion.at(np.s_[:1]), motion.at(np.s_[1:])
-    if has_momenta:
-        start = replace(start, v=start.v @ right.inverse.T)
+    start = replace(start, v=velocities_of(right, start.v))
     assert truth.q is not None
     compared = file.at(rows).signed_as(truth.q[0])
     return Answer(

@@ -6,7 +6,13 @@ from typing import Final
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import Answer, conjugate, matrices, product
+from taylor_verify.judge.causes.float_answer import (
+    Answer,
+    conjugate,
+    matrices,
+    product,
+    velocities_of,
+)
 from taylor_verify.judge.causes.many_flows import Floats
 
 NEAR: Final = 1e-2
@@ -64,8 +70,7 @@ def frame_that_turns(answer: Answer, q: Floats, truth: Floats) -> tuple[Floats, 
 def steady_rate(answer: Answer) -> Floats | None:
     """Return the rate of turn, space axes, of a motion that turns steadily; None of any other."""
     assert answer.truth.q is not None
-    right, v = answer.right, answer.truth.v
-    nu = v @ right.inverse.T if right.has_momenta else v
+    nu = velocities_of(answer.right, answer.truth.v)
     omega = np.einsum("nij,nj->ni", matrices(answer.truth.q), nu[:, -3:])
     mean = np.mean(omega, axis=0)
     off = float(np.max(np.linalg.norm(omega - mean, axis=1)))

@@ -12,7 +12,7 @@ from typing import Any, Final, final
 import numpy as np
 
 from taylor_verify.judge.causes.float_answer import Places, steady_signs
-from taylor_verify.judge.causes.many_flows import Floats, flow
+from taylor_verify.judge.causes.many_flows import Floats, cubic, flow
 from taylor_verify.judge.causes.material import are_known, equations_of
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.conventions.meanings import rotations
@@ -150,7 +150,7 @@ class QuickMotion:
         parts = np.split(states, self._edges, axis=1)
         size = np.concatenate([np.full(part.shape[1], np.max(np.abs(part))) for part in parts])
         while len(t) < _MOST_STATES:
-            course = partial(_cubic, t, states, self._rates(t, states))
+            course = partial(cubic, t, states, self._rates(t, states))
             middles = (t[gaps] + t[gaps + 1]) / 2
             between = self._moved(t[gaps], states[gaps], middles - t[gaps])
             is_off = np.any(np.abs(between - course(middles)) > _FORETOLD * size, axis=1)
@@ -183,13 +183,3 @@ class QuickMotion:
 
     def _ends(self, begins: Floats, states: Floats, spans: Floats, steps: int) -> Floats:
         return np.asarray(flow(self._right.rates, states.T[None], begins, spans, steps)[0].T)
-
-
-def _cubic(t: Floats, states: Floats, rates: Floats, times: Floats) -> Floats:
-    """Return the states at times, by cubics with the states and the rates at both ends (Hermite)."""
-    k = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
-    span = (t[k + 1] - t[k])[:, None]
-    s = (times - t[k])[:, None] / span
-    begin = (1 + 2 * s) * states[k] + s * span * rates[k]
-    end = (3 - 2 * s) * states[k + 1] - (1 - s) * span * rates[k + 1]
-    return np.asarray((1 - s) ** 2 * begin + s**2 * end)

@@ -9,7 +9,7 @@ import numpy as np
 
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
-from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.many_flows import Floats, cubic
 
 _BAD: Final = 30.0
 # A simulator has errors of its own: those below this part of the largest one.
@@ -128,17 +128,7 @@ def _held(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
 
 
 def _cubic(answer: Answer, nodes: Places, rows: Floats, rates: Floats) -> Floats:
-    times = answer.times
-    k = np.clip(np.searchsorted(times[nodes], times, side="right") - 1, 0, len(nodes) - 2)
-    i, j = nodes[k], nodes[k + 1]
-    h = (times[j] - times[i])[:, None]
-    s = ((times - times[i])[:, None]) / h
-    return np.asarray(
-        (1 + 2 * s) * (1 - s) ** 2 * rows[i]
-        + s * (1 - s) ** 2 * h * rates[i]
-        + s * s * (3 - 2 * s) * rows[j]
-        + s * s * (s - 1) * h * rates[j]
-    )
+    return cubic(answer.times[nodes], rows[nodes], rates[nodes], answer.times)
 
 
 _KINDS: Final[dict[str, Callable[[Answer, Places, Floats, Floats], Floats]]] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from typing import Any, Final
 
 from taylor_verify.scenes.loads.loads import Loads
@@ -42,6 +43,19 @@ class Place:
 def places(loads: Loads) -> Iterator[Place]:
     """Yield the places of all numbers and texts: loads, definitions, [space], [tables] and [states]."""
     return (Place(loads, *each) for each in _paths(loads))
+
+
+def texts_of_vectors(loads: Loads) -> list[Place]:
+    """Return the places of the texts of force, couple and moment, each with its axis last in its path."""
+    return [p for p in places(loads) if p.path[0] == "vectors" and isinstance(p.entry, str)]
+
+
+def rational(entry: Entry) -> Fraction | None:
+    """Return the value of an entry that is a number; None of another text."""
+    try:
+        return Fraction(entry)
+    except (ValueError, ZeroDivisionError):
+        return None
 
 
 def with_entry(entries: tuple[Any, ...], k: int, entry: Any) -> tuple[Any, ...]:

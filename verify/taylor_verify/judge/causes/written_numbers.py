@@ -35,7 +35,14 @@ from taylor_verify.judge.causes.dials import (
 )
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.texts import HANGING, Place, places, with_entry
+from taylor_verify.judge.causes.texts import (
+    HANGING,
+    Place,
+    places,
+    rational,
+    texts_of_vectors,
+    with_entry,
+)
 from taylor_verify.models.acting import Acting
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.tables import Kind
@@ -220,33 +227,20 @@ def _is_free(number: Number) -> bool:
 
 def _of_places(loads: Loads) -> Iterator[Number]:
     for place in places(loads):
-        if not isinstance(place.entry, str):
-            if place.entry:
-                yield _of_entry(place, float(place.entry))
-            continue
-        if (value := _rational(place.entry)) is not None:
+        text, value = str(place.entry), rational(place.entry)
+        if value:
             yield _of_entry(place, float(value))
-            continue
-        for match in LITERAL.finditer(place.entry):
+        for match in LITERAL.finditer(text) if value is None else ():
             if float(match.group()):
-                put = partial(_put_literal, place, place.entry, match.span())
-                name = f"`{match.group()}` in {place.name}, {place.entry},"
-                is_angle = bool(_TURNS.search(place.entry))
+                put = partial(_put_literal, place, text, match.span())
+                name = f"`{match.group()}` in {place.name}, {text},"
                 keys = (literal(place, match.start()),)
-                yield Number(name, float(match.group()), put, is_angle, keys)
+                yield Number(name, float(match.group()), put, bool(_TURNS.search(text)), keys)
 
 
 def _of_entry(place: Place, value: float) -> Number:
     keys = (entry(place),) if is_readable(place) else ()
     return Number(place.name, value, partial(_put_number, place), keys=keys)
-
-
-def _rational(text: str) -> Fraction | None:
-    """Return the value of a text that is a number."""
-    try:
-        return Fraction(text) or None
-    except (ValueError, ZeroDivisionError):
-        return None
 
 
 def _put_number(place: Place, value: float) -> Loads:
@@ -269,7 +263,7 @@ def _repeated(loads: Loads) -> Iterator[Number]:
         if isinstance(place.entry, str):
             for key, match in product(("", key_of(place)), LITERAL.finditer(place.entry)):
                 of_key = by_key.setdefault(key, {})
-                is_entry = _rational(place.entry) is not None
+                is_entry = rational(place.entry) is not None
                 own = entry(place) if is_entry else literal(place, match.start())
                 of_key.setdefault(match.group(), []).append(own)
     for key, of_key in by_key.items():
@@ -321,13 +315,12 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 def _of_drag(loads: Loads) -> Iterator[Number]:
     """Yield the factor of all terms that read velocities, and of those with their sizes alone."""
     names = moving_names(loads)
-    texts = [entry for _, entries in loads.vectors for entry in entries if isinstance(entry, str)]
+    own = texts_of_vectors(loads)
     of_loads = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]]]]()
     for words, word in (("terms with velocities (drag)", ""), ("quadratic drag", "abs(")):
         drag: Callable[[str], set[int]] = partial(_drag_of, names, word)
         # Where all of the drag is quadratic, the second of the two words says it.
-        of_loads[tuple(frozenset(drag(text)) for text in texts)] = words, drag
-    own = [p for p in places(loads) if p.path[0] == "vectors" and isinstance(p.entry, str)]
+        of_loads[tuple(frozenset(drag(str(place.entry))) for place in own)] = words, drag
     for parts, (words, drag) in of_loads.items():
         if sum(map(bool, parts)) > 1:
             keys = (term(place, k) for place in own for k in drag(str(place.entry)))

@@ -73,9 +73,10 @@ def input_rounding(given: Scene, rung: Rung, asked: Scene | None = None) -> Inpu
     ``asked``: near an unstable axis the response is large during short passages, which evenly chosen
     samples could miss.
     """
+    if is_of_run(given) or differs_dearly(given):
+        return _by_derivative(given, rung)
     beside = [*_moved(given, rung)]
-    are_dear = any(solution(scene).route == "taylor" for scene in beside)
-    if is_of_run(given) or are_dear or differs_dearly(given):
+    if any(solution(scene).route == "taylor" for scene in beside):
         return _by_derivative(given, rung)
     nodes = looked_at(orbit_of(given if asked is None else asked))
     instants = tuple(given.clock.instants[k] for k in nodes)
