@@ -13,7 +13,7 @@ from builders.wrong_dynamics import failure
 
 from taylor_verify import check, exact
 from taylor_verify.judge.causes.float_answer import Motion
-from taylor_verify.judge.causes.likely import explained
+from taylor_verify.judge.causes.likely import Explained, explained
 from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -49,6 +49,10 @@ def scene(text: str = BODY) -> Scene:
 
 def names(changed: str, text: str = BODY) -> list[str]:
     """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
+    return [cause.name for cause in of_motion(changed, text).causes]
+
+
+def of_motion(changed: str, text: str) -> Explained:
     own = scene(text)
     rows = exact(scene(changed), times=list(own.clock.instants), digits=15)["omega"]
     v = np.array([[float(f"{float(x):.10g}") for x in row] for row in rows])
@@ -57,7 +61,7 @@ def names(changed: str, text: str = BODY) -> list[str]:
     answer = material(given, Motion(v), False, noise, [failure(own, "omega")])
     assert answer is not None
     with np.errstate(all="ignore"):
-        return [cause.name for cause in explained(answer).causes]
+        return explained(answer)
 
 
 @pytest.mark.parametrize(
@@ -165,6 +169,24 @@ def test_an_own_state_without_a_first_value_or_with_large_effects_is_named(
 ) -> None:
     """A controller late from the start, one with a kink, and wheels that run away have their names."""
     assert names(changed, text) == ([] if name is None else [name])
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [(BODY, 'moment = ["a1", "a2", "a3"]'), (WHEELS, "rotor")],
+    ids=["sampled", "wheels"],
+)
+def test_a_moment_beside_own_states_is_listed_from_row_to_row(text: str, key: str) -> None:
+    """Own states go on along the rows: what is listed is what no controller of the scene makes."""
+    wave = "0.02*sin(3*t)"
+    beside = f'moment = ["a1", "a2 + {wave}", "a3"]' if text is BODY else None
+    changed = text.replace(key, beside or f'moment = ["0", "{wave}", "0"]\nrotor')
+    known = of_motion(changed, text)
+    assert not known.causes
+    assert len(known.missing_load) > 10
+    for each in known.missing_load:
+        middle = (each.t + each.until) / 2
+        assert each.load == pytest.approx([0, 0.02 * np.sin(3 * middle), 0], abs=2e-4)
 
 
 def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None:

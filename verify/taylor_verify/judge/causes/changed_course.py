@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,7 +14,12 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Evidence, moved, parts_of
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.float_answer import Answer, Motion, steady_signs
+from taylor_verify.judge.causes.float_answer import (
+    Answer,
+    Motion,
+    steady_signs,
+    velocities_of,
+)
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models import own
 from taylor_verify.scenes.loads.loads import Loads
@@ -109,35 +116,73 @@ def _first_wrong(answer: Answer) -> int:
 def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motion]:
     """Yield the motion at the rows of an answer of each set of changes."""
     for part in parts_of(sets):
-        equations = replace(answer.right.copies(part), has_momenta=True)
-        rows = _course(answer, equations, len(part), h)
-        yield from (_motion(answer, each) for each in rows)
+        course, rows = Course(answer, answer.right.copies(part), len(part), h), list[Floats]()
+        for time in answer.times.tolist():
+            course.move(time)
+            rows.append(course.row)
+        yield from (_motion(answer, each) for each in np.stack(rows, axis=1))
 
 
-def _course(answer: Answer, equations: Equations, sets: int, h: float) -> Floats:
-    """Return the velocities, attitudes and centres at the rows, (sets, rows, components)."""
-    loads = equations.loads
-    assert loads is not None
-    z = np.repeat(_start(answer, equations, loads), sets // len(equations.mass_sets), axis=0)
-    starts = np.array(own.held_starts(loads), dtype=float)
-    values = np.array(
-        np.broadcast_to(starts if equations.held is None else equations.held, (sets, len(starts)))
-    )
-    taken = {float(i.time): i for i in loads.instants(Fraction(float(answer.times[-1])))}
-    marks = np.union1d(answer.times, [*taken])
-    equations, now, rows = replace(equations, held=values), answer.begins, list[Floats]()
-    for mark in marks:
-        since, span = np.array([now]), np.array([mark - now])
-        if mark > now:
-            z = moved(answer, equations, z, since, span, max(1, round(float(span[0]) / h)))
-        if mark in taken:
-            values = _taken(equations, taken[mark], z, values)
-            equations = replace(equations, held=values)
-        now = mark
-        if mark in answer.times:
-            nu = equations.velocities(np.array([now]), z)
-            rows.append(np.concatenate([nu, z[:, equations.size :]], axis=1)[:, :, 0])
-    return np.stack(rows, axis=1)
+class Course:
+    """The motion of changed scenes with their own states, from the start on, in steps of about ``h``."""
+
+    def __init__(self, answer: Answer, equations: Equations, sets: int, h: float) -> None:
+        self._answer, self._equations, self._h = answer, replace(equations, has_momenta=True), h
+        loads = equations.loads
+        assert loads is not None
+        begin = _start(answer, self._equations, loads)
+        self._z = np.repeat(begin, sets // len(begin), axis=0)
+        starts, held = np.array(own.held_starts(loads), dtype=float), equations.held
+        self._held = np.broadcast_to(starts if held is None else held, (sets, len(starts)))
+        self._now = answer.begins
+        until = Fraction(float(answer.times[-1]))
+        self._instants = deque(loads.instants(until))
+
+    @property
+    def row(self) -> Floats:
+        """The velocities, the attitude and the centre now, (sets, components)."""
+        nu = self._equations.velocities(np.array([self._now]), self._z)
+        return np.concatenate([nu, self._z[:, self._equations.size :]], axis=1)[:, :, 0]
+
+    @property
+    def v(self) -> Floats:
+        """The velocities now, or the momenta of a file of momenta, (sets, n)."""
+        nu, right = self.row[:, : self._equations.size], self._answer.right
+        return nu @ right.mass.T if right.has_momenta else nu
+
+    def move(self, until: float) -> None:
+        """Move to a time, and take the values of the instants up to it."""
+        while self._instants and float(self._instants[0].time) <= until:
+            instant = self._instants.popleft()
+            self._flow(float(instant.time))
+            self._held = _taken(self._with_held, instant, self._z, self._held)
+        self._flow(until)
+
+    def from_row(self, row: int, loads: Floats) -> Course:
+        """Return the course through a row of the file, under constant loads (sets, n) besides its own."""
+        own_row, answer, n = copy(self), self._answer, self._equations.size
+        own_row._instants = self._instants.copy()
+        own_row._equations = replace(self._equations, load=(answer.right.load + loads)[:, :, None])
+        z = self._z.copy()
+        states = answer.states(n + 7 if answer.start.c is not None else n + 4, np.s_[row : row + 1])
+        z[:, n : states.shape[1]] = states[:, n:, None]
+        nu = velocities_of(answer.right, answer.file.v[row : row + 1])
+        momenta = (self._equations.mass @ nu[0])[None, :, None]
+        z[:, :n] = _with_wheels(self._equations, momenta, z, self._now)
+        own_row._z = np.repeat(z, len(loads) // len(z), axis=0)
+        own_row._held = np.repeat(self._held, len(loads) // len(self._held), axis=0)
+        return own_row
+
+    @property
+    def _with_held(self) -> Equations:
+        return replace(self._equations, held=self._held)
+
+    def _flow(self, until: float) -> None:
+        since, span = np.array([self._now]), np.array([until - self._now])
+        if until > self._now:
+            steps = max(1, round(float(span[0]) / self._h))
+            self._z = moved(self._answer, self._with_held, self._z, since, span, steps)
+        self._now = until
 
 
 def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
@@ -146,9 +191,14 @@ def _start(answer: Answer, equations: Equations, loads: Loads) -> Floats:
     frame = [part[0] for part in (answer.start.q, answer.start.c) if part is not None]
     starts = np.array(own.starts(loads), dtype=float)
     z = np.stack([np.concatenate([mass @ nu, *frame, starts]) for mass in masses])[:, :, None]
-    if loads.rotor:
-        z[:, : equations.size] += equations.wheels(np.array([0.0]), z)
+    z[:, : equations.size] = _with_wheels(equations, z[:, : equations.size], z, 0.0)
     return z
+
+
+def _with_wheels(equations: Equations, momenta: Floats, z: Floats, time: float) -> Floats:
+    """Return momenta of the body with those of wheels that a text writes."""
+    has_wheels = equations.loads is not None and any(equations.loads.rotor)
+    return momenta + equations.wheels(np.array([time]), z) if has_wheels else momenta
 
 
 def _taken(equations: Equations, instant: Instant, z: Floats, values: Floats) -> Floats:
