@@ -140,8 +140,13 @@ LATE = HELD.replace("m = {", "m = { start = [0, 0, 0],").replace(
     'n = { start = [0, 0, 0], every = "1/10", value = ["m1", "m2", "m3"] }\n[initial]',
 )
 LATE = LATE.replace('moment = ["m1", "m2", "m3"]', 'moment = ["n1", "n2", "n3"]')
+LATER = HELD.replace("m = {", 'm = { start = [0, 0, 0], offset = "7/100",')
+SHORT = ", ".join(f'"-w{i}*0.45/max(norm(w1, w2, w3), 0.45)"' for i in (1, 2, 3))
+LENGTH = "the length of the vector is limited, where the scene limits each axis"
+FREE = "no limits"
 STATES = HELD[HELD.index("[states]") : HELD.index("[initial]")]
 LIMITED = VALUE.removeprefix("value = ")
+SMOOTH = HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED)
 REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
 
 
@@ -155,6 +160,12 @@ REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
             "m continuous, where the scene samples",
         ),
         (HELD, LATE.replace("clip(-w1,", "clip(-1.3*w1,"), None),
+        (HELD, LATER, "time by which m is taken late"),
+        (HELD, LATER.replace("clip(-w1,", "clip(-1.3*w1,"), None),
+        (HELD, HELD.replace(VALUE, f"value = [{SHORT}]"), LENGTH),
+        (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]"), LENGTH),
+        (SMOOTH, SMOOTH.replace(LIMITED, '["-w1", "-w2", "-w3"]'), FREE),
+        (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]").replace("-w1*", "-1.3*w1*"), None),
         (WHEELS, WHEELS.replace("rotor", REACTION), "no reaction of the wheels' motors"),
         (WHEELS, WHEELS.replace('"1/2"', '"1/3"'), "d"),
         pytest.param(
@@ -162,7 +173,11 @@ REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
             marks=pytest.mark.slow,
         ),
     ],
-    ids=["late", "continuous", "late and more", "no reaction", "gain", "no reaction and a gain"],
+    ids=[
+        *("late", "continuous", "late and more", "another phase", "another phase and more"),
+        *("by length", "by length, smooth", "no limits, smooth", "by length and more"),
+        *("no reaction", "gain", "no reaction and a gain"),
+    ],
 )
 def test_an_own_state_without_a_first_value_or_with_large_effects_is_named(
     text: str, changed: str, name: str | None

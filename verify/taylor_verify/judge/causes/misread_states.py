@@ -9,16 +9,21 @@ from fractions import Fraction
 from itertools import product
 from typing import Final
 
+import numpy as np
+
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import added, rewritten, written_out
+from taylor_verify.judge.causes.changed_texts import added, written_out
 from taylor_verify.judge.causes.fit import Family, fault
 from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.written_numbers import Number
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.states import Continuous, Held, State
 
 _TIMES: Final = ("2", "3/2", "3", "4", "5", "10", "5/4")
 _RATES: Final = tuple(Fraction(times) ** sign for times in _TIMES for sign in (1, -1))
+# Parts of an interval at which the fit of another phase begins.
+_PHASES: Final = (0.1, 0.3, 0.5, 0.7, 0.9)
 _WRONG_RATES: Final = (("stands still", 0), ("has the rate of the other sign", -1))
 
 
@@ -61,9 +66,6 @@ def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:
         yield f"{each.name} {words}", _with(loads, each, replace(each, rate=rate))
     if loads.rotor:
         yield from _half_wheels(loads)
-    free = rewritten(loads, _without_limits)
-    if free != loads:
-        yield "no limits: each clip gives what stands first in it", free
 
 
 def numbers_of_sampling(loads: Loads) -> Iterator[Number]:
@@ -85,6 +87,36 @@ def numbers_of_sampling(loads: Loads) -> Iterator[Number]:
             return replace(loads, states=tuple(states))
 
         yield Number("every", float(every), scaled)
+
+
+def phase_of_sampling(right: Equations) -> Iterator[tuple[Family, Floats]]:
+    """Yield the time by which all instants are late, with numbers that a fit may begin at.
+
+    Until its first instant a state is what the scene says, or 0.
+    """
+    acting = right.acting
+    assert acting is not None
+    loads, held = acting.written, acting.written.held_states
+    if not held:
+        return
+    every = float(held[0].every)
+
+    def late(values: Floats) -> Changes:
+        shift = _time(float(values[0]))
+        states = (_late_by(state, shift) for state in loads.states)
+        return {"acting": acting.of(replace(loads, states=tuple(states)))}
+
+    names = " and ".join(state.name for state in held)
+    label = f"time by which {names} {'is' if len(held) == 1 else 'are'} taken late"
+    one, none = np.array([every]), np.zeros(1)
+    yield Family(label, "states", none, one, late, (label,)), every * np.array(_PHASES)
+
+
+def _late_by(state: State, shift: Fraction) -> State:
+    if not isinstance(state, Held):
+        return state
+    start = state.start or (Fraction(0),) * len(state.components)
+    return replace(state, start=start, offset=state.offset + shift)
 
 
 def _time(value: float) -> Fraction:
@@ -167,17 +199,3 @@ def _rates(loads: Loads) -> Iterator[tuple[str, str]]:
     for state in loads.states:
         if isinstance(state, Continuous):
             yield from zip(state.components, map(str, state.rate), strict=True)
-
-
-def _without_limits(text: str) -> str:
-    """Return a text with the first argument of each clip in its place."""
-    while (at := text.find("clip(")) >= 0:
-        depth, ends = 0, list[int]()
-        for k in range(at + 4, len(text)):
-            depth += (text[k] == "(") - (text[k] == ")")
-            if (text[k] == "," and depth == 1) or not depth:
-                ends.append(k)
-            if not depth:
-                break
-        text = f"{text[:at]}({text[at + 5 : ends[0]]}){text[ends[-1] + 1 :]}"
-    return text

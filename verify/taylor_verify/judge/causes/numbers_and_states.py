@@ -16,7 +16,11 @@ from taylor_verify.judge.causes.dynamics import Search, search_by
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, Sizes
 from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.misread_states import faults_of_states, numbers_of_sampling
+from taylor_verify.judge.causes.misread_states import (
+    faults_of_states,
+    numbers_of_sampling,
+    phase_of_sampling,
+)
 from taylor_verify.judge.causes.other_bodies import families_of_bodies, faults_of_bodies
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms, loads_late
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers
@@ -41,6 +45,7 @@ def in_states(answer: Answer) -> Cause | None:
         families = [*families_of_terms(right, sizes), *families_of_bodies(right, sizes)]
         one = [each for each in families if each.count == 1 and each.kind != "clock"]
         cause = cause or search.cause([*search.fitted(one)])
+        cause = cause or search.cause([*search.from_far([*phase_of_sampling(right)])])
     return cause
 
 

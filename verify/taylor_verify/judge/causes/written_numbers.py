@@ -34,6 +34,7 @@ from taylor_verify.judge.causes.dials import (
     term,
 )
 from taylor_verify.judge.causes.fit import DIFFERENCE, Family, fault
+from taylor_verify.judge.causes.limits import other_limits
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import (
     HANGING,
@@ -194,7 +195,7 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             # A number that no run reaches is no text for a reader.
             changes = {"acting": acting.of(missed[1]), "late": 0.0}
             yield fault(f"switch at t = {time:.6g} missed", "switch", changes)
-    for name, other in changed_texts(loads):
+    for name, other in (*changed_texts(loads), *other_limits(loads)):
         if next(other.faults(), None) is None:
             yield fault(name, KIND, {"acting": acting.of(other)})
     for k, (name, table) in enumerate(loads.tables):
