@@ -20,6 +20,8 @@ _TIMES: Final = 5
 _ROUNDED: Final = 1e-13
 # A larger part of an error that is left is not explained.
 _UNEXPLAINED: Final = 0.5
+# Steps between rows are equal if the longest and the shortest differ by less than this part.
+_EQUAL: Final = 1e-6
 # A factor so near to a whole number is one.
 _WHOLE: Final = 1e-6
 
@@ -47,6 +49,14 @@ def sentence(
     parts += [f"not told apart from: {others}"] * bool(others)
     parts += [f"as a scene: {changed}"] * bool(changed)
     return "; ".join(parts)
+
+
+def steps_in_words(spans: Sequence[float], count: int) -> str:
+    """Return how long steps are, so many from each row to the next, over these spans."""
+    sizes = sorted(abs(span) for span in spans)
+    if sizes[-1] - sizes[0] < _EQUAL * sizes[-1]:
+        return f"h = {sizes[len(sizes) // 2] / count:.6g}"
+    return f"{'one step' if count == 1 else f'{count} equal steps'} from row to row"
 
 
 def with_numbers(

@@ -86,7 +86,10 @@ def has_few_digits(candidate: Candidate, floor: float) -> bool:
 
     ``floor`` is the rounding of the file as a part of the defects, and so of a change that makes them.
     """
-    pairs = zip(candidate.numbers, candidate.family.right, strict=True)
+    pairs = [*zip(candidate.numbers, candidate.family.right, strict=True)]
+    if candidate.kind == "clock":
+        # A factor of time may be written either way up.
+        return any(_is_written(x, 1.0, floor) for x in (pairs[0][0], 1 / (pairs[0][0] or 1.0)))
     return not candidate.count or all(_is_written(x, right, floor) for x, right in pairs)
 
 

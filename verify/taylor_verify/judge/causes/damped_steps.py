@@ -135,7 +135,9 @@ def _candidate(arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str) -
     short = [law for law in _LAWS if _length(law[3](factor, h)) < _SHORT]
     name, words, law, number = short[0] if len(short) == 1 else _ANY
     what = "omega" if answer.n == 3 else "the velocities"
-    title = f"{name}: {what} times {words} {place} the motion of each step of h = {h:.6g}{beside}, with c"
+    long = steps.words(answer)
+    each = f"each step of {long}" if long.startswith("h = ") else f"each of {long}"
+    title = f"{name}: {what} times {words} {place} the motion of {each}{beside}, with c"
     family = _family(law, h, 0.1 * Sizes.of(answer).pace, title)
     numbers, motion = np.array([number(factor, h)]), partial(_motion, steps, h)
     return Candidate(family, numbers, steps.left, motion, LEAVES, steps)

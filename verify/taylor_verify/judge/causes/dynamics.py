@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.fit import (
     orthonormal,
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.lateness import off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
@@ -64,6 +65,9 @@ _NEARLY: Final = 0.02
 _BEGINS: Final = 2
 # The pace of a motion by a coarse method is wrong by no more than this part.
 _COARSE_PACE: Final = 0.05
+# A motion has one pace if a method changes it otherwise by less than this part, or so many roundings.
+_OFF_PACE: Final = 1e-4
+_OFF_ROUNDINGS: Final = 30.0
 # Fits that end so near to each other, as a part of the scale, are one.
 _APART: Final = 0.01
 
@@ -85,7 +89,10 @@ class Dynamics:
 
     def without_numbers(self) -> Cause | None:
         """Return the proven cause that has no number to fit."""
-        return self._search.cause(self._faults) if self._search.is_clear else None
+        cause = self._search.cause(self._faults) if self._search.is_clear else None
+        if cause is not None and max(cause.leaves.values()) < _FAIR:
+            self._search.proven = cause.name
+        return cause
 
     def cause(self) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
@@ -148,6 +155,8 @@ class Search:
         self.floor = evidence.floor
         self.choice = Choice(answer, groups, self.floor)
         self.cause = self.choice.cause
+        # A fault without numbers that leaves nothing of the whole answer, whatever it leaves of the arcs.
+        self.proven = ""
 
     @property
     def is_clear(self) -> bool:
@@ -202,7 +211,7 @@ class Search:
             for steps in steps_beside(self.evidence, stride, few, faults):
                 cause = dynamics(stepped(self.answer, steps))
                 if cause is not None:
-                    beside = f"beside steps of {steps.name}, h = {steps.step(self.answer):.6g}"
+                    beside = f"beside steps of {steps.name}, {steps.words(self.answer)}"
                     text = f"{cause.text or cause.name}, {beside}"
                     return replace(cause, text=text, method=steps)
         return None
@@ -212,16 +221,23 @@ class Search:
 
         Nor is it seen to leave less than the arcs are wrong by.
         """
-        return candidate.defects < max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
+        least = max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
+        return candidate.defects < least or (candidate.family.name == self.proven)
 
     def _is_pace(self, candidate: Candidate) -> bool:
         """Return True for another pace of the motion that is as exact, and no more than a method's error.
 
-        Such a motion has one pace, as a decay or a steady precession has: it does not tell the error of a
-        method from any number of the equations that sets the pace.
+        A motion of one pace, as a decay or a steady precession, does not tell the error of a method from
+        any number of the equations that sets the pace.
         """
         is_near = candidate.kind == "clock" and abs(candidate.numbers[0] - 1) < _COARSE_PACE
-        return is_near and self._is_exact(candidate)
+        return is_near and self._is_exact(candidate) and self._has_one_pace
+
+    @cached_property
+    def _has_one_pace(self) -> bool:
+        """True if the motion is such that a method of order two changes its pace alone."""
+        few = self.answer.thinned(FIT_ROWS)
+        return off_pace(few) < max(_OFF_PACE, _OFF_ROUNDINGS * self.floor)
 
     def _telling(self, pairs: list[Candidate]) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
@@ -233,7 +249,7 @@ class Search:
     def _candidate(self, family: Family, fit: Fitted) -> Candidate:
         answer, right = self.answer, self.answer.right
         coupled = right.changed(family.changes(fit.numbers)).coupled
-        near = _LOOSE if answer.file.q is None and coupled > right.coupled else LEAVES
+        near = _LOOSE if answer.file.q is None and coupled > answer.n else LEAVES
         motion = self.motion if family.count else self.motion_of_faults
         return Candidate(family, fit.numbers, fit.size / self.evidence.size, motion, near)
 

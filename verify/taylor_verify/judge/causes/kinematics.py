@@ -29,6 +29,7 @@ from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leav
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.words.causes import steps_in_words
 
 _ARCS: Final = 16
 _CLEAR: Final = 20.0
@@ -179,8 +180,8 @@ def _updates(turns: _Turns, method: Steps | None) -> Iterator[Candidate]:
         steps = method.count if method else _steps(order, partial(_apart, error, exact), turns.size)
         some = {steps} if method else {max(1, steps - 1), steps, steps + 1}
         best = min(some, key=lambda k: _size(error(k)))
-        h = float(np.median(np.abs(arcs.spans))) / best
-        words = f"attitude {name}" + ("" if method else f", h = {h:.6g}")
+        long = steps_in_words(arcs.spans.tolist(), best)
+        words = f"attitude {name}" + ("" if method else f", {long}")
         yield turns.candidate(words, "attitude step", partial(_maps, right, update, best, method))
 
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import moved
-from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
 
 _STEPS: Final = 4
@@ -20,6 +20,8 @@ _FITS: Final = 0.7
 _RIGHT: Final = 1e-3
 _MOST_ROWS: Final = 6.0
 _WHOLE: Final = 1e-4
+# A part of the time in which a motion changes by its own size.
+_BRIEF: Final = 0.03
 
 
 def true_states(answer: Answer, count: int) -> Floats:
@@ -32,6 +34,36 @@ def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
     """Return the true motion so much later than at the rows, from the states there."""
     own = replace(answer, stepping=None)
     return moved(own, answer.right, states, answer.times, late, _STEPS)
+
+
+def off_pace(answer: Answer) -> float:
+    """Return the part of the second derivative of the true motion's rates that is not along the rates.
+
+    A method of order two changes the rates by such derivatives. Where they are along the rates, as in a
+    decay or a steady precession, it changes the pace alone, as another clock would.
+    """
+    n, nu = answer.n, velocities_of(answer.right, answer.truth.v)
+    z = true_states(answer, n)
+    step = _BRIEF / max(float(np.max(np.linalg.norm(nu[:, -3:], axis=1))), _least_pace(answer))
+    rates = []
+    for late in (-step, 0.0, step):
+        shifts = np.full(answer.count, late)
+        states = at_other_times(answer, z, shifts) if late else z
+        rates.append(
+            answer.right.rates(answer.times + shifts, states)[0, :n] / answer.sizes[:, None]
+        )
+    before, now, after = rates
+    bend = before - 2 * now + after
+    along = np.sum(bend * now, axis=0) / np.maximum(np.sum(now**2, axis=0), 1e-300)
+    size = float(np.linalg.norm(bend))
+    return float(np.linalg.norm(bend - along * now)) / size if size > 0 else 0.0
+
+
+def _least_pace(answer: Answer) -> float:
+    """Return the pace of a motion whose rates change it by its own size, or in the span of the answer."""
+    rates = answer.right.rates(answer.times, true_states(answer, answer.n))[0, : answer.n]
+    span = float(np.ptp(answer.times)) or 1.0
+    return max(float(np.max(np.abs(rates / answer.sizes[:, None]))), 1 / span)
 
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:

@@ -13,6 +13,7 @@ from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_equations import Equations, Path, to_space
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.words.causes import steps_in_words
 
 # What the velocities and attitudes are wrong by is nothing beside the path.
 _RIGHT: Final = 1e-3
@@ -140,6 +141,6 @@ def _in_steps(answer: Answer, from_start: Answer) -> Iterator[tuple[str, Floats]
             total += h_ * right.rates(arcs.since + past, states)[0, n + 4 :]
         words = (
             f"is the path of steps of first order, c += h c' at the {where} of each step, "
-            f"h = {spans / count:.6g}"
+            f"{steps_in_words(np.diff(answer.times).tolist(), count)}"
         )
         yield words, _from_start(answer, total.T)

@@ -28,7 +28,7 @@ Course = Callable[[Floats], Any]
 # chosen and the longest, change by less than this part.
 _ARC: Final = 1.0
 _STEPS: Final = 1
-_DOUBLINGS: Final = 5
+_DOUBLINGS: Final = 8
 _SETTLED: Final = 1e-6
 _SAMPLED: Final = 16
 # Arcs one behind the other, from a row to the middle between two.

@@ -32,6 +32,7 @@ from taylor_verify.judge.causes.replayed_methods import (
     with_updates,
 )
 from taylor_verify.scenes.instants import evenly
+from taylor_verify.words.causes import steps_in_words
 
 _ARCS: Final = 16
 # A replay leaves at most this part of the defects, or so many roundings; they are this many at least.
@@ -78,6 +79,10 @@ class Steps:
     def step(self, answer: Answer) -> float:
         return float(np.median(np.abs(np.diff(answer.times)))) / self.count
 
+    def words(self, answer: Answer) -> str:
+        """Return how long the steps are."""
+        return steps_in_words(np.diff(answer.times).tolist(), self.count)
+
 
 def replay(
     answer: Answer,
@@ -122,7 +127,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
             changes = held_over_steps(answer, h) if steps.method is HELD else {}
-            of_steps = fault(_name(steps, answer.n, h), "method", changes)
+            of_steps = fault(_name(steps, answer), "method", changes)
             motion = partial(_motion, steps)
             yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
 
@@ -138,14 +143,16 @@ def _clear(answer: Answer, stride: int) -> _Replays | None:
     return None
 
 
-def _name(steps: Steps, n: int, h: float) -> str:
-    """Return the name of steps of the length h, of the motion of n components."""
+def _name(steps: Steps, answer: Answer) -> str:
+    """Return the name of the steps of an answer."""
+    long = steps.words(answer)
     if steps.method is HELD:
-        return f"loads taken every {h:.6g} and held in between"
-    words = _WORDS.get(steps.name, steps.name) if n == 3 else steps.name
+        when = f"every {long.removeprefix('h = ')}" if "h = " in long else f"at each of {long}"
+        return f"loads taken {when} and held in between"
+    words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
     if steps.method.order > 1:
         words = f"truncation of order {steps.method.order}: {steps.name}"
-    return f"{words}, h = {h:.6g}"
+    return f"{words}, {long}"
 
 
 def steps_beside(

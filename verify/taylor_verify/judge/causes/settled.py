@@ -46,6 +46,8 @@ _PROVEN: Final = 6
 # So few numbers are printed with as few digits as explain as much.
 FEW: Final = 3
 _DIGITS: Final = (2, 3, 4, 6)
+# Bodies whose entries agree to this part are one.
+_SAME_BODY: Final = 1e-6
 # A number so small beside the scale of its family is none.
 _NO_NUMBER: Final = 1e-8
 
@@ -111,7 +113,7 @@ class Choice:
 
     def _is_far_behind(self, first: _Proven, other: Candidate) -> bool:
         """Return True if another candidate with as many numbers would not be said beside a proven one."""
-        is_whole = "attitude" not in self.answer.failed or _explains_attitude(first)
+        is_whole = self._explains_frame(first)
         is_alike = other.defects <= self._as_well(first.candidate)
         return is_whole and not is_alike and other.count == first.candidate.count
 
@@ -163,8 +165,7 @@ class Choice:
     def _cause(self, proven: list[_Proven]) -> Cause | None:
         if not proven:
             return None
-        if "attitude" in self.answer.failed:
-            proven = [*filter(_explains_attitude, proven)] or proven
+        proven = [*filter(self._explains_frame, proven)] or proven
         proven.sort(key=lambda each: _simplest(each.candidate))
         as_well = self._as_well(proven[0].candidate)
         alike = [p for p in proven if p.candidate.defects <= as_well]
@@ -172,8 +173,17 @@ class Choice:
         alike.sort(key=lambda each: self._nearness(each.candidate))
         first, best = alike[0], self._shortened(alike[0])
         text, changes = self._described(best)
-        others = tuple(self._described(each.candidate)[0] for each in alike[1:])
+        others = tuple(
+            self._described(each.candidate)[0]
+            for each in alike[1:]
+            if not _are_same_body(each.candidate.changes, first.candidate.changes)
+        )
         return Cause(best.family.name, best.kind, first.leaves, text, others, changes, best.method)
+
+    def _explains_frame(self, proven: _Proven) -> bool:
+        """Return True if what is proven of the motion explains attitude and centre too, where they fail."""
+        frame = {"attitude", "centre"}.intersection(self.answer.failed)
+        return all(proven.leaves.get(name, 1.0) <= CAPS[0] for name in frame)
 
     def _shortened(self, proven: _Proven) -> Candidate:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
@@ -235,8 +245,11 @@ def _settled_numbers(
     return numbers
 
 
-def _explains_attitude(proven: _Proven) -> bool:
-    return proven.leaves.get("attitude", 1.0) <= CAPS[0]
+def _are_same_body(changes: Changes, other: Changes) -> bool:
+    """Return True if two changes lead to one body."""
+    return changes.keys() == other.keys() == {"mass"} and bool(
+        np.allclose(changes["mass"], other["mass"], rtol=_SAME_BODY, atol=0.0)
+    )
 
 
 def _simplest(candidate: Candidate) -> tuple[int, float]:

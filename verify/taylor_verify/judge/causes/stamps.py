@@ -21,6 +21,8 @@ _PATTERN: Final = 1e-3
 # Offsets are in proportion to time, or steps are equal, to these parts of the largest offset.
 _STRAIGHT: Final = 1e-2
 _EQUAL: Final = 0.1
+# Rates in a second direction so much smaller than those in the first leave the motion on a line.
+_ON_A_LINE: Final = 1e-6
 _SCATTER: Final = "times scatter"
 
 
@@ -28,35 +30,39 @@ def other_times(answer: Answer) -> Cause | None:
     """Return the cause of rows that are exact at other times; the factor of a clock is another question."""
     if answer.has_states:
         return None
-    late, left = _offsets(answer)
-    errors = [
-        answer.error[name] / (2 if name == "attitude" else 1)
-        for name in answer.error
-        if name != "centre"
-    ]
-    largest = float(np.max(errors))
-    noise = max(answer.roundings[name] for name in answer.error if name != "centre")
+    late, left, is_line = _offsets(answer)
+    units = {"attitude": 2.0, "centre": answer.reach}
+    largest = max(worst / units.get(name, 1.0) for name, worst in answer.worst.items())
+    noise = max(answer.roundings[name] / units.get(name, 1.0) for name in answer.worst)
     remains = float(np.max(left))
     if not (remains <= max(_ROUNDINGS * noise, _NEAR * largest) and remains < _LEAVES * largest):
         return None
     words = _pattern(answer, late)
-    is_telling = answer.n == 6 or answer.file.q is not None
+    is_telling = (answer.n == 6 or answer.file.q is not None) and not is_line
     if words is None or not answer.failed or (words.startswith(_SCATTER) and not is_telling):
-        return None  # one number for each row explains much of three
-    leaves = {name: remains / answer.worst[name] for name in answer.failed}
+        return None  # one number for each row explains much of three, and all of a motion on a line
+    worst = answer.worst
+    leaves = {name: remains * units.get(name, 1.0) / worst[name] for name in answer.failed}
     return Cause(words, "stamps", leaves)
 
 
-def _offsets(answer: Answer) -> tuple[Floats, Floats]:
-    """Return for each row the time from its stamp to that at which it is exact, and what is left there."""
-    right, truth, file = answer.right, answer.truth, answer.file
-    rows, scale = file.v.T, answer.sizes[:, None]
+def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
+    """Return for each row the time from its stamp to that at which it is exact, and what is left there.
+
+    True if the compared states move on a line, on which every state is one of another time.
+    """
+    right, truth, file, n = answer.right, answer.truth, answer.file, answer.n
+    rows, scale, compared = file.v.T, answer.sizes[:, None], [*range(n)]
     if file.q is not None and truth.q is not None:
         signs = np.sign(np.sum(file.q * truth.q, axis=1))
         rows = np.vstack([rows, file.q.T * signs])
         scale = np.vstack([scale, np.ones((4, 1))])
-    compared = np.s_[: len(rows)]
-    z = true_states(answer, len(rows))
+        compared += range(n, n + 4)
+    if file.c is not None and truth.c is not None:
+        rows = np.vstack([rows, file.c.T])
+        scale = np.vstack([scale, np.full((3, 1), answer.reach)])
+        compared += range(n + 4, n + 7)
+    z = true_states(answer, compared[-1] + 1)
     spacing = float(np.median(np.abs(np.diff(answer.times))))
     late, at = np.zeros(answer.count), z
     for _ in range(_ROUNDS):
@@ -70,7 +76,9 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats]:
             _MOST_ROWS * spacing,
         )
         at = at_other_times(answer, z, late)
-    return late, np.linalg.norm((rows - at[0, compared]) / scale, axis=0)
+    paces = np.linalg.svd(slopes, compute_uv=False)
+    is_line = len(paces) < 2 or bool(paces[1] < _ON_A_LINE * paces[0])
+    return late, np.linalg.norm((rows - at[0, compared]) / scale, axis=0), is_line
 
 
 def _pattern(answer: Answer, late: Floats) -> str | None:
