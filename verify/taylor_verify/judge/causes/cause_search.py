@@ -6,7 +6,7 @@ replayed_methods.py or inexact_conventions.py, a broken twin to the tests, a lin
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Final
@@ -14,17 +14,16 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes import starts
-from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics, dynamics
 from taylor_verify.judge.causes.float_answer import (
     Answer,
-    Motion,
     conjugate,
     matrices,
     steady_signs,
 )
+from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes, readings
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.many_flows import Floats
@@ -33,6 +32,7 @@ from taylor_verify.judge.causes.paths import contradicts
 from taylor_verify.judge.causes.proof import may_leave, whole
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
+from taylor_verify.words.causes import with_numbers
 
 # An attitude so many times better than omega refutes every equation.
 _CONTRADICTED: Final = 1e-3
@@ -111,7 +111,7 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
         cause = causes[-1] if causes else None
     if not has_wrong_attitude:
         return causes
-    if cause is not None and cause.leaves.get("attitude", 1.0) <= _PROVEN:
+    if cause is not None and cause.leaves.get("attitude", 1.0) <= _enough(answer, cause):
         return causes
     is_slight = cause is not None and max(answer.worst[name] for name in moving) < (
         _CONTRADICTED * answer.worst["attitude"]
@@ -124,6 +124,12 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
     if cause is None and moving:
         return causes
     return _with_attitude(answer, cause, causes)
+
+
+def _enough(answer: Answer, cause: Cause) -> float:
+    """Return what a cause of the motion may leave of the attitude: a step of it may have another update."""
+    is_near = cause.method is not None or cause.kind in _OF_PIECES
+    return _PROVEN if is_near else may_leave(answer, ["attitude"], 1)
 
 
 def _of_moving_part(answer: Answer) -> list[Cause]:
@@ -165,14 +171,48 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
             leaves["attitude"] = left
         causes = [replace(each, leaves=leaves) if each is cause else each for each in causes]
     if of_attitude is not None:
+        if of_clock := _by_clock(answer, of_attitude):
+            return of_clock
         if causes:
             # What is left of the motion is said of its own cause.
             own = {name: part for name, part in of_attitude.leaves.items() if name == "attitude"}
             of_attitude = replace(of_attitude, leaves=own)
         return [*causes, of_attitude]
     # An attitude that no cause explains refutes a cause that does not explain it.
-    is_refuted = cause is not None and cause.method is None and cause.kind not in _OF_PIECES
-    return [each for each in causes if each is not cause] if is_refuted else causes
+    return causes if cause is None or _stands(cause) else [c for c in causes if c is not cause]
+
+
+def _stands(cause: Cause) -> bool:
+    """Return True if a cause may leave the attitude as it does: it is near, of steps or of a part."""
+    is_near = cause.leaves.get("attitude", 1.0) <= _PROVEN
+    return is_near or cause.method is not None or cause.kind in _OF_PIECES
+
+
+def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
+    """Return causes by another clock, where the attitude shows its factor; none if there is no such clock.
+
+    Alone it is as good as the factor of the attitude: the motion does not tell them apart.
+    """
+    turns = of_attitude.changes.get("turns")
+    if of_attitude.kind != "kinematics" or turns is None or turns[0] or np.ndim(answer.right.clock):
+        return []
+    pace = float(turns[1])
+    right = answer.right.changed({"clock": pace})
+    words = with_numbers("clock", (), (1.0,), (pace,))
+    motion = whole(answer, right)
+    leaves = {} if motion is None else answer.leaves(motion)
+    if leaves and _are_explained(answer, leaves):
+        return [replace(of_attitude, alike=(*of_attitude.alike, words))]
+    if not answer.moving:
+        return []
+    causes = _of_moving_part(replace(answer, right=right))
+    if causes and _are_explained(answer, causes[-1].leaves):
+        return _beside(Cause(words, "clock", {}), causes)
+    return []
+
+
+def _are_explained(answer: Answer, leaves: Mapping[str, float]) -> bool:
+    return all(leaves.get(name, 1.0) <= may_leave(answer, [name], 1) for name in answer.failed)
 
 
 _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
@@ -277,6 +317,9 @@ def _begins_at_start(answer: Answer) -> bool:
 def _undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     """Return a convention that the first row shows, with the causes of what is left by it."""
     if "omega" in by_group and "attitude" in answer.failed and "attitude" not in by_group:
+        own = starts.exact_in_pieces(answer, starts.roundings(answer))
+        if own is not None and own.kind == "own start" and _are_explained(answer, own.leaves):
+            return [own]
         read = _with_omega(answer, answer.truth.v[:, answer.groups["omega"]])
         return _beside(by_group["omega"], _of_motion(read, [], has_wrong_attitude=True))
     tried = {"attitude": _attitudes(answer), "omega": _rates(answer)}
@@ -324,40 +367,7 @@ def _in_space(answer: Answer) -> list[Cause]:
         if causes:
             return _beside(convention, causes)
     in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
-    return _beside(convention, _in_world(answer, answer.file.v)) or _in_world(answer, in_space)
-
-
-def _in_world(answer: Answer, omega: Floats) -> list[Cause]:
-    """Return the cause of rows of ``omega``, space axes, of a body whose tensor is not turned with it."""
-    world = _in_space_axes(answer, omega)
-    none = answer.right.basis.factors(products=-coriolis_of(answer.right.mass))
-    name = (
-        "the tensor is not turned with the body: its entries for body axes are used in space axes"
-    )
-    for words, changes in (
-        (f"{name}, and there is no gyroscopic term: omega' = I^-1 R M", {"extra": none}),
-        (f"{name}: I omega' = I omega x omega + R M", {}),
-    ):
-        if not world.failed or not world.moving:
-            return []
-        motion = whole(world, world.right.changed(changes))
-        leaves = {} if motion is None else world.leaves(motion)
-        if leaves and max(leaves.values()) <= may_leave(world, world.moving):
-            return [Cause(words, "tensor in space axes", leaves)]
-    return []
-
-
-def _in_space_axes(answer: Answer, omega: Floats) -> Answer:
-    """Return a rigid body's answer with omega, and the equations, in space axes."""
-    turned, first = map(_with_omega_in_space, (answer.truth, answer.start))
-    right = answer.right.changed({"in_world": True, "turns": np.array([1.0, 0.0])})
-    file = Motion(omega, answer.file.q)
-    return replace(answer, right=right, start=first, truth=turned, file=file)
-
-
-def _with_omega_in_space(motion: Motion) -> Motion:
-    assert motion.q is not None
-    return replace(motion, v=np.einsum("nij,nj->ni", matrices(motion.q), motion.v))
+    return _beside(convention, in_world(answer, answer.file.v)) or in_world(answer, in_space)
 
 
 def _attitudes(answer: Answer) -> Iterator[tuple[str, Answer]]:

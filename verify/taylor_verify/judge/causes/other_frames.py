@@ -23,10 +23,10 @@ _SLOW: Final = 0.05
 
 def other_columns(truth: Floats) -> dict[str, Floats]:
     """Return the quaternions of files whose columns hold other components, or one with the other sign."""
-    columns = {
-        "has the scalar last, read as first": np.roll(truth, -1, axis=1),
-        "has the scalar first, read as last": np.roll(truth, 1, axis=1),
-    }
+    columns: dict[str, Floats] = {}
+    for words, rows in (("", truth), ("is transposed, and ", conjugate(truth))):
+        columns[f"{words}has the scalar last, read as first"] = np.roll(rows, -1, axis=1)
+        columns[f"{words}has the scalar first, read as last"] = np.roll(rows, 1, axis=1)
     for k in (1, 2, 3):
         columns[f"has the other sign in q{k}"] = truth * (1 - 2 * np.eye(4)[k])
     for i, k in ((1, 2), (1, 3), (2, 3)):

@@ -169,6 +169,7 @@ class Choice:
         proven.sort(key=lambda each: _simplest(each.candidate))
         as_well = self._as_well(proven[0].candidate)
         alike = [p for p in proven if p.candidate.defects <= as_well]
+        alike = self._by_frame(alike)
         # What the scene writes is nearer to its user than a term of the equations.
         alike.sort(key=lambda each: self._nearness(each.candidate))
         first, best = alike[0], self._shortened(alike[0])
@@ -179,6 +180,15 @@ class Choice:
             if not _are_same_body(each.candidate.changes, first.candidate.changes)
         )
         return Cause(best.family.name, best.kind, first.leaves, text, others, changes, best.method)
+
+    def _by_frame(self, alike: list[_Proven]) -> list[_Proven]:
+        """Return those that explain attitude and centre as well as the best, where these fail."""
+        frame = {"attitude", "centre"}.intersection(self.answer.failed)
+        if not frame:
+            return alike
+        left = [max(proven.leaves.get(name, 1.0) for name in frame) for proven in alike]
+        most = max(BETTER * min(left), ROUNDINGS * self.answer.floor([*frame]))
+        return [proven for proven, part in zip(alike, left, strict=True) if part <= most]
 
     def _explains_frame(self, proven: _Proven) -> bool:
         """Return True if what is proven of the motion explains attitude and centre too, where they fail."""

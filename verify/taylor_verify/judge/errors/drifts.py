@@ -18,6 +18,7 @@ on are conserved. With loads or wheels they are not conserved, and Q itself has 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Final
@@ -29,6 +30,7 @@ from taylor_verify.exact.conditioning.loaded import Linearised, truth
 from taylor_verify.exact.conditioning.neighbours import neighbours
 from taylor_verify.exact.damping import without_damping
 from taylor_verify.exact.invariants import Invariant, decisive
+from taylor_verify.exact.solution import Unsettled
 from taylor_verify.exact.taylor import arcs
 from taylor_verify.judge.errors.state import Errors, Floats, Series, joined
 from taylor_verify.numbers.precision import exact_value
@@ -75,6 +77,8 @@ class Drifts:
         # The rows of the exact motion so far from which the scales are computed.
         self._largest: Motion | None = None
         self._is_lost = False
+        # True once an arc from a row has no end, as across the jump of an angle where the loads read it.
+        self._is_unfollowed = False
 
     def add(
         self,
@@ -83,7 +87,7 @@ class Drifts:
         answer: Motion,
         own: Mapping[str, Column],
     ) -> None:
-        """Add the next rows. Raises Unsettled if an arc cannot be computed.
+        """Add the next rows.
 
         The scales come from the exact motion ``truth``, so that an answer that diverges does not hide its
         own drift. ``own`` are the answer's exact numbers with its quaternions, from which arcs start.
@@ -95,7 +99,7 @@ class Drifts:
         has_arcs = not (is_steady or self._is_lost)
         with precision():
             self._widen(without_damping(scene, moved, elapsed))
-        ends = self._arc_ends(elapsed, moved, quick, own) if has_arcs else None
+        ends = self._ends_of_arcs(elapsed, moved, quick, own) if has_arcs else None
         with precision():
             quick = without_damping(scene, quick, elapsed)
             assert self._largest is not None
@@ -115,7 +119,10 @@ class Drifts:
                     self._changes[invariant.name] = float(change[-1] / scale)
 
     def errors(self) -> list[tuple[Invariant, Errors]]:
-        """Return the drifts of all rows; NaN for all rows if one row of a loaded body is not finite."""
+        """Return the drifts of all rows; NaN for all rows if one row of a loaded body is not finite.
+
+        Balances are known to no digit if an arc from a row has no end.
+        """
         drifts = []
         for invariant in self._invariants:
             name = invariant.name
@@ -125,6 +132,8 @@ class Drifts:
                 values = np.full(len(values), np.nan)
             parts = {name: to_mpf(np.array([scale], dtype=object))[0]}
             widths, change = np.zeros(len(values)), self._changes.get(name)
+            if self._is_unfollowed and not self._is_lost and self._is_balanced(invariant):
+                values, widths, change = widths, np.full(len(values), np.inf), None
             errors = Errors(name, f"scale of {name}", values, widths, parts, change=change)
             drifts.append((invariant, errors))
         return drifts
@@ -145,6 +154,14 @@ class Drifts:
         sums = np.cumsum(increments, axis=0)
         self._sums[invariant.name] = sums[-1]
         return sums
+
+    def _ends_of_arcs(self, *rows: Any) -> Motion | None:
+        """Return the ends of the arcs from row to row; None if one of them has none, for all rows."""
+        if not self._is_unfollowed:
+            with suppress(Unsettled):
+                return self._arc_ends(*rows)
+        self._is_unfollowed = True
+        return None
 
     def _arc_ends(
         self,
