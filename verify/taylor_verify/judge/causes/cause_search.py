@@ -6,7 +6,7 @@ replayed_methods.py or inexact_conventions.py, a broken twin to the tests, a lin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Final
@@ -19,15 +19,14 @@ from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.dynamics import Dynamics, dynamics
 from taylor_verify.judge.causes.float_answer import (
     Answer,
-    conjugate,
     matrices,
-    steady_signs,
 )
 from taylor_verify.judge.causes.in_space_axes import in_world
-from taylor_verify.judge.causes.inexact_conventions import FACTORS, SIGNED, axes, readings
+from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
+from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
 from taylor_verify.judge.causes.paths import contradicts
 from taylor_verify.judge.causes.proof import may_leave, whole
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
@@ -244,6 +243,8 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
         return []
     part = starts.piece(answer, first, last)
     if causes := causes_of(part):
+        if all_along := _all_along(answer, causes[0]):
+            return [all_along, *causes[1:]]
         where = _times(answer, begin, end, is_right_before)
         return [_of_part(answer, part, cause, where) for cause in causes]
     half = part.at(np.s_[: part.count // 2])
@@ -260,6 +261,13 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
     with suppress(Spent):
         causes += _within(answer, change, end, is_right_before=False)
     return causes
+
+
+def _all_along(answer: Answer, cause: Cause) -> Cause | None:
+    """Return a cause of a part that explains the whole answer, as where a limit is not left before."""
+    motion = whole(answer, answer.right.changed(cause.changes)) if cause.changes else None
+    leaves = {} if motion is None else answer.leaves(motion)
+    return replace(cause, leaves=leaves) if leaves and _are_explained(answer, leaves) else None
 
 
 def _of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:
@@ -320,9 +328,9 @@ def _undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
         own = starts.exact_in_pieces(answer, starts.roundings(answer))
         if own is not None and own.kind == "own start" and _are_explained(answer, own.leaves):
             return [own]
-        read = _with_omega(answer, answer.truth.v[:, answer.groups["omega"]])
+        read = with_omega(answer, answer.truth.v[:, answer.groups["omega"]])
         return _beside(by_group["omega"], _of_motion(read, [], has_wrong_attitude=True))
-    tried = {"attitude": _attitudes(answer), "omega": _rates(answer)}
+    tried = {"attitude": attitudes(answer), "omega": rates(answer)}
     for name, readings_ in tried.items() if answer.is_from_start else ():
         if name in by_group or name not in answer.failed:
             continue
@@ -346,18 +354,12 @@ def _beside(convention: Cause, causes: list[Cause]) -> list[Cause]:
     return [convention, *with_that] if causes else []
 
 
-def _with_omega(answer: Answer, rows: Floats) -> Answer:
-    v = answer.file.v.copy()
-    v[:, answer.groups["omega"]] = rows
-    return replace(answer, file=replace(answer.file, v=v))
-
-
 def _in_space(answer: Answer) -> list[Cause]:
     """Return causes of a motion whose omega, or whose equations, are in space axes."""
     q, start = answer.file.q, answer.start.q
     if q is None or start is None or answer.n == 6 or "omega" not in answer.failed:
         return []
-    name, read = next(_rates(answer))
+    name, read = next(rates(answer))
     convention = Cause(f"omega {name}", "convention", {})
     if np.array_equal(read.file.v, answer.file.v):
         return []
@@ -368,31 +370,3 @@ def _in_space(answer: Answer) -> list[Cause]:
             return _beside(convention, causes)
     in_space = np.einsum("nij,nj->ni", matrices(q), answer.file.v)
     return _beside(convention, in_world(answer, answer.file.v)) or in_world(answer, in_space)
-
-
-def _attitudes(answer: Answer) -> Iterator[tuple[str, Answer]]:
-    """Yield conventions of the attitude, with the answer read by them."""
-    q = answer.file.q
-    if q is None:
-        return
-    last = np.roll(q, 1, axis=1)
-    for name, rows in (
-        ("is transposed: it takes space to body axes", conjugate(q)),
-        ("is scalar last", last),
-        ("is scalar last and transposed", conjugate(last)),
-    ):
-        yield name, replace(answer, file=replace(answer.file, q=steady_signs(rows)))
-
-
-def _rates(answer: Answer) -> Iterator[tuple[str, Answer]]:
-    """Yield conventions of omega, with the answer read by them."""
-    if answer.right.has_momenta:
-        return
-    omega = answer.file.v[:, answer.groups["omega"]]
-    if answer.file.q is not None:
-        in_body = np.einsum("nji,nj->ni", matrices(answer.file.q), omega)
-        yield "is in space axes", _with_omega(answer, in_body)
-    for P in SIGNED[1:]:
-        yield f"has other axes: {axes(P)}", _with_omega(answer, omega @ P)
-    for unit, factor in FACTORS.items():
-        yield f"is in another unit: {unit}", _with_omega(answer, omega / factor)

@@ -26,7 +26,7 @@ def other_limits(loads: Loads) -> Iterator[tuple[str, Loads]]:
 def _without_limits(text: str) -> str:
     """Return a text with the first argument of each clip in its place."""
     while (at := text.find(_CLIP)) >= 0:
-        (first, *_), end = _arguments(text, at)
+        (first, *_), end = arguments(text, at)
         text = f"{text[:at]}({first}){text[end:]}"
     return text
 
@@ -58,22 +58,22 @@ def _limited(entry: Entry) -> tuple[str, str] | None:
     text = str(entry).strip()
     if not text.startswith(_CLIP):
         return None
-    arguments, end = _arguments(text, 0)
-    if end < len(text) or len(arguments) != 3:
+    parts, end = arguments(text, 0)
+    if end < len(text) or len(parts) != 3:
         return None
-    inside, low, high = (each.strip() for each in arguments)
+    inside, low, high = (each.strip() for each in parts)
     return (inside, high) if low.replace(" ", "") == f"-{high.replace(' ', '')}" else None
 
 
-def _arguments(text: str, at: int) -> tuple[list[str], int]:
+def arguments(text: str, at: int) -> tuple[list[str], int]:
     """Return the arguments of the call that begins at a place of a text, and the place behind it."""
     begin = text.index("(", at) + 1
-    depth, arguments = 0, list[str]()
+    depth, parts = 0, list[str]()
     for k in range(begin - 1, len(text)):
         depth += (text[k] == "(") - (text[k] == ")")
         if (text[k] == "," and depth == 1) or not depth:
-            arguments.append(text[begin:k])
+            parts.append(text[begin:k])
             begin = k + 1
         if not depth:
             break
-    return arguments, begin
+    return parts, begin

@@ -15,6 +15,7 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.changed_course import Course, Courses
 from taylor_verify.judge.causes.fit import Sizes
 from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.kinks import moved_through
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.records.answers import MissingLoad
 
@@ -110,7 +111,8 @@ def _fitted(answer: Answer, arcs: Arcs) -> tuple[Floats, Floats, float]:
     for _ in range(_ROUNDS):
         shifts = np.concatenate([np.zeros((1, n)), np.diag(scale)])
         tried = right.load[None, :, None] + load.T[None] + shifts[:, :, None]
-        ends = arcs.ends(right.changed({"load": tried}), arcs.steps)[:, :n]
+        begin = arcs.begin(max(n, right.coupled))
+        ends = moved_through(arcs, right.changed({"load": tried}), begin, arcs.steps)[:, :n]
         ends = ends / answer.sizes[:, None]
         slopes = (ends[1:] - ends[0]).transpose(2, 1, 0) / scale
         defects = (arcs.end / answer.sizes[:, None] - ends[0]).T

@@ -16,6 +16,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, enough_steps, row_to_row
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.kinks import moved_through
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.instants import evenly
 
@@ -53,7 +54,7 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
     rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
-    if not _shoot(rows, lambda z: arcs.moved(equations, z, steps), scale):
+    if not _shoot(rows, lambda z: moved_through(arcs, equations, z, steps), scale):
         return None
     motion = Motion(
         rows[:, :n],

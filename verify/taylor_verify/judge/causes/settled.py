@@ -172,14 +172,17 @@ class Choice:
         alike = self._by_frame(alike)
         # What the scene writes is nearer to its user than a term of the equations.
         alike.sort(key=lambda each: self._nearness(each.candidate))
-        first, best = alike[0], self._shortened(alike[0])
+        first, shortened = alike[0], self._shortened(alike[0])
+        best = shortened.candidate
         text, changes = self._described(best)
         others = tuple(
             self._described(each.candidate)[0]
             for each in alike[1:]
             if not _are_same_body(each.candidate.changes, first.candidate.changes)
         )
-        return Cause(best.family.name, best.kind, first.leaves, text, others, changes, best.method)
+        return Cause(
+            best.family.name, best.kind, shortened.leaves, text, others, changes, best.method
+        )
 
     def _by_frame(self, alike: list[_Proven]) -> list[_Proven]:
         """Return those that explain attitude and centre as well as the best, where these fail."""
@@ -195,12 +198,12 @@ class Choice:
         frame = {"attitude", "centre"}.intersection(self.answer.failed)
         return all(proven.leaves.get(name, 1.0) <= CAPS[0] for name in frame)
 
-    def _shortened(self, proven: _Proven) -> Candidate:
+    def _shortened(self, proven: _Proven) -> _Proven:
         """Return a candidate with the fewest digits of its numbers that explain as much."""
         candidate, worst = proven.candidate, max(proven.worst, self._least / ROUNDINGS)
         family, numbers = candidate.family, candidate.numbers
         if not 0 < family.count <= FEW:
-            return candidate
+            return proven
         large = np.where(np.abs(numbers) > _NO_NUMBER * family.scale, numbers, 0.0)
         for digits in _DIGITS:
             with suppress(Spent, ValueError):
@@ -208,8 +211,8 @@ class Choice:
                 short = replace(candidate, numbers=shorter)
                 left = self._left(short)
                 if left is not None and left.worst <= worst:
-                    return short
-        return candidate
+                    return left
+        return proven
 
     def _nearness(self, candidate: Candidate) -> tuple[int, bool, bool, bool, bool, int]:
         """Return how far a candidate is from the text of the scene: one without a number is nearer.

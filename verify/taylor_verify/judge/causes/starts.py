@@ -12,6 +12,7 @@ from taylor_verify.judge.causes.arcs import row_to_row
 from taylor_verify.judge.causes.budget import Budget
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
+from taylor_verify.judge.causes.kinks import moved_through
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import CAPS, may_leave, whole
 
@@ -35,7 +36,8 @@ _AT_REST: Final = 4.0
 def roundings(answer: Answer) -> Floats:
     """Return the largest defect of each arc from row to row, in roundings of the file."""
     arcs = row_to_row(answer)
-    ends = arcs.ends(answer.right, arcs.steps)[0, : answer.n]
+    begin = arcs.begin(answer.right.coupled)
+    ends = moved_through(arcs, answer.right, begin, arcs.steps)[0, : answer.n]
     defects = np.abs(arcs.end - ends) / answer.sizes[:, None]
     return np.asarray(np.max(defects / answer.rounding[:, None], axis=0))
 
