@@ -28,6 +28,7 @@ from taylor_verify.judge.causes.fit import (
     orthonormal,
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
+from taylor_verify.judge.causes.kinks import are_kinks
 from taylor_verify.judge.causes.lateness import off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
@@ -35,7 +36,7 @@ from taylor_verify.judge.causes.other_bodies import (
     faults_of_added_mass,
     faults_of_bodies,
 )
-from taylor_verify.judge.causes.proof import BETTER, LEAVES, whole
+from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
 from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
@@ -178,6 +179,8 @@ class Search:
             candidates += self._families(of_group, candidates)
             # Methods cost as much as many families of one number, which may be exact.
             is_exact = any(map(self._is_exact, candidates))
+            if not is_exact and (cause := self._over_kinks(of_group, candidates)):
+                return cause
             is_blind = any(map(self._is_pace, candidates))
             if not has_methods and (is_blind or not is_exact):
                 stride = min(stride, 8) if self.answer.count <= FIT_ROWS else 1
@@ -198,6 +201,16 @@ class Search:
             with suppress(Spent), budget.at_most(budget.left / 2):
                 cause = self.cause(self._telling([*self._pairs(linear)]), PAIR)
         return cause or self._beside_steps(linear, stride)
+
+    def _over_kinks(self, group: list[_Linear], candidates: list[Candidate]) -> Cause | None:
+        """Return a cause that is exact on the whole answer, which goes through kinks, as arcs do not."""
+        acting = self.answer.right.acting
+        if not group or acting is None or not are_kinks(acting):
+            return None
+        cause = self.cause(candidates)
+        least = max(_FAIR, ROUNDINGS * self.answer.floor(self.choice.groups))
+        is_exact = cause is not None and max(cause.leaves[n] for n in self.choice.groups) < least
+        return cause if is_exact else None
 
     def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""

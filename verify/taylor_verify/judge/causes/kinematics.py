@@ -45,6 +45,8 @@ _JUMP: Final = 40.0
 _PART: Final = 1e-3
 # Jumps are few: this many, and one in so many rows.
 _FEW_JUMPS: Final = 3
+# What the jump of omega within a row turns, by that at the end of the row.
+_TURNED: Final = 1.5
 _ONE_IN: Final = 10
 _LAST: Final = 3
 # The weights (b, a) of q' = (b W q + a q W) / 2.
@@ -262,7 +264,7 @@ def _in_pieces(answer: Answer, right: Equations, maps: Floats) -> Cause | None:
     by_omega = np.abs(arcs.spans) * apart
     bad = np.flatnonzero(wrong > max(_JUMP * answer.roundings["attitude"], _PART * np.max(wrong)))
     still = np.all(q[1:] == q[:-1], axis=1)
-    if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= by_omega[bad]):
+    if not len(bad) or bad[0] == 0 or np.all(wrong[bad] <= _TURNED * by_omega[bad]):
         return None
     if still[bad].all() and len(bad) >= _LAST and np.all(np.diff(bad) == 1):
         return _stands_still(answer, maps, bad)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from typing import Final
@@ -15,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs, moved
+from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.limits import arguments
@@ -25,15 +27,25 @@ from taylor_verify.scenes.loads.vocabulary import VECTORS
 
 _CALL: Final = re.compile(r"\b(abs|clip|max|min)\(")
 # Of more arcs with a kink none is stepped to it, nor over more kinks of one arc.
-_MOST: Final = 24
+_MOST: Final = 12
 _MOST_OF_ARC: Final = 8
 _ROUNDS: Final = 8
+# A part of the motion by which no step over a kink matters.
+_NOTHING: Final = 1e-9
+# Of what may be spent yet, this part may be spent on kinks at once.
+_SHARE: Final = 0.2
 # A step ends at a kink if it comes to this part of the step.
 _AT: Final = 1e-9
 
 
+def are_kinks(acting: Acting) -> bool:
+    return bool(_kinks(acting))
+
+
 def moved_through(arcs: Arcs, equations: Equations, begin: Floats, steps: int) -> Floats:
     """Return the ends of arcs from states (sets, components, arcs), through the kinks of the first set.
+
+    Where that costs too much, some are as the steps over the kinks say.
 
     The other sets differ from it as steps over the kinks say.
     """
@@ -41,10 +53,13 @@ def moved_through(arcs: Arcs, equations: Equations, begin: Floats, steps: int) -
     if arcs.answer.stepping is not None:
         return ends
     first = equations if np.ndim(equations.load) < 3 else _with_first_load(equations)
-    for k in _over_kinks(first, arcs, begin[:1], ends[:1]):
-        own = first if np.ndim(first.load) < 3 else replace(first, load=first.load[:, :, k : k + 1])
-        arc = begin[0, :, k], float(arcs.since[k]), float(arcs.spans[k])
-        ends[:, :, k] += _through_kinks(arcs.answer, own, *arc, steps) - ends[0, :, k]
+    budget = arcs.answer.budget
+    with suppress(Spent), budget.at_most(_SHARE * budget.left):
+        for k in _over_kinks(first, arcs, begin[:1], ends[:1], steps):
+            load = np.asarray(first.load)
+            own = first if load.ndim < 3 else replace(first, load=load[:, :, k : k + 1])
+            arc = begin[0, :, k], float(arcs.since[k]), float(arcs.spans[k])
+            ends[:, :, k] += _through_kinks(arcs.answer, own, *arc, steps) - ends[0, :, k]
     return ends
 
 
@@ -52,14 +67,25 @@ def _with_first_load(equations: Equations) -> Equations:
     return replace(equations, load=np.asarray(equations.load)[:1])
 
 
-def _over_kinks(equations: Equations, arcs: Arcs, begin: Floats, end: Floats) -> Places:
-    """Return the arcs that go over a kink from states to others, (1, components, arcs); none of many."""
-    if equations.acting is None or not _kinks(equations.acting):
+def _over_kinks(equations: Equations, arcs: Arcs, begin: Floats, end: Floats, steps: int) -> Places:
+    """Return the arcs that steps over a kink get wrong, from states to others; none of many.
+
+    States have the axes (1, components, arcs).
+    """
+    if equations.acting is None or not are_kinks(equations.acting):
         return np.empty(0, dtype=int)
     first = _values(equations, begin, arcs.since)
     last = _values(equations, end, arcs.since + arcs.spans)
     over = np.flatnonzero(np.any(first * last < 0, axis=0))
-    return over if len(over) <= _MOST else over[:0]
+    if not len(over) or len(over) > _MOST:
+        return over[:0]
+    n, load = arcs.answer.n, np.asarray(equations.load)
+    own = equations if load.ndim < 3 else replace(equations, load=load[:, :, over])
+    few = replace(arcs, first=arcs.first[over], last=arcs.last[over])
+    finer = few.moved(own, begin[:, :, over], 2 * steps)[0, :n]
+    off = np.abs(finer - end[0, :n, over].T) / arcs.answer.sizes[:, None]
+    least = np.maximum(0.1 * arcs.answer.rounding, _NOTHING)[:, None]
+    return over[np.any(off > least, axis=0)]
 
 
 def _through_kinks(

@@ -16,7 +16,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, enough_steps, row_to_row
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
-from taylor_verify.judge.causes.kinks import moved_through
+from taylor_verify.judge.causes.kinks import are_kinks, moved_through
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.instants import evenly
 
@@ -28,8 +28,11 @@ CAPS: Final = (0.1, 0.01)
 # More numbers must leave this much less; what leaves no more than this much more explains as well.
 BETTER: Final = 10.0
 _ROUNDS: Final = 5
+_MORE: Final = 2
 # The next correction is of second order.
 _SMALL: Final = 1e-6
+# Rows so near to one motion are stepped to the kinks of the loads from here on.
+_NEAR: Final = 1e-4
 _LOST: Final = 1e3
 _DIFFERENCE: Final = 1e-6
 _SOME: Final = 24
@@ -54,7 +57,13 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
     rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
-    if not _shoot(rows, lambda z: moved_through(arcs, equations, z, steps), scale):
+    has_kinks = equations.acting is not None and are_kinks(equations.acting)
+
+    def go(z: Floats, is_near: bool) -> Floats:
+        through = moved_through if is_near and has_kinks else Arcs.moved
+        return through(arcs, equations, z, steps)
+
+    if not _shoot(rows, go, scale, is_near=not has_kinks):
         return None
     motion = Motion(
         rows[:, :n],
@@ -74,7 +83,10 @@ def _enough_steps(equations: Equations, arcs: Arcs, rows: Floats) -> int:
     answer, some = arcs.answer, np.array(evenly(len(arcs.first), _SOME))
     goal = np.maximum(0.1 * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
     begin, few = rows[some].T[None], replace(arcs, first=some, last=some + 1)
-    return enough_steps(lambda steps: few.moved(equations, begin, steps)[0, : answer.n], goal)
+    is_smooth = equations.acting is None or not are_kinks(equations.acting)
+    return enough_steps(
+        lambda steps: few.moved(equations, begin, steps)[0, : answer.n], goal, is_smooth
+    )
 
 
 def _with_frame(motion: Motion, equations: Equations, arcs: Arcs, has_frame: bool) -> Motion:
@@ -94,11 +106,13 @@ def _with_frame(motion: Motion, equations: Equations, arcs: Arcs, has_frame: boo
     return motion
 
 
-def _shoot(rows: Floats, go: Callable[[Floats], Floats], scale: Floats) -> bool:
-    """Correct the rows until they are one motion; False if they do not become one."""
+def _shoot(
+    rows: Floats, go: Callable[[Floats, bool], Floats], scale: Floats, is_near: bool
+) -> bool:
+    """Correct the rows until they are one motion, near it by another way; False if they become none."""
     shifts = np.concatenate([np.zeros((1, len(scale))), _DIFFERENCE * np.diag(scale)])
-    for _ in range(_ROUNDS):
-        ends = go(rows[:-1].T[None] + shifts[:, :, None])
+    for _ in range(_ROUNDS if is_near else _ROUNDS + _MORE):
+        ends = go(rows[:-1].T[None] + shifts[:, :, None], is_near)
         if not np.all(np.isfinite(ends)):
             return False
         slopes = ((ends[1:] - ends[0]).transpose(2, 1, 0)) / (_DIFFERENCE * scale)
@@ -106,12 +120,13 @@ def _shoot(rows: Floats, go: Callable[[Floats], Floats], scale: Floats) -> bool:
         correction = np.zeros_like(rows)
         for k, (slope, gap) in enumerate(zip(slopes, gaps, strict=True)):
             correction[k + 1] = slope @ correction[k] + gap
-        size = np.max(np.abs(correction) / scale)
+        size = float(np.max(np.abs(correction) / scale))
         if not size < _LOST:
             return False
         rows += correction
-        if size < _SMALL:
+        if size < _SMALL and is_near:
             return True
+        is_near = is_near or size < _NEAR
     return False
 
 

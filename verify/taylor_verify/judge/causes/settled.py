@@ -166,6 +166,7 @@ class Choice:
         if not proven:
             return None
         proven = [*filter(self._explains_frame, proven)] or proven
+        proven = [p for p in proven if max(p.leaves.values()) <= CAPS[0]] or proven
         proven.sort(key=lambda each: _simplest(each.candidate))
         as_well = self._as_well(proven[0].candidate)
         alike = [p for p in proven if p.candidate.defects <= as_well]

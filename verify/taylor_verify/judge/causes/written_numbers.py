@@ -186,10 +186,13 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
     loads, acting = right.loads, right.acting
     if loads is None or acting is None:
         return
+    names = {name for name, _ in loads.definitions}
     for number in numbers(loads):
         for factor in _ANGLES if number.is_angle else ():
             changes = number.changes(right, np.array([factor * number.value]))
             yield fault(f"{number.name} {_EXCHANGED}", KIND, changes)
+        if number.name in names and (other := _of_other_sign(number)) is not None:
+            yield fault(f"{number.name} with the other sign", KIND, {"acting": acting.of(other)})
         if (missed := _missed(loads, number)) is not None:
             time = right.start + float(missed[0])
             # A number that no run reaches is no text for a reader.
@@ -203,6 +206,13 @@ def faults_of_texts(right: Equations) -> Iterator[Family]:
             tables = with_entry(loads.tables, k, (name, replace(table, kind=kind)))
             changes = {"acting": acting.of(replace(loads, tables=tables))}
             yield fault(f"table {name} is {kind}, where the scene has {table.kind}", KIND, changes)
+
+
+def _of_other_sign(number: Number) -> Loads | None:
+    with suppress(ValueError):
+        other = number.put(-number.value)
+        return other if next(other.faults(), None) is None else None
+    return None
 
 
 def _missed(loads: Loads, number: Number) -> tuple[Fraction, Loads] | None:
