@@ -1,7 +1,7 @@
 """An exact attitude in another form than its matrix, with the errors of its entries proven in balls.
 
 quaternion   scalar first, body to space, its scalar not negative
-zyx          yaw, pitch and roll in radians: R = R_z(yaw) R_y(pitch) R_x(roll)
+zyx          yaw, pitch and roll in radians: R = R_z(yaw) R_y(pitch) R_x(roll); no roll straight up or down
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ def _zyx(R: Balls) -> list[arb]:
     square = R[2][1] * R[2][1] + R[2][2] * R[2][2]
     # A ball that holds zero has no root: either sign of the root is then allowed for.
     level = square.sqrt() if square > 0 else arb(0, ball(exact_value(upper(square))).sqrt())
-    pairs = ((R[1][0], R[0][0]), (-R[2][0], level), (R[2][1], R[2][2]))
+    pairs = [(R[1][0], R[0][0]), (-R[2][0], level), (R[2][1], R[2][2])]
+    if all(entry == 0 for entry in (R[0][0], R[1][0], R[2][1], R[2][2])):
+        # Straight up or down yaw and roll turn about one axis: all of the turn is called yaw.
+        pairs[0] = (-R[0][1], R[1][1])
     return [arb.atan2(sine, cosine) for sine, cosine in pairs]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, log2
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from flint import arb, ctx
 from mpmath import mp, mpf
@@ -24,9 +24,14 @@ from taylor_verify.exact.enclosure.system import System
 from taylor_verify.exact.printed import number_with_digits
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.numbers.irrational import ball
+from taylor_verify.records.passing import Passing
+from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.reading.event import Event, event_of
 from taylor_verify.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas
 
 _GUARD_BITS: Final = 56
 _MOST_BITS: Final = 10_000
@@ -51,8 +56,8 @@ class EventTime:
         return float(self.t)
 
 
-@dataclass(frozen=True)
-class Events:
+@dataclass(frozen=True, repr=False)
+class Events(Passing):
     """All events of one kind in a span, in the order of the motion, and what is undecided.
 
     ``text`` is what was asked, ``until`` the end of the span, and ``digits`` those asked for.
@@ -63,6 +68,25 @@ class Events:
     digits: int
     times: tuple[EventTime, ...]
     undecided: tuple[EventTime, ...] = ()
+
+    def __repr__(self) -> str:
+        word = "passed" if self.passed else "undecided"
+        return f"<Events: {self.text}: {len(self.times)} up to {float(self.until):g}: {word}>"
+
+    def _repr_html_(self) -> str:
+        rows = [[str(value) for value in row.values()] for row in self._rows]
+        return html_table(repr(self)[1:-1], ("t", "radius"), rows, str(self).splitlines())
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame, a row an event. Raises ModuleNotFoundError without pandas."""
+        return dataframe(self._rows)
+
+    @property
+    def _rows(self) -> list[dict[str, Any]]:
+        from taylor_verify.exact.printed_events import events_document
+
+        rows: list[dict[str, Any]] = events_document(self)["events"]
+        return rows
 
     def __str__(self) -> str:
         from taylor_verify.exact.printed_events import event_lines, events_document

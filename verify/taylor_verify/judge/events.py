@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import floor, inf, log10
+from math import floor, log10
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from mpmath import mp, mpf
@@ -28,6 +28,7 @@ _HEADINGS: Final = ("t", "radius", "given", "error", "digits")
 _DIGITS: Final = 30
 # A time answers an event if it is nearer than this share of the distance to the next one.
 _NEAR: Final = 4
+_ONE_DIGIT: Final = 0.1
 
 
 class Answered(NamedTuple):
@@ -72,8 +73,11 @@ class EventsJudgement(Passing):
 
     @property
     def is_wrong(self) -> bool:
-        """True if an event is missed, invented, or off by more than the tolerance, relative to its time."""
-        limit = inf if self.tolerance is None else self.tolerance
+        """True if an event is missed, invented, or off by more than the tolerance, relative to its time.
+
+        Without a tolerance one digit has to be right.
+        """
+        limit = _ONE_DIGIT if self.tolerance is None else self.tolerance
         is_off = any(not a.error <= limit * abs(float(a.event.t) or 1.0) for a in self.answered)
         return bool(self.missed or self.invented or is_off)
 

@@ -7,10 +7,7 @@ be the print's or the transcription's. Nothing here imports models or solvers.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from taylor_verify_reports.claims.claim import Finding
+from taylor_verify_reports.claims.claim import Finding
 
 
 def claims(*ids: str) -> list[Finding]:

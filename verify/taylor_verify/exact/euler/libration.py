@@ -33,7 +33,7 @@ from taylor_verify.exact.conserved.polynomial import (
 from taylor_verify.exact.euler import heavy
 from taylor_verify.exact.kirchhoff import closed
 from taylor_verify.exact.solution import Number, Solution, Time
-from taylor_verify.numbers.irrational import rational
+from taylor_verify.numbers.irrational import Irrational, rational
 from taylor_verify.numbers.rotation import rotation_matrix
 from taylor_verify.numbers.tensors import ZERO_MATRIX, diagonal
 from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
@@ -142,13 +142,19 @@ def _about(k: int, c: Any, s: Any) -> Any:
 
 
 def _moment(scene: Scene, k: int) -> tuple[Fraction, Fraction, Fraction] | None:
-    """Return n, z1 and z2 of a body that turns by alpha about axis k; None of another moment."""
+    """Return n, z1 and z2 of a body that turns by alpha about axis k; None of another moment.
+
+    Nor is there one from an attitude that is not rational, whose motion is enclosed.
+    """
     assert scene.body.loads is not None
     piece = scene.body.loads.piece(Fraction(0))
     known = symbols_of(("ca", "sa", "cos", "sin", "t"))
     waves = {p: step for p, step in enumerate(piece.steps) if step.operation in ("cos", "sin")}
     functions = {f"step {place}": known[step.operation] for place, step in waves.items()}
-    start = [[rational(entry) for entry in row] for row in rotation_matrix(scene.initial.attitude)]
+    turned = rotation_matrix(scene.initial.attitude)
+    if any(isinstance(entry, Irrational) for row in turned for entry in row):
+        return None
+    start = [[rational(entry) for entry in row] for row in turned]
     R = np.array(start, dtype=object) @ _about(k, known["ca"], known["sa"])
     inputs = {f"r{i + 1}{j + 1}": R[i, j] for i, j in np.ndindex(3, 3)}
     try:
