@@ -59,3 +59,16 @@ def test_an_angle_at_its_singularity_has_no_proven_digit() -> None:
         assert errors[0] >= mp.pi / 2 <= errors[2]
         assert abs(pitch - mp.pi / 2) <= errors[1] < 4 * error
         assert abs(yaw) + abs(roll) < 4
+
+
+@pytest.mark.parametrize("pitch", [1, -1])
+def test_straight_up_or_down_the_angles_give_an_exact_matrix_back(pitch: int) -> None:
+    """Where the matrix is exact, all of the turn about the vertical is yaw, and none of it is lost."""
+    c, s, none = Fraction(4, 5), Fraction(3, 5), Fraction(0)
+    R = np.array([[none, -s, c * pitch], [none, c, s * pitch], [Fraction(-pitch), none, none]])
+    with mp.workprec(200):
+        (yaw, up, roll), errors = in_form("zyx", R, np.full((3, 3), mpf(0)), 40)
+        assert abs(yaw - mp.atan2(3, 4)) < mpf(10) ** -40
+        assert abs(up - pitch * mp.pi / 2) < mpf(10) ** -40
+        assert roll == 0
+        assert max(errors) < mpf(10) ** -40

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from builders.routes import motions_of_taylor
 from builders.turns import by_turns
-from mpmath import mpf
+from mpmath import mp, mpf
 
 from taylor_verify.exact.elements import elements
 from taylor_verify.exact.euler.libration import pitch_of
@@ -88,3 +88,16 @@ def test_the_shipped_scene_swings_once_in_the_period_that_is_printed() -> None:
 def test_whatever_is_no_such_moment_has_no_closed_form(changed: dict[str, str]) -> None:
     """A moment that leaves the plane by a part in 10^9, or reads another angle, is none."""
     assert pitch_of(orbiting(**changed)) is None
+
+
+def test_from_an_attitude_that_is_not_rational_the_motion_is_enclosed() -> None:
+    """A turn of 0.3 rad has no rational matrix: there is no closed form, and the route is proven."""
+    scene = read(
+        'title = "x"\nmodel = "euler"\n[body]\ninertia = [1, 1, 2]\nmoment = ["sin(t)", 0, 0]\n'
+        "[initial]\nomega = [1, 0, 0]\nrotation_vector = [0.3, 0.2, 0.1]\n[time]\nend = 2\nsamples = 2\n",
+        "a test",
+    )
+    exact = solution(scene)
+    assert exact.route == "taylor"
+    (row,) = exact.motion([Fraction(1)], DIGITS)["omega"]
+    assert abs(row[0] - 2 + mp.cos(1)) < mpf(10) ** -15

@@ -186,6 +186,14 @@ def test_an_own_state_without_a_first_value_or_with_large_effects_is_named(
     assert names(changed, text) == ([] if name is None else [name])
 
 
+def test_what_a_cause_leaves_is_computed_through_the_kinks_of_limits() -> None:
+    """Another limit leaves the digits of the file, and a right file no moment between its rows."""
+    (cause,) = of_motion(SMOOTH.replace("0.45", "0.35"), SMOOTH).causes
+    assert cause.sentence.startswith("the number 0.45 in all texts = 0.35 for 0.45")
+    assert cause.leaves < 1e-7
+    assert all(np.max(np.abs(each.load)) < 1e-6 for each in of_motion(SMOOTH, SMOOTH).missing_load)
+
+
 @pytest.mark.parametrize(
     ("text", "key"),
     [(BODY, 'moment = ["a1", "a2", "a3"]'), (WHEELS, "rotor")],

@@ -1,0 +1,166 @@
+"""Likely causes where the attitude, the path or another quantity tells what omega alone does not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders.caused_rows import Array, columns, rows, titles
+from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
+
+from taylor_verify.records.status import Status
+from taylor_verify.scenes.reading.reader import read
+from taylor_verify.words.causes import steps_in_words
+
+TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
+Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
+TIMES = np.round(np.arange(0, 81) * 0.1, 6)
+FREE = """
+title = "Free body"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
+[initial]
+omega = [0.8, -0.5, 1.1]
+attitude = [-0.5, 0.3, -0.7, 0.2]
+[time]
+end = 8
+samples = 81
+"""
+
+
+def free(pace: float, gyro: float = 1.0, cubic: float = 0.0) -> Columns:
+    """The columns of a body whose motion is so much too fast."""
+    made = rows(
+        lambda t, w, q: np.linalg.solve(TENSOR, gyro * np.cross(TENSOR @ w, w) - cubic * w**3),
+        [0.8, -0.5, 1.1],
+        Q,
+        TIMES * pace,
+        (),
+    )
+    return columns(TIMES, made, ("w1", "w2", "w3"))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (
+            free(1 / 1.05),
+            ["clock = 0.952381: the motion is 1.05 times too slow, or t counts 1/1.05"],
+        ),
+        (
+            free(0.97, gyro=-1.0),
+            ["clock = 0.97: the motion is", "with that: gyroscopic term with the other sign"],
+        ),
+        (
+            free(1.001, gyro=0.5),
+            ["clock = 1.001: the motion is", "with that: factor of the gyroscopic term = 0.5"],
+        ),
+        (free(0.97, gyro=-1.0, cubic=0.02), []),
+    ],
+    ids=["clock", "other sign", "half", "and a cubic drag"],
+)
+def test_the_attitude_tells_a_clock_from_a_factor_of_the_equations(
+    made: Columns, words: list[str], tmp_path: Path
+) -> None:
+    """Omega shows a clock times a factor of the gyroscopic term, and the attitude the clock."""
+    titled = titles(tmp_path, FREE, made)
+    assert [title[: len(start)] for title, start in zip(titled, words, strict=True)] == words
+
+
+STRAIGHT = """
+title = "Straight run"
+model = "kirchhoff"
+track = ["attitude", "centre"]
+[body]
+mass = 18
+inertia = [0.4, 1.5, 1.6]
+added_mass = [1.5, 16, 18, 0.1, 1, 1.1]
+force = ["7 - 6*u1", "-30*u2", "-30*u3"]
+[initial]
+linear_velocity = [0.2, 0, 0]
+angular_velocity = [0, 0, 0]
+[time]
+end = 5
+samples = 51
+"""
+RUN = np.round(np.arange(51) * 0.1, 6)
+
+
+def straight(drag: float = 6.0, noise: float = 0.0, late: float = 0.0) -> Columns:
+    """The columns of a straight run with another drag, noise of the velocity, or the velocity late."""
+    last, pace = 7 / drag, drag / 19.5
+    u = last + (0.2 - last) * np.exp(-pace * np.maximum(RUN - late, 0.0))
+    c = last * RUN - (0.2 - last) / pace * np.expm1(-pace * RUN)
+    made = np.zeros((51, 13))
+    made[:, 0] = u + noise * np.sin(7.3 * np.arange(51) ** 2)
+    made[:, 6], made[:, 10] = 1.0, c
+    names = ("u1", "u2", "u3", *VECTORS["omega"], *QUATERNION, "c1", "c2", "c3")
+    return named(("t", *names), np.c_[RUN, made])
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (straight(drag=6.3), ["`6` in force 1, 7 - 6*u1, = 6.3 for 6 (+5 %)"]),
+        (straight(late=0.1), ["the linear velocity is late by 0.1, one row"]),
+        (straight(noise=5e-4), []),
+    ],
+    ids=["drag", "late", "noise"],
+)
+def test_on_a_line_every_velocity_is_that_of_another_time(
+    made: Columns, words: list[str], tmp_path: Path
+) -> None:
+    """In a straight run no time of a row is said to be wrong, unless the path has it too."""
+    assert titles(tmp_path, STRAIGHT, made) == words
+
+
+SWUNG = """
+title = "Spring of the heading"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [1, 1, 1]
+moment = ["0", "0", "-0.1*atan2(r21, r11)"]
+[initial]
+omega = [0, 0, 0]
+attitude = [0.4, 0, 0, 0.9]
+[time]
+end = 1
+samples = 11
+"""
+
+
+def heading(angles: Array) -> Array:
+    return np.c_[np.cos(angles / 2), 0 * angles, 0 * angles, np.sin(angles / 2)]
+
+
+def test_a_balance_across_the_jump_of_an_angle_is_undecided_and_the_state_is_judged(
+    tmp_path: Path,
+) -> None:
+    """Rows that turn over the heading of pi have no balance of work; the attitude fails all the same."""
+    t = np.round(np.arange(11) * 0.1, 6)
+    start = 2 * np.arctan2(0.9, 0.4)
+    made = np.c_[t, 0 * t, 0 * t, np.full(11, 1.5), heading(start + 1.5 * t)]
+    path = write_csv(tmp_path / "mine.csv", named(("t", "w1", "w2", "w3", *QUATERNION), made))
+    verdicts = file_judgement(path, read(SWUNG, "scene")).verdicts
+    by_name = {verdict.quantity: verdict.verdict for verdict in verdicts}
+    assert by_name["attitude"] is Status.FAIL
+    assert by_name["T"] is Status.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("spans", "count", "words"),
+    [
+        ([0.2, 0.2, 0.2], 4, "h = 0.05"),
+        ([0.2, 0.1, 0.3], 4, "4 equal steps from row to row"),
+        ([-0.2, -0.1], 1, "one step from row to row"),
+    ],
+)
+def test_steps_between_uneven_rows_have_no_one_length(
+    spans: list[float], count: int, words: str
+) -> None:
+    """The length of a step is said where all are alike, and else their number."""
+    assert steps_in_words(spans, count) == words
