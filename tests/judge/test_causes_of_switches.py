@@ -9,6 +9,7 @@ from builders.wrong_dynamics import failure
 
 from taylor_verify.judge.causes.float_answer import Motion
 from taylor_verify.judge.causes.likely import explained
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.material import ExactMotion, material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -77,3 +78,37 @@ def test_two_times_or_a_time_and_a_gain_have_no_one_time(changes: list[tuple[str
     for old, new in changes:
         text = text.replace(old, new)
     assert not any("comes at" in each or "late" in each for each in sentences(text))
+
+
+def stepped(steps: int) -> list[list[float]]:
+    """Omega at the rows by RK4, whose last stage before a switch has the load behind it already."""
+    inertia, h = np.array([3.1, 2.2, 1.4]), 0.1 / steps
+
+    def rates(t: float, w: Floats) -> Floats:
+        moment = np.array([0.25, -0.1, 0.15]) if 1 - 1e-9 <= t < 3 - 1e-9 else np.zeros(3)
+        rate: Floats = (np.cross(inertia * w, w) + moment) / inertia
+        return rate
+
+    w, made = np.array([0.2, 0.3, -0.4]), [[0.2, 0.3, -0.4]]
+    for k in range(60 * steps):
+        t = k * h
+        a = rates(t, w)
+        b = rates(t + h / 2, w + h / 2 * a)
+        c = rates(t + h / 2, w + h / 2 * b)
+        w = w + h / 6 * (a + 2 * b + 2 * c + rates(t + h, w + h * c))
+        if (k + 1) % steps == 0:
+            made.append(w.tolist())
+    return made
+
+
+def test_the_stages_of_a_method_at_a_switch_are_no_loads_of_another_time() -> None:
+    """RK4 with a switch at the end of a step is off by a sixth of the step's load: nothing is early."""
+    scene = read(PULSE, "pulse")
+    given = adopt(scene, rung("f64"), list(scene.clock.instants)).given
+    noise = (np.full(3, 0.5e-12), 0.0, 0.0)
+    file = Motion(np.round(np.array(stepped(3)), 12))
+    answer = material(given, file, False, noise, [failure(scene, "omega")])
+    assert answer is not None
+    with np.errstate(all="ignore"):
+        causes = [cause.sentence for cause in explained(answer).causes]
+    assert not any("late" in sentence for sentence in causes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -29,7 +29,7 @@ from taylor_verify.judge.causes.fit import (
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.kinks import are_kinks
-from taylor_verify.judge.causes.lateness import off_pace
+from taylor_verify.judge.causes.lateness import is_of_stages, off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
@@ -155,9 +155,14 @@ class Search:
         self.motion_of_faults = motion_of_faults or motion
         self.floor = evidence.floor
         self.choice = Choice(answer, groups, self.floor)
-        self.cause = self.choice.cause
         # A fault without numbers that leaves nothing of the whole answer, whatever it leaves of the arcs.
         self.proven = ""
+
+    def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
+        """Return the proven cause, with all others that explain as well."""
+        answer, floor = self.answer, self.floor
+        some = [c for c in candidates if self._is_exact(c) or not is_of_stages(answer, c, floor)]
+        return self.choice.cause(some, leaves)
 
     @property
     def is_clear(self) -> bool:

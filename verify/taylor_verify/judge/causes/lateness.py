@@ -9,8 +9,10 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import moved
+from taylor_verify.judge.causes.candidate import Candidate, has_few_digits
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.terms import LATE
 
 _STEPS: Final = 4
 _ROUNDS: Final = 5
@@ -64,6 +66,17 @@ def _least_pace(answer: Answer) -> float:
     rates = answer.right.rates(answer.times, true_states(answer, answer.n))[0, : answer.n]
     span = float(np.ptp(answer.times)) or 1.0
     return max(float(np.max(np.abs(rates / answer.sizes[:, None]))), 1 / span)
+
+
+def is_of_stages(answer: Answer, candidate: Candidate, floor: float) -> bool:
+    """Return True for loads that are late by a part of a row, as the stages of a method take a switch.
+
+    A delay is another one: it leaves the rounding of the file, or is a number as somebody writes it.
+    """
+    if candidate.family.name != LATE or not len(answer.right.switches):
+        return False
+    row = float(np.median(np.abs(np.diff(answer.times))))
+    return abs(float(candidate.numbers[0])) < row and not has_few_digits(candidate, floor)
 
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
