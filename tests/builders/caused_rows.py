@@ -24,6 +24,23 @@ from taylor_verify.solvers.files.file import read as read_file
 Array = np.ndarray[Any, np.dtype[np.float64]]
 # The rates of v at a time, from v and q.
 Law = Callable[[float, Array, Array], Array]
+TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
+Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
+TIMES = np.round(np.arange(0, 81) * 0.1, 6)
+RIGID = """
+title = "Body"
+model = "euler"
+track = ["omega", "attitude"]
+[body]
+inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
+{load}
+[initial]
+omega = [0.8, -0.5, 1.1]
+attitude = [-0.5, 0.3, -0.7, 0.2]
+[time]
+end = 8
+samples = 81
+"""
 
 
 def rows(law: Law, v0: Sequence[float], q0: Array, times: Array, edges: Sequence[float]) -> Array:
@@ -65,3 +82,21 @@ def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
         answer = material_of_file(file, rung("f64"), plain, failures)
         assert answer is not None
         return explained(answer).causes
+
+
+def rigid(
+    tensor: Array = TENSOR,
+    moment: Law = lambda t, w, q: np.zeros(3),
+    gyro: float = 1.0,
+    edges: Sequence[float] = (),
+    pace: float = 1.0,
+) -> Columns:
+    """The columns of a rigid body's omega and attitude, of a motion so much too fast."""
+    made = rows(
+        lambda t, w, q: np.linalg.solve(tensor, gyro * np.cross(tensor @ w, w) + moment(t, w, q)),
+        [0.8, -0.5, 1.1],
+        Q,
+        TIMES * pace,
+        edges,
+    )
+    return columns(TIMES, made, ("w1", "w2", "w3"))

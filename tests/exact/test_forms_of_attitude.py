@@ -63,7 +63,7 @@ def test_an_angle_at_its_singularity_has_no_proven_digit() -> None:
 
 @pytest.mark.parametrize("pitch", [1, -1])
 def test_straight_up_or_down_the_angles_give_an_exact_matrix_back(pitch: int) -> None:
-    """Where the matrix is exact, all of the turn about the vertical is yaw, and none of it is lost."""
+    """All of the turn about the vertical is yaw where the matrix is exact, and none of it is lost."""
     c, s, none = Fraction(4, 5), Fraction(3, 5), Fraction(0)
     R = np.array([[none, -s, c * pitch], [none, c, s * pitch], [Fraction(-pitch), none, none]])
     with mp.workprec(200):

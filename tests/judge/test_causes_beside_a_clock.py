@@ -6,59 +6,33 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.caused_rows import Array, columns, rows, titles
+from builders.caused_rows import RIGID, Array, Law, rigid, titles
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.words.causes import steps_in_words
 
-TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
-Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
-TIMES = np.round(np.arange(0, 81) * 0.1, 6)
-FREE = """
-title = "Free body"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
-[initial]
-omega = [0.8, -0.5, 1.1]
-attitude = [-0.5, 0.3, -0.7, 0.2]
-[time]
-end = 8
-samples = 81
-"""
-
-
-def free(pace: float, gyro: float = 1.0, cubic: float = 0.0) -> Columns:
-    """The columns of a body whose motion is so much too fast."""
-    made = rows(
-        lambda t, w, q: np.linalg.solve(TENSOR, gyro * np.cross(TENSOR @ w, w) - cubic * w**3),
-        [0.8, -0.5, 1.1],
-        Q,
-        TIMES * pace,
-        (),
-    )
-    return columns(TIMES, made, ("w1", "w2", "w3"))
+FREE = RIGID.format(load="")
+CUBIC: Law = lambda t, w, q: -0.02 * w**3  # noqa: E731 (a law of one line)
 
 
 @pytest.mark.parametrize(
     ("made", "words"),
     [
         (
-            free(1 / 1.05),
+            rigid(pace=1 / 1.05),
             ["clock = 0.952381: the motion is 1.05 times too slow, or t counts 1/1.05"],
         ),
         (
-            free(0.97, gyro=-1.0),
+            rigid(gyro=-1.0, pace=0.97),
             ["clock = 0.97: the motion is", "with that: gyroscopic term with the other sign"],
         ),
         (
-            free(1.001, gyro=0.5),
+            rigid(gyro=0.5, pace=1.001),
             ["clock = 1.001: the motion is", "with that: factor of the gyroscopic term = 0.5"],
         ),
-        (free(0.97, gyro=-1.0, cubic=0.02), []),
+        (rigid(moment=CUBIC, gyro=-1.0, pace=0.97), []),
     ],
     ids=["clock", "other sign", "half", "and a cubic drag"],
 )
@@ -113,7 +87,7 @@ def straight(drag: float = 6.0, noise: float = 0.0, late: float = 0.0) -> Column
 def test_on_a_line_every_velocity_is_that_of_another_time(
     made: Columns, words: list[str], tmp_path: Path
 ) -> None:
-    """In a straight run no time of a row is said to be wrong, unless the path has it too."""
+    """No time of a row is said to be wrong in a straight run, unless the path has it too."""
     assert titles(tmp_path, STRAIGHT, made) == words
 
 

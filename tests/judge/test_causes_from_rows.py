@@ -7,7 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders.caused_rows import Array, Law, causes, columns, rows, titles
+from builders.caused_rows import (
+    RIGID,
+    TENSOR,
+    TIMES,
+    Array,
+    Law,
+    Q,
+    causes,
+    columns,
+    rigid,
+    titles,
+)
 from builders.trajectories import QUATERNION, Columns, file_judgement, write_csv
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
@@ -15,41 +26,7 @@ from scipy.spatial.transform import Rotation
 
 from taylor_verify.scenes.reading.reader import read
 
-TENSOR = np.array([[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]])
-Q = np.array([-0.5, 0.3, -0.7, 0.2]) / np.linalg.norm([-0.5, 0.3, -0.7, 0.2])
-TIMES = np.round(np.arange(0, 81) * 0.1, 6)
 SPRING = 'moment = ["-0.4*q1 - 0.1*w1", "-0.4*q2 - 0.1*w2", "-0.4*q3 - 0.1*w3"]'
-RIGID = """
-title = "Body"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [[2.3, 0.21, -0.14], [0.21, 1.7, 0.33], [-0.14, 0.33, 3.1]]
-{load}
-[initial]
-omega = [0.8, -0.5, 1.1]
-attitude = [-0.5, 0.3, -0.7, 0.2]
-[time]
-end = 8
-samples = 81
-"""
-
-
-def rigid(
-    tensor: Array = TENSOR,
-    moment: Law = lambda t, w, q: np.zeros(3),
-    gyro: float = 1.0,
-    edges: Sequence[float] = (),
-) -> Columns:
-    """The columns of a rigid body's omega and attitude."""
-    made = rows(
-        lambda t, w, q: np.linalg.solve(tensor, gyro * np.cross(tensor @ w, w) + moment(t, w, q)),
-        [0.8, -0.5, 1.1],
-        Q,
-        TIMES,
-        edges,
-    )
-    return columns(TIMES, made, ("w1", "w2", "w3"))
 
 
 def window(begin: float, end: float, moment: Sequence[float]) -> Law:

@@ -54,6 +54,14 @@ def test_a_tolerance_is_relative_to_the_time() -> None:
     assert not check(SCENE, late, tolerance=1e-7, event="w2 = 0").passed
 
 
+def test_times_without_a_right_digit_do_not_pass() -> None:
+    """A time may answer an event, being nearest to it, and have no right digit: it is no pass."""
+    off = check(SCENE, [t + 0.15 * TIMES[0] for t in TIMES], event="w2 = 0")
+    assert (off.missed, off.invented) == ((), ())
+    assert min(each.digits for each in off.answered) == 0
+    assert not off.passed
+
+
 @pytest.mark.parametrize("answer", [SimpleNamespace(t_events=[[1.0], [2.0]]), 3.0])
 def test_times_of_one_event_are_expected(answer: Any) -> None:
     """Times of several events, or of none, are refused."""

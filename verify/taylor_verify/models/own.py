@@ -13,7 +13,7 @@ from typing import Final
 from taylor_verify.models.units import binary
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.states import Continuous, Held
+from taylor_verify.scenes.loads.states import Continuous
 
 # No letter of a body, a load or a frame begins with these.
 CONTINUOUS: Final = "own."
@@ -34,12 +34,7 @@ def starts(loads: Loads) -> Vector:
 
 def held_starts(loads: Loads) -> Vector:
     """Return the held components before their first instants; 0 where nothing reads that."""
-    return tuple(
-        value
-        for state in loads.states
-        if isinstance(state, Held)
-        for value in state.start or (Fraction(0),) * len(state.components)
-    )
+    return tuple(value for state in loads.held_states for value in state.first)
 
 
 def numbers(loads: Loads, held: Vector) -> dict[str, Fraction]:

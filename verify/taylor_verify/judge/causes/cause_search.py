@@ -16,11 +16,9 @@ import numpy as np
 from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
+from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.dynamics import Dynamics, dynamics
-from taylor_verify.judge.causes.float_answer import (
-    Answer,
-    matrices,
-)
+from taylor_verify.judge.causes.float_answer import Answer, matrices
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
@@ -127,8 +125,7 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
 
 def _enough(answer: Answer, cause: Cause) -> float:
     """Return what a cause of the motion may leave of the attitude: a step of it may have another update."""
-    is_near = cause.method is not None or cause.kind in _OF_PIECES
-    return _PROVEN if is_near else may_leave(answer, ["attitude"], 1)
+    return _PROVEN if _is_of_steps(cause) else may_leave(answer, ["attitude"], 1)
 
 
 def _of_moving_part(answer: Answer) -> list[Cause]:
@@ -183,8 +180,12 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
 
 def _stands(cause: Cause) -> bool:
     """Return True if a cause may leave the attitude as it does: it is near, of steps or of a part."""
-    is_near = cause.leaves.get("attitude", 1.0) <= _PROVEN
-    return is_near or cause.method is not None or cause.kind in _OF_PIECES
+    return cause.leaves.get("attitude", 1.0) <= _PROVEN or _is_of_steps(cause)
+
+
+def _is_of_steps(cause: Cause) -> bool:
+    """Return True for the steps of a method, and for the motion in pieces."""
+    return cause.method is not None or cause.kind in _OF_PIECES
 
 
 def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
@@ -198,9 +199,7 @@ def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
     pace = float(turns[1])
     right = answer.right.changed({"clock": pace})
     words = with_numbers("clock", (), (1.0,), (pace,))
-    motion = whole(answer, right)
-    leaves = {} if motion is None else answer.leaves(motion)
-    if leaves and _are_explained(answer, leaves):
+    if _left_of_all(answer, right):
         return [replace(of_attitude, alike=(*of_attitude.alike, words))]
     if not answer.moving:
         return []
@@ -208,6 +207,13 @@ def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
     if causes and _are_explained(answer, causes[-1].leaves):
         return _beside(Cause(words, "clock", {}), causes)
     return []
+
+
+def _left_of_all(answer: Answer, right: Equations) -> Mapping[str, float]:
+    """Return what the motion of equations leaves of the whole answer; nothing if it is not explained."""
+    motion = whole(answer, right)
+    leaves = {} if motion is None else answer.leaves(motion)
+    return leaves if _are_explained(answer, leaves) else {}
 
 
 def _are_explained(answer: Answer, leaves: Mapping[str, float]) -> bool:
@@ -265,9 +271,9 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
 
 def _all_along(answer: Answer, cause: Cause) -> Cause | None:
     """Return a cause of a part that explains the whole answer, as where a limit is not left before."""
-    motion = whole(answer, answer.right.changed(cause.changes)) if cause.changes else None
-    leaves = {} if motion is None else answer.leaves(motion)
-    return replace(cause, leaves=leaves) if leaves and _are_explained(answer, leaves) else None
+    changed = answer.right.changed(cause.changes)
+    leaves = _left_of_all(answer, changed) if cause.changes else {}
+    return replace(cause, leaves=leaves) if leaves else None
 
 
 def _of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:

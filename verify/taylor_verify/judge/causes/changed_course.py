@@ -132,8 +132,9 @@ class Course:
         assert loads is not None
         begin = _start(answer, self._equations, loads)
         self._z = np.repeat(begin, sets // len(begin), axis=0)
-        starts, held = np.array(own.held_starts(loads), dtype=float), equations.held
-        self._held = np.broadcast_to(starts if held is None else held, (sets, len(starts)))
+        starts = np.array(own.held_starts(loads), dtype=float)
+        values = starts if equations.held is None else equations.held
+        self._held = np.broadcast_to(values, (sets, len(starts)))
         self._now = answer.begins
         until = Fraction(float(answer.times[-1]))
         self._instants = deque(loads.instants(until))

@@ -28,7 +28,7 @@ from taylor_verify.judge.causes.fit import (
     orthonormal,
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
-from taylor_verify.judge.causes.kinks import are_kinks
+from taylor_verify.judge.causes.kinks import has_kinks
 from taylor_verify.judge.causes.lateness import is_of_stages, off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
@@ -209,8 +209,7 @@ class Search:
 
     def _over_kinks(self, group: list[_Linear], candidates: list[Candidate]) -> Cause | None:
         """Return a cause that is exact on the whole answer, which goes through kinks, as arcs do not."""
-        acting = self.answer.right.acting
-        if not group or acting is None or not are_kinks(acting):
+        if not group or not has_kinks(self.answer.right):
             return None
         cause = self.cause(candidates)
         least = max(_FAIR, ROUNDINGS * self.answer.floor(self.choice.groups))
@@ -240,7 +239,7 @@ class Search:
         Nor is it seen to leave less than the arcs are wrong by.
         """
         least = max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
-        return candidate.defects < least or (candidate.family.name == self.proven)
+        return candidate.defects < least or candidate.family.name == self.proven
 
     def _is_pace(self, candidate: Candidate) -> bool:
         """Return True for another pace of the motion that is as exact, and no more than a method's error.

@@ -112,6 +112,11 @@ class Answer:
         """Rows of the file from one row to the next; negative if the file begins at its end."""
         return int(self.places[1] - self.places[0])
 
+    @property
+    def spacing(self) -> float:
+        """The median time from a row to the next."""
+        return float(np.median(np.abs(np.diff(self.times))))
+
     @cached_property
     def sizes(self) -> Floats:
         """The largest vector of the truth, for each component of v."""

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -38,33 +38,32 @@ _SHARE: Final = 0.2
 _AT: Final = 1e-9
 
 
-def are_kinks(acting: Acting) -> bool:
-    return bool(_kinks(acting))
+def has_kinks(equations: Equations) -> bool:
+    """Return True if the texts of the loads have kinks."""
+    return equations.acting is not None and bool(_kinks(equations.acting))
 
 
 def moved_through(arcs: Arcs, equations: Equations, begin: Floats, steps: int) -> Floats:
     """Return the ends of arcs from states (sets, components, arcs), through the kinks of the first set.
 
-    Where that costs too much, some are as the steps over the kinks say.
-
-    The other sets differ from it as steps over the kinks say.
+    The other sets differ from it as steps over the kinks say. Where all kinks cost too much, some arcs are
+    as steps over them say.
     """
-    ends = arcs.moved(equations, begin, steps)
-    if arcs.answer.stepping is not None:
+    ends, answer = arcs.moved(equations, begin, steps), arcs.answer
+    if answer.stepping is not None or not has_kinks(equations):
         return ends
-    first = equations if np.ndim(equations.load) < 3 else _with_first_load(equations)
-    budget = arcs.answer.budget
-    with suppress(Spent), budget.at_most(_SHARE * budget.left):
-        for k in _over_kinks(first, arcs, begin[:1], ends[:1], steps):
-            load = np.asarray(first.load)
-            own = first if load.ndim < 3 else replace(first, load=load[:, :, k : k + 1])
+    with suppress(Spent), answer.budget.at_most(_SHARE * answer.budget.left):
+        for k in _over_kinks(equations, arcs, begin[:1], ends[:1], steps):
+            first = _of_arcs(equations, np.s_[k : k + 1])
             arc = begin[0, :, k], float(arcs.since[k]), float(arcs.spans[k])
-            ends[:, :, k] += _through_kinks(arcs.answer, own, *arc, steps) - ends[0, :, k]
+            ends[:, :, k] += _through_kinks(answer, first, *arc, steps) - ends[0, :, k]
     return ends
 
 
-def _with_first_load(equations: Equations) -> Equations:
-    return replace(equations, load=np.asarray(equations.load)[:1])
+def _of_arcs(equations: Equations, some: Any) -> Equations:
+    """Return the equations of the first set for some arcs, which may each have a load of their own."""
+    load = np.asarray(equations.load)
+    return equations if load.ndim < 3 else replace(equations, load=load[:1, :, some])
 
 
 def _over_kinks(equations: Equations, arcs: Arcs, begin: Floats, end: Floats, steps: int) -> Places:
@@ -72,17 +71,13 @@ def _over_kinks(equations: Equations, arcs: Arcs, begin: Floats, end: Floats, st
 
     States have the axes (1, components, arcs).
     """
-    if equations.acting is None or not are_kinks(equations.acting):
-        return np.empty(0, dtype=int)
     first = _values(equations, begin, arcs.since)
     last = _values(equations, end, arcs.since + arcs.spans)
     over = np.flatnonzero(np.any(first * last < 0, axis=0))
     if not len(over) or len(over) > _MOST:
         return over[:0]
-    n, load = arcs.answer.n, np.asarray(equations.load)
-    own = equations if load.ndim < 3 else replace(equations, load=load[:, :, over])
-    few = replace(arcs, first=arcs.first[over], last=arcs.last[over])
-    finer = few.moved(own, begin[:, :, over], 2 * steps)[0, :n]
+    n, few = arcs.answer.n, replace(arcs, first=arcs.first[over], last=arcs.last[over])
+    finer = few.moved(_of_arcs(equations, over), begin[:, :, over], 2 * steps)[0, :n]
     off = np.abs(finer - end[0, :n, over].T) / arcs.answer.sizes[:, None]
     least = np.maximum(0.1 * arcs.answer.rounding, _NOTHING)[:, None]
     return over[np.any(off > least, axis=0)]

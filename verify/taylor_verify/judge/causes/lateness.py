@@ -44,28 +44,22 @@ def off_pace(answer: Answer) -> float:
     A method of order two changes the rates by such derivatives. Where they are along the rates, as in a
     decay or a steady precession, it changes the pace alone, as another clock would.
     """
-    n, nu = answer.n, velocities_of(answer.right, answer.truth.v)
-    z = true_states(answer, n)
-    step = _BRIEF / max(float(np.max(np.linalg.norm(nu[:, -3:], axis=1))), _least_pace(answer))
-    rates = []
-    for late in (-step, 0.0, step):
+    nu, z = velocities_of(answer.right, answer.truth.v), true_states(answer, answer.n)
+
+    def rates(late: float) -> Floats:
         shifts = np.full(answer.count, late)
         states = at_other_times(answer, z, shifts) if late else z
-        rates.append(
-            answer.right.rates(answer.times + shifts, states)[0, :n] / answer.sizes[:, None]
-        )
-    before, now, after = rates
+        every = answer.right.rates(answer.times + shifts, states)[0, : answer.n]
+        return np.asarray(every / answer.sizes[:, None])
+
+    now, span = rates(0.0), float(np.ptp(answer.times)) or 1.0
+    turning = float(np.max(np.linalg.norm(nu[:, -3:], axis=1)))
+    step = _BRIEF / max(turning, float(np.max(np.abs(now))), 1 / span)
+    before, after = rates(-step), rates(step)
     bend = before - 2 * now + after
     along = np.sum(bend * now, axis=0) / np.maximum(np.sum(now**2, axis=0), 1e-300)
     size = float(np.linalg.norm(bend))
     return float(np.linalg.norm(bend - along * now)) / size if size > 0 else 0.0
-
-
-def _least_pace(answer: Answer) -> float:
-    """Return the pace of a motion whose rates change it by its own size, or in the span of the answer."""
-    rates = answer.right.rates(answer.times, true_states(answer, answer.n))[0, : answer.n]
-    span = float(np.ptp(answer.times)) or 1.0
-    return max(float(np.max(np.abs(rates / answer.sizes[:, None]))), 1 / span)
 
 
 def is_of_stages(answer: Answer, candidate: Candidate, floor: float) -> bool:
@@ -75,8 +69,8 @@ def is_of_stages(answer: Answer, candidate: Candidate, floor: float) -> bool:
     """
     if candidate.family.name != LATE or not len(answer.right.switches):
         return False
-    row = float(np.median(np.abs(np.diff(answer.times))))
-    return abs(float(candidate.numbers[0])) < row and not has_few_digits(candidate, floor)
+    is_within = abs(float(candidate.numbers[0])) < answer.spacing
+    return is_within and not has_few_digits(candidate, floor)
 
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
@@ -84,12 +78,9 @@ def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
     others = [error for group, error in answer.worst.items() if group != name]
     if answer.has_states or not others or min(others) > _RIGHT * answer.worst[name]:
         return
-    part, scale = _part(answer, name)
+    part, scale = part_of(answer, name)
     states = true_states(answer, part.stop)
-    file = answer.rows(answer.file, name).T
-    if name == "attitude":
-        file = file * np.sign(np.sum(file * states[0, part], axis=0))
-    spacing = float(np.median(np.abs(np.diff(answer.times))))
+    file, spacing = columns_of(answer, name, states), answer.spacing
     first = answer.begins - answer.times
     for is_held in (True, False):
         late, at, shifts = 0.0, states, np.zeros(answer.count)
@@ -111,7 +102,16 @@ def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:
         yield _words(late, spacing / abs(answer.stride)), at[0, part].T
 
 
-def _part(answer: Answer, name: str) -> tuple[slice, float]:
+def columns_of(answer: Answer, name: str, states: Floats) -> Floats:
+    """Return the file's rows of a quantity as columns; attitudes with the signs of those of the states."""
+    file = answer.rows(answer.file, name).T
+    if name != "attitude":
+        return file
+    return np.asarray(file * np.sign(np.sum(file * states[0, part_of(answer, name)[0]], axis=0)))
+
+
+def part_of(answer: Answer, name: str) -> tuple[slice, float]:
+    """Return the places of a quantity in a state, and its size."""
     n = answer.n
     if name == "attitude":
         return slice(n, n + 4), 1.0

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 from taylor_verify.judge.causes.changed_texts import rewritten
-from taylor_verify.judge.causes.texts import places
+from taylor_verify.judge.causes.texts import Place, places
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.vocabulary import Entry
 
@@ -33,23 +34,17 @@ def _without_limits(text: str) -> str:
 
 def _by_length(loads: Loads) -> Loads:
     """Return the loads with one limit of the length for each vector of three limited texts."""
-    by_vector: dict[tuple[object, ...], list[tuple[str, ...]]] = {}
+    by_vector: dict[tuple[object, ...], list[tuple[Place, str, str]]] = {}
     for place in places(loads):
-        limited = _limited(place.entry)
-        if limited is not None:
-            by_vector.setdefault(place.path[:-1], []).append((*limited, place.key))
+        if limited := _limited(place.entry):
+            by_vector.setdefault(place.path[:-1], []).append((place, *limited))
     for vector in by_vector.values():
-        texts, limits, keys = zip(*vector, strict=True)
-        if len(texts) == 3 and len({*limits}) == 1:
-            loads = _with_length(loads, texts, limits[0], keys)
-    return loads
-
-
-def _with_length(loads: Loads, texts: Sequence[str], limit: str, keys: Sequence[str]) -> Loads:
-    length = f"max(norm({', '.join(texts)}), {limit})"
-    for text, key in zip(texts, keys, strict=True):
-        place = next(each for each in places(loads) if each.key == key)
-        loads = place.put(f"({text})*({limit})/{length}")
+        limits = {limit for _, _, limit in vector}
+        if len(vector) == 3 and len(limits) == 1:
+            (limit,) = limits
+            length = f"max(norm({', '.join(text for _, text, _ in vector)}), {limit})"
+            for place, text, _ in vector:
+                loads = replace(place, loads=loads).put(f"({text})*({limit})/{length}")
     return loads
 
 

@@ -96,18 +96,18 @@ def phase_of_sampling(right: Equations) -> Iterator[tuple[Family, Floats]]:
     """
     acting = right.acting
     assert acting is not None
-    loads, held = acting.written, acting.written.held_states
-    if not held:
+    loads = acting.written
+    if not loads.held_states:
         return
-    every = float(held[0].every)
+    every = float(loads.held_states[0].every)
 
     def late(values: Floats) -> Changes:
         shift = _time(float(values[0]))
         states = (_late_by(state, shift) for state in loads.states)
         return {"acting": acting.of(replace(loads, states=tuple(states)))}
 
-    names = " and ".join(state.name for state in held)
-    label = f"time by which {names} {'is' if len(held) == 1 else 'are'} taken late"
+    names = [state.name for state in loads.held_states]
+    label = f"time by which {' and '.join(names)} {'is' if len(names) == 1 else 'are'} taken late"
     one, none = np.array([every]), np.zeros(1)
     yield Family(label, "states", none, one, late, (label,)), every * np.array(_PHASES)
 
@@ -115,8 +115,7 @@ def phase_of_sampling(right: Equations) -> Iterator[tuple[Family, Floats]]:
 def _late_by(state: State, shift: Fraction) -> State:
     if not isinstance(state, Held):
         return state
-    start = state.start or (Fraction(0),) * len(state.components)
-    return replace(state, start=start, offset=state.offset + shift)
+    return replace(state, start=state.first, offset=state.offset + shift)
 
 
 def _time(value: float) -> Fraction:
@@ -164,9 +163,8 @@ def _without_delay(loads: Loads, state: Held) -> Iterator[tuple[str, Loads]]:
 
 def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
     """Return a state whose values are used one sample late."""
-    start = state.start or (Fraction(0),) * len(state.components)
-    now = replace(state, name=f"{state.name}_now", start=start)
-    late = replace(state, start=start, value=now.components)
+    now = replace(state, name=f"{state.name}_now", start=state.first)
+    late = replace(state, start=state.first, value=now.components)
     name = f"{state.name} is used one sample late, by {float(state.every):.6g}"
     return name, _with(loads, state, now, late)
 

@@ -68,7 +68,7 @@ def _in_turn(answer: Answer) -> tuple[Floats, Floats]:
     course = Course(answer, answer.right, 1, Courses.of(answer).step)
     course.move(float(answer.times[0]))
     spans = np.diff(answer.times)
-    slope, load, loads = _slope(answer, course, 0), np.zeros(answer.n), list[Floats]()
+    slope, load, loads = _first_slope(answer, course), np.zeros(answer.n), list[Floats]()
     slopes = slope * (spans / spans[0])[:, None, None]
     with suppress(Spent):
         for row, of_row in enumerate(slopes):
@@ -77,11 +77,11 @@ def _in_turn(answer: Answer) -> tuple[Floats, Floats]:
     return np.reshape(loads, (-1, answer.n)), slopes[: len(loads)]
 
 
-def _slope(answer: Answer, course: Course, row: int) -> Floats:
-    """Return the slopes of the end of an arc by its load."""
+def _first_slope(answer: Answer, course: Course) -> Floats:
+    """Return the slopes of the end of the first arc by its load."""
     n, scale = answer.n, Sizes.of(answer).load * _SHIFT
-    tried = course.from_row(row, np.concatenate([np.zeros((1, n)), np.diag(scale)]))
-    tried.move(float(answer.times[row + 1]))
+    tried = course.from_row(0, np.concatenate([np.zeros((1, n)), np.diag(scale)]))
+    tried.move(float(answer.times[1]))
     ends = tried.v / answer.sizes
     return np.asarray((ends[1:] - ends[0]).T / scale)
 

@@ -16,7 +16,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, enough_steps, row_to_row
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.float_answer import Answer, Motion
-from taylor_verify.judge.causes.kinks import are_kinks, moved_through
+from taylor_verify.judge.causes.kinks import has_kinks, moved_through
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.scenes.instants import evenly
 
@@ -57,13 +57,12 @@ def whole(answer: Answer, equations: Equations, components: int = 0) -> Motion |
     rows[0] = np.concatenate([answer.first(equations.mass), *frame])[:count]
     steps = 1 if answer.stepping else _enough_steps(equations, arcs, rows)
     scale = np.concatenate([answer.sizes, np.ones(4), np.full(3, answer.reach)])[:count]
-    has_kinks = equations.acting is not None and are_kinks(equations.acting)
 
     def go(z: Floats, is_near: bool) -> Floats:
-        through = moved_through if is_near and has_kinks else Arcs.moved
+        through = moved_through if is_near else Arcs.moved
         return through(arcs, equations, z, steps)
 
-    if not _shoot(rows, go, scale, is_near=not has_kinks):
+    if not _shoot(rows, go, scale, is_near=not has_kinks(equations)):
         return None
     motion = Motion(
         rows[:, :n],
@@ -83,9 +82,10 @@ def _enough_steps(equations: Equations, arcs: Arcs, rows: Floats) -> int:
     answer, some = arcs.answer, np.array(evenly(len(arcs.first), _SOME))
     goal = np.maximum(0.1 * answer.rounding, 2e-14)[:, None] * answer.sizes[:, None]
     begin, few = rows[some].T[None], replace(arcs, first=some, last=some + 1)
-    is_smooth = equations.acting is None or not are_kinks(equations.acting)
     return enough_steps(
-        lambda steps: few.moved(equations, begin, steps)[0, : answer.n], goal, is_smooth
+        lambda steps: few.moved(equations, begin, steps)[0, : answer.n],
+        goal,
+        is_patient=not has_kinks(equations),
     )
 
 

@@ -166,6 +166,7 @@ class Choice:
         if not proven:
             return None
         proven = [*filter(self._explains_frame, proven)] or proven
+        # Some say nothing of the path, and others say a wrong one.
         proven = [p for p in proven if max(p.leaves.values()) <= CAPS[0]] or proven
         proven.sort(key=lambda each: _simplest(each.candidate))
         as_well = self._as_well(proven[0].candidate)
@@ -185,19 +186,21 @@ class Choice:
             best.family.name, best.kind, shortened.leaves, text, others, changes, best.method
         )
 
+    @property
+    def _frame(self) -> list[str]:
+        return [name for name in ("attitude", "centre") if name in self.answer.failed]
+
     def _by_frame(self, alike: list[_Proven]) -> list[_Proven]:
         """Return those that explain attitude and centre as well as the best, where these fail."""
-        frame = {"attitude", "centre"}.intersection(self.answer.failed)
-        if not frame:
+        if not self._frame:
             return alike
-        left = [max(proven.leaves.get(name, 1.0) for name in frame) for proven in alike]
-        most = max(BETTER * min(left), ROUNDINGS * self.answer.floor([*frame]))
+        left = [max(proven.leaves.get(name, 1.0) for name in self._frame) for proven in alike]
+        most = max(BETTER * min(left), ROUNDINGS * self.answer.floor(self._frame))
         return [proven for proven, part in zip(alike, left, strict=True) if part <= most]
 
     def _explains_frame(self, proven: _Proven) -> bool:
         """Return True if what is proven of the motion explains attitude and centre too, where they fail."""
-        frame = {"attitude", "centre"}.intersection(self.answer.failed)
-        return all(proven.leaves.get(name, 1.0) <= CAPS[0] for name in frame)
+        return all(proven.leaves.get(name, 1.0) <= CAPS[0] for name in self._frame)
 
     def _shortened(self, proven: _Proven) -> _Proven:
         """Return a candidate with the fewest digits of its numbers that explain as much."""

@@ -8,7 +8,12 @@ import numpy as np
 
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.float_answer import Answer
-from taylor_verify.judge.causes.lateness import at_other_times, true_states
+from taylor_verify.judge.causes.lateness import (
+    at_other_times,
+    columns_of,
+    part_of,
+    true_states,
+)
 from taylor_verify.judge.causes.many_flows import Floats
 
 _ROUNDS: Final = 5
@@ -51,19 +56,12 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
 
     True if the compared states move on a line, on which every state is one of another time.
     """
-    right, truth, file, n = answer.right, answer.truth, answer.file, answer.n
-    rows, scale, compared = file.v.T, answer.sizes[:, None], [*range(n)]
-    if file.q is not None and truth.q is not None:
-        signs = np.sign(np.sum(file.q * truth.q, axis=1))
-        rows = np.vstack([rows, file.q.T * signs])
-        scale = np.vstack([scale, np.ones((4, 1))])
-        compared += range(n, n + 4)
-    if file.c is not None and truth.c is not None:
-        rows = np.vstack([rows, file.c.T])
-        scale = np.vstack([scale, np.full((3, 1), answer.reach)])
-        compared += range(n + 4, n + 7)
-    z = true_states(answer, compared[-1] + 1)
-    spacing = float(np.median(np.abs(np.diff(answer.times))))
+    right, parts = answer.right, {name: part_of(answer, name) for name in answer.error}
+    z = true_states(answer, max(part.stop for part, _ in parts.values()))
+    rows = np.vstack([columns_of(answer, name, z) for name in parts])
+    compared = np.concatenate([np.r_[part] for part, _ in parts.values()])
+    sizes = [np.full((part.stop - part.start, 1), size) for part, size in parts.values()]
+    scale, spacing = np.concatenate(sizes), answer.spacing
     late, at = np.zeros(answer.count), z
     for _ in range(_ROUNDS):
         slopes = right.rates(answer.times + late, at)[0, compared] / scale

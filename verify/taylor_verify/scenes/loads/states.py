@@ -75,6 +75,11 @@ class Held(State):
     def entries(self) -> Entries:
         return self.value
 
+    @property
+    def first(self) -> Vector:
+        """The components before the first instant; 0 where nothing reads that."""
+        return self.start or (Fraction(0),) * len(self.components)
+
     def count(self, until: Fraction) -> int:
         """The number of instants up to an elapsed time, both ends included."""
         return max(int((until - self.offset) // self.every) + 1, 0)
