@@ -17,7 +17,9 @@ from taylor_verify.judge.causes.proof import CAPS
 
 # Part of each number's scale for a central difference.
 DIFFERENCE: Final = 1e-4
+# A factor that is far from 1 is reached by doubling it.
 _ROUNDS: Final = 8
+_ROUNDS_OF_ONE: Final = 16
 # Trial steps: directions below this part of the largest singular value are left alone; length of the step.
 _TRIALS: Final = ((1e-7, 1.0), (1e-4, 1.0), (1e-2, 1.0), (1e-4, 0.3), (1e-2, 0.3), (0.1, 0.3))
 _LONGEST: Final = 3.0
@@ -182,7 +184,7 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
     measured = evidence.coarse if evidence.is_coarse else evidence.defects
     (defects,) = measured([family.changes(numbers)])
     first = size = float(np.linalg.norm(defects))
-    for count in range(_ROUNDS):
+    for count in range(_ROUNDS_OF_ONE if family.count == 1 else _ROUNDS):
         if measured != evidence.defects and size <= _COARSE * np.sqrt(evidence.of_right.size):
             measured = evidence.defects
             (defects,) = measured([family.changes(numbers)])
@@ -191,7 +193,7 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
         if not (np.all(np.isfinite(slopes)) and np.isfinite(size) and np.any(slopes)):
             return Fitted(numbers, np.inf)
         before = size
-        for trials in _trial_steps(slopes, defects.ravel(), family.scale):
+        for trials in _trial_steps(slopes, defects.ravel(), family.scale, numbers):
             tried = measured([family.changes(numbers + step) for step in trials])
             sizes = _sizes(tried)
             best = int(np.argmin(sizes))
@@ -229,8 +231,11 @@ def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:
     return fit if fit.size < best.size else best
 
 
-def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> Iterator[list[Floats]]:
+def _trial_steps(
+    slopes: Floats, defects: Floats, scale: Floats, numbers: Floats
+) -> Iterator[list[Floats]]:
     """Yield steps that are tried together: of one number the full step, and then a shorter one."""
+    longest = _LONGEST * np.maximum(1.0, np.abs(numbers) / scale)
     U, singular, V = np.linalg.svd(slopes * scale, full_matrices=False)
     along = U.T @ -defects
     for some in (_TRIALS,) if len(scale) > 1 else (_TRIALS[:1], _TRIALS[3:4]):
@@ -238,7 +243,7 @@ def _trial_steps(slopes: Floats, defects: Floats, scale: Floats) -> Iterator[lis
         for cut, length in some:
             is_seen = singular > cut * singular[0]
             step = V[is_seen].T @ (along[is_seen] / singular[is_seen])
-            far = max(1.0, float(np.max(np.abs(step))) / _LONGEST)
+            far = max(1.0, float(np.max(np.abs(step) / longest)))
             steps.append(scale * step * length / far)
         yield steps
 
