@@ -81,6 +81,7 @@ def test_silence_is_right_where_no_fault_has_a_name() -> None:
 # The kinds of the faults that the contract of likely causes names, and of those of given files.
 _NAMED = """
 clock factor, early clock, times in frames, times rounded, times that scatter, times by a float32 sum,
+rows at whole steps,
 rows saved twice, own start, space frame turned, body frame turned, velocity of another point, path of
 another point, frame that turns, rates of Euler angles, constant current, asleep, speed capped, load for
 a while, row repeated, RK4, held rate of the attitude, attitude in place, components updated in place,

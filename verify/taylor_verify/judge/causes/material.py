@@ -120,7 +120,6 @@ def material(
     has_momenta: bool,
     noise: tuple[Floats, float, float],
     verdicts: Iterable[Verdict],
-    decimals: int | None = None,
     every: int = 1,
 ) -> Answer | None:
     """Return an answer to a rounded scene as material; None if nothing failed, or is comparable.
@@ -152,7 +151,6 @@ def material(
         failed,
         Budget(_BUDGET if exact.has_closed_form else _BUDGET_WITHOUT_CLOSED_FORM),
         every * np.array(rows),
-        decimals,
         scene=given,
     )
 
@@ -285,7 +283,7 @@ def _read_by(
         c = _read(file, "centre", conventions, attitudes)
     of_frame, of_centre = 2 * units.get(frame, 0.0), units.get("centre", 0.0)
     motion, noises = Motion(np.hstack(v), q, c), (np.concatenate(noise), of_frame, of_centre)
-    return material(given, motion, has_momenta, noises, verdicts, _decimals(file.times), every)
+    return material(given, motion, has_momenta, noises, verdicts, every)
 
 
 def _frame_of(file: TrajectoryFile) -> str:
@@ -297,14 +295,6 @@ def _ratio(rows: Floats, columns: Floats) -> float:
     """Return the factor of a reading, by the sizes of the rows."""
     before, after = (float(np.nanmax(np.abs(each), initial=0.0)) for each in (columns, rows))
     return after / before if before > 0 else 1.0
-
-
-def _decimals(times: Iterable[Fraction]) -> int | None:
-    """Return the number of decimals that the times need; None if they need more than six."""
-    for digits in range(7):
-        if all((time * 10**digits).denominator == 1 for time in times):
-            return digits
-    return None
 
 
 def material_of_trajectory(

@@ -28,6 +28,8 @@ _STRAIGHT: Final = 1e-2
 _EQUAL: Final = 0.1
 # Rates in a second direction so much smaller than those in the first leave the motion on a line.
 _ON_A_LINE: Final = 1e-6
+# Times of a file may be rounded to so many decimals.
+_MOST_DECIMALS: Final = 6
 _SCATTER: Final = "times scatter"
 
 
@@ -95,8 +97,9 @@ def _pattern(answer: Answer, late: Floats) -> str | None:
         )
     return (
         _every_so_many(answer, late, size)
-        or _decimals(answer, late, size)
+        or _decimals(times, late, size)
         or _single_precision(times, times + late, size, abs(answer.stride))
+        or _whole_steps(times - answer.begins, times + late - answer.begins, size)
         or _factor_or_jumps(answer, late, size, spacing)
     )
 
@@ -114,9 +117,9 @@ def _every_so_many(answer: Answer, late: Floats, size: float) -> str | None:
     return f"of every {every} rows one has a time that is {how} by {abs(off):.6g}; all others are right"
 
 
-def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
+def _decimals(times: Floats, late: Floats, size: float) -> str | None:
     """Return the words for equal steps whose times are rounded; a clock is late in proportion to time."""
-    digits, times = answer.decimals, answer.times
+    digits = _digits_of(times)
     if (
         digits is None
         or not _are_equal_steps(times + late, _EQUAL * size)
@@ -124,8 +127,21 @@ def _decimals(answer: Answer, late: Floats, size: float) -> str | None:
     ):
         return None
     unit = 10.0**-digits
-    if digits <= 6 and 0.05 * unit < size <= 0.51 * unit:
+    if size <= 0.05 * unit:
+        return None
+    if size <= 0.51 * unit:
         return f"times are rounded to {digits} decimals; no error is left beyond that"
+    if size <= 1.01 * unit and np.min(late) >= -_PATTERN * unit:
+        return f"times are cut off after {digits} decimals; no error is left beyond that"
+    return None
+
+
+def _digits_of(times: Floats) -> int | None:
+    """Return the number of decimals that the times need; None if they need more than six."""
+    for digits in range(_MOST_DECIMALS + 1):
+        units = times * 10.0**digits
+        if np.max(np.abs(units - np.rint(units))) < _PATTERN:
+            return digits
     return None
 
 
@@ -140,15 +156,50 @@ def _is_line(times: Floats, late: Floats, size: float) -> bool:
 
 
 def _single_precision(times: Floats, exact: Floats, size: float, every: int) -> str | None:
-    """Return the words for a running sum, of which these are every so many times."""
-    if not _are_equal_steps(exact, _PATTERN * size):
+    """Return the words for a running sum, of which these are every so many times, as far as printed."""
+    digits = _digits_of(times)
+    unit = 0.0 if digits is None else 10.0**-digits
+    blur = _PATTERN * size if unit > _EQUAL * size else max(_PATTERN * size, unit)
+    for equal, summed, words in (
+        (exact, times, "times are a running sum in float32"),
+        (
+            times,
+            exact,
+            "the rows are those at a running sum of the step in float32, not at the times",
+        ),
+    ):
+        count = every * (len(times) - 1)
+        h = (equal[-1] - equal[0]) / count
+        sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
+        off = np.abs(summed[1:] - summed[0] - sums[every - 1 :: every])
+        if _are_equal_steps(equal, blur) and np.max(off) < blur:
+            return words
+    return None
+
+
+def _whole_steps(times: Floats, exact: Floats, size: float) -> str | None:
+    """Return the words for rows of a fixed step that are not interpolated: exact at a whole number of steps.
+
+    From row to row there are two numbers of steps then, one apart.
+    """
+    apart = np.diff(exact)
+    is_more = apart > (np.min(apart) + np.max(apart)) / 2
+    less, more = apart[~is_more], apart[is_more]
+    if not len(less) or max(np.ptp(less), np.ptp(more)) > _PATTERN * size:
         return None
-    count = every * (len(times) - 1)
-    h = (exact[-1] - exact[0]) / count
-    sums = np.cumsum(np.full(count, np.float32(h)), dtype=np.float32).astype(float)
-    sums = sums[every - 1 :: every]
-    is_sum = np.max(np.abs(times[1:] - times[0] - sums)) < _PATTERN * size
-    return "times are a running sum in float32" if is_sum else None
+    h = float(np.mean(more) - np.mean(less))
+    counts = np.concatenate([[0], np.cumsum(np.rint(np.mean(less) / h) + is_more)])
+    counts += np.rint(exact[0] / h)
+    h = float(exact @ counts / (counts @ counts))
+    if np.max(np.abs(exact - h * counts)) > _PATTERN * size:
+        return None
+    ahead = counts - times / h
+    for which, least, most in (("nearest", -0.5, 0.5), ("last", -1.0, 0.0), ("next", 0.0, 1.0)):
+        if np.all((ahead > least - _PATTERN) & (ahead < most + _PATTERN)):
+            return (
+                f"each row holds the state of the {which} whole step of {h:.6g}, none between steps"
+            )
+    return None
 
 
 def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) -> str | None:

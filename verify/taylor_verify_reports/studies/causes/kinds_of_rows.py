@@ -44,6 +44,12 @@ def _float32_sum(s: Sample, d: Draw, size: float) -> Rows:
     return right(s)._replace(times=stamps)
 
 
+def _at_whole_steps(s: Sample, d: Draw, size: float) -> Rows:
+    step = s.times[1] / d.uniform(1.5, 4.5)
+    last = np.floor(s.times / step + 1e-9) * step
+    return right(s, last)._replace(times=s.times)
+
+
 def _jitter(s: Sample, d: Draw, size: float) -> Rows:
     late = 0.1 * size * s.times[1] * d.uniform(-1, 1, len(s.times)) * (s.times > 0)
     return right(s, s.times + late)._replace(times=s.times)
@@ -179,6 +185,7 @@ _AXES: Final = ("fixed rotation", "space axes turned", "contradicts")
 OF_ROWS: Final = (
     Kind("times in frames", _PACE, _frames),
     Kind("times by a float32 sum", ("float32", "times", "clock"), _float32_sum),
+    Kind("rows at whole steps", ("the last whole step",), _at_whole_steps),
     Kind("times that scatter", ("times scatter", "times are rounded"), _jitter),
     Kind("rows dropped", ("rows dropped", "jump"), _dropped),
     Kind("rows saved twice", ("saved twice", "repeat", "held"), _changed(_twice)),
