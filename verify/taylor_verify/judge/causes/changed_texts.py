@@ -48,6 +48,9 @@ _CHANGES: Final[dict[str, _Change]] = {
     "in space axes": lambda parts, i: _sum(
         zip((f"r{k}{i + 1}" for k in _AXES), parts, strict=True)
     ),
+    "turned the wrong way, by R": lambda parts, i: _sum(
+        zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)
+    ),
 }
 
 
@@ -73,6 +76,9 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
             "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
             by_components,
         )
+    linear = rewritten(loads, lambda text: _COMPONENT.sub("1", _LENGTH.sub("1", text)))
+    if linear != loads:
+        yield "the loads have linear drag, 1 for abs(u1), abs(w1) or the whole speed", linear
     yield from _exchanged(loads)
     yield from _hung_otherwise(loads)
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):

@@ -66,9 +66,9 @@ class Answer:
 
     ``start`` has one row: nu (omega, or U and W), the attitude and the centre. ``noise`` is half a unit of
     the last digit of each component of v, of the attitude and of the centre.
-    ``begins`` is the time of the start, and ``places`` are the rows of the file, from 0, that these are. ``scene`` is the rounded question.
-    Without ``has_rates`` omega is that of the file's own attitudes, and is no quantity of the file.
-    With ``stepping`` the arcs go in steps of a method, as the simulator's did.
+    ``begins`` is the time of the start; ``places`` are the rows of the file, from 0, that these are.
+    ``scene`` is the rounded question. Without ``has_rates`` omega is that of the file's own attitudes, and
+    is no quantity of the file. With ``stepping`` the arcs go in steps of a method, as the simulator's did.
     """
 
     right: Equations

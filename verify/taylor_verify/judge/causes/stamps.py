@@ -178,7 +178,7 @@ def _single_precision(times: Floats, exact: Floats, size: float, every: int) -> 
 
 
 def _whole_steps(times: Floats, exact: Floats, size: float) -> str | None:
-    """Return the words for rows of a fixed step that are not interpolated: exact at a whole number of steps.
+    """Return the words for rows that are not interpolated, each exact at a whole number of fixed steps.
 
     From row to row there are two numbers of steps then, one apart.
     """
