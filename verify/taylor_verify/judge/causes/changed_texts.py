@@ -40,6 +40,7 @@ _ALWAYS: Final[dict[str, _Names]] = {
     "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
     "the loads take omega in radians for degrees": {f"w{i}": f"(pi/180*w{i})" for i in _AXES},
 }
+_WRONG_WAY: Final = "turned the wrong way, by R"
 # What is done to three parts of texts, one for each axis, beside which three others stay.
 _Change = Callable[[Sequence[str], int], str]
 _CHANGES: Final[dict[str, _Change]] = {
@@ -48,9 +49,7 @@ _CHANGES: Final[dict[str, _Change]] = {
     "in space axes": lambda parts, i: _sum(
         zip((f"r{k}{i + 1}" for k in _AXES), parts, strict=True)
     ),
-    "turned the wrong way, by R": lambda parts, i: _sum(
-        zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)
-    ),
+    _WRONG_WAY: lambda parts, i: _sum(zip((f"r{i + 1}{k}" for k in _AXES), parts, strict=True)),
 }
 
 
@@ -81,6 +80,10 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
         yield "the loads have linear drag, 1 for abs(u1), abs(w1) or the whole speed", linear
     yield from _exchanged(loads)
     yield from _hung_otherwise(loads)
+    for name, entries in loads.vectors:
+        if any(terms(str(entry)) != ["0"] for entry in entries):
+            turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
+            yield f"{name} {_WRONG_WAY}", turned
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
 
