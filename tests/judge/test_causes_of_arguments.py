@@ -90,6 +90,7 @@ omega = [0.4, -0.3, 0.5]
 end = 15
 samples = 61
 """
+CONSTANT = TIMED.replace('"0.3*sin(0.7*t)", "-0.15*w2", "0.12"', '"0.3", "-0.1", "0.2"')
 
 
 @cache
@@ -165,6 +166,16 @@ def of_state(every: str) -> list[tuple[str, str]]:
 
 
 IN_SPACE = [(f'"{text}"', f'"{in_space(own, k)}"') for own in (F, C) for k, text in enumerate(own)]
+W = ["0.4 - a*s*u1 - b*u1", "-0.5*s*u2 - b*u2", "-0.6*s*u3 - b*u3"]
+M = ["0.3", "-0.1", "0.2"]
+
+
+def by_R(texts: list[str]) -> list[tuple[str, str]]:
+    """Three texts, each with the component of R of them."""
+    sums = [" + ".join(f"r{i}{k + 1}*({t})" for k, t in enumerate(texts)) for i in (1, 2, 3)]
+    return [(f'"{text}"', f'"{own}"') for text, own in zip(texts, sums, strict=True)]
+
+
 LATE = of_state("2/15")
 PLAIN = [("o1", "(cos(0.3*t))"), ("o2", "(sin(0.3*t))"), ("o3", "0")]
 
@@ -209,6 +220,13 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
             (TOP, [(HEAVY, "moment = [-0.3, 0.6, 0]")], "weight fixed in body axes"),
             (TOP, [("-3]", "3]")], "moment with the other sign"),
             (VEHICLE, [("abs", "")], "the loads have no abs"),
+            (
+                VEHICLE,
+                [(f"abs(u{i})", "1") for i in (1, 2, 3)],
+                "the loads have linear drag, 1 for abs(u1), abs(w1) or the whole speed",
+            ),
+            (WHOLE, by_R(W), "force turned the wrong way, by R"),
+            (CONSTANT, by_R(M), "moment turned the wrong way, by R"),
             (
                 VEHICLE,
                 SPEEDS,
