@@ -21,7 +21,15 @@ DIFFERENCE: Final = 1e-4
 _ROUNDS: Final = 8
 _ROUNDS_OF_ONE: Final = 16
 # Trial steps: directions below this part of the largest singular value are left alone; length of the step.
-_TRIALS: Final = ((1e-7, 1.0), (1e-4, 1.0), (1e-2, 1.0), (1e-4, 0.3), (1e-2, 0.3), (0.1, 0.3))
+_TRIALS: Final = (
+    (1e-10, 1.0),
+    (1e-7, 1.0),
+    (1e-4, 1.0),
+    (1e-2, 1.0),
+    (1e-4, 0.3),
+    (1e-2, 0.3),
+    (0.1, 0.3),
+)
 _LONGEST: Final = 3.0
 # A fit ends early if so much is left after three rounds, or if a round gains less than a twentieth.
 _HOPELESS: Final = 0.3

@@ -15,10 +15,8 @@ from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
-_SAME: Final = 1e-9
-# Entries whose ratios differ by less than this are unchanged together.
-_UNCHANGED: Final = 1e-3
-_NEAR: Final = 1e-6
+OF_RIGID_BODY: Final = "of a rigid body alone"
+_REST: Final = "factor of what is no rigid body"
 _KIND: Final = "Coriolis matrix"
 _Places = tuple[tuple[int, int], ...]
 _LOWER: Final = ((5, 1), (5, 3), (6, 1), (6, 2))
@@ -202,9 +200,28 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
         yield from _each(right, name, numbers)
     munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in masses]
     yield _of_coriolis(right, "three masses in the Munk moment alone", masses, munk)
+    yield from _rigid_alone(right, arm, entries, float(scale[0, 0]))
     yield _of_body(right, "mass matrix", entries[: len(entries) - lacks])
     yield _of_coriolis(right, "mass matrix of the Coriolis terms alone", entries)
     yield from _single_terms(right)
+
+
+def _rigid_alone(
+    right: Equations, arm: list[_Number], entries: list[_Number], scale: float
+) -> Iterator[Family]:
+    """Yield the terms of a rigid body, and a factor of all that is none in the mass matrix.
+
+    They are all Coriolis terms, of which the moments of inertia are known up to a common number, or the
+    Munk moment.
+    """
+    mass, masses = right.mass, np.diag([1.0, 1, 1, 0, 0, 0])
+    heavy = _Number("mass", float(np.trace(mass[:3, :3])) / 3, scale, masses)
+    inertia = [number for number in entries if number.label[2] > "3"]
+    rest = mass - sum(number.value * number.along for number in (heavy, *arm, *inertia))
+    factor = _Number(_REST, 1.0, 1.0, rest)
+    yield _of_coriolis(right, f"Coriolis terms {OF_RIGID_BODY}", [factor, heavy, *arm, *inertia])
+    munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in (factor, *arm)]
+    yield _of_coriolis(right, f"Munk moment {OF_RIGID_BODY}", [factor, *arm], munk)
 
 
 def _single_terms(right: Equations) -> Iterator[Family]:
@@ -332,52 +349,3 @@ def _of_arm(mass: Floats, scale: float) -> list[_Number]:
 def is_up_to_a_factor(right: Equations) -> bool:
     """Return True if a motion does not show a common factor of the mass matrix."""
     return not (right.has_loads or np.any(right.rotor) or right.has_momenta)
-
-
-# Words for a body that was fitted.
-
-
-def nearest_factor(right: Equations, mass: Floats) -> Floats:
-    """Return a mass matrix, known up to a factor, with the factor that leaves most entries unchanged."""
-    if not is_up_to_a_factor(right):
-        return mass
-    own, upper = right.mass, np.triu_indices(right.size)
-    is_seen = np.abs(own[upper]) > _SAME * np.max(np.abs(own))
-    ratios = mass[upper][is_seen] / own[upper][is_seen]
-    ratios = np.sort(ratios[ratios > _NEAR])
-    unchanged = [np.count_nonzero(np.abs(ratios / ratio - 1) < _UNCHANGED) for ratio in ratios]
-    return mass / ratios[int(np.argmax(unchanged))] if len(ratios) else mass
-
-
-def entries(right: Floats, mass: Floats) -> tuple[tuple[str, ...], Floats, Floats]:
-    """Return the labels of the entries that one of two mass matrices has, and both of their values."""
-    letter, size = "I" if len(mass) == 3 else "M", _SAME * np.max(np.abs(right))
-    places = [
-        (i, k)
-        for i, k in zip(*np.triu_indices(len(mass)), strict=True)
-        if max(abs(right[i, k]), abs(mass[i, k])) > size
-    ]
-    rows, columns = np.transpose(places)
-    labels = tuple(f"{letter}_{i + 1}{k + 1}" for i, k in places)
-    return labels, right[rows, columns], mass[rows, columns]
-
-
-def structure(family: Family, masses: Floats) -> str:
-    """Return in words how the masses of the Coriolis terms follow from the body's; empty if they do not.
-
-    With an added mass A = M - m 1 that enters f times, they are m + f A: a straight line.
-    """
-    is_diagonal = family.labels[:3] == ("M_11", "M_22", "M_33") and family.kind != "body"
-    own, other = family.right[:3], masses[:3]
-    if not is_diagonal or "Munk" in family.name or np.ptp(own) < _SAME * np.max(own):
-        return ""
-    factor, offset = np.polyfit(own, other, 1)
-    if np.any(np.abs(other - factor * own - offset) > _NEAR * np.max(own)):
-        return ""
-    nice = {0.0: "lack the added mass", 2.0: "have the added mass twice"}
-    nice |= {-1.0: "have the added mass with the other sign", 1.0: "lack the rigid body"}
-    near = [words for value, words in nice.items() if abs(factor - value) < _NEAR]
-    of_body = offset / (1 - factor) if abs(factor - 1) > _NEAR else -offset
-    if not near or not 0 < of_body <= np.min(own) * (1 + _NEAR):
-        return ""
-    return f"the Coriolis terms {near[0]} (a rigid body of mass {of_body:.6g})"

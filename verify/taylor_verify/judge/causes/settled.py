@@ -13,14 +13,10 @@ from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.changed_texts import names_inertia
+from taylor_verify.judge.causes.fitted_bodies import entries, nearest_factor, structure
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import (
-    entries,
-    is_up_to_a_factor,
-    nearest_factor,
-    structure,
-)
+from taylor_verify.judge.causes.other_bodies import is_up_to_a_factor
 from taylor_verify.judge.causes.proof import BETTER, CAPS, LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.words.causes import with_numbers
@@ -31,9 +27,9 @@ _FLOAT64: Final = 5e-13
 _DEFECT_ROUNDINGS: Final = 30.0
 # Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
 _STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
-_STRICTEST: Final = 1e-4
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
+# With more numbers, a near family fits all that is not nothing.
 NOTHING: Final = 1e-9
 # Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
 FIT_ROWS: Final = 160
@@ -125,15 +121,23 @@ class Choice:
         proof = self._left(candidate)
         if proof is None or candidate.is_nothing:
             return None
-        if candidate.count and proof.worst > PAIR and self._polished < _POLISHED:
+        is_pair, has_few = candidate.kind == "pair", candidate.count <= max(_STRICTER)
+        if (
+            candidate.count
+            and proof.worst > (PAIR if has_few else NOTHING)
+            and self._polished < _POLISHED
+        ):
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
                 proof = better
-        part = 1.0 if candidate.kind == "pair" else _STRICTER.get(candidate.count, _STRICTEST)
+        if has_few:
+            most *= 1.0 if is_pair else _STRICTER[candidate.count]
+        else:
+            most = NOTHING
         # The rounding of a file allows two faults nothing: near to it a pair fits what one fault does not.
-        cap = PAIR if candidate.kind == "pair" else CAPS[min(candidate.count, 1)]
-        allowed = min(max(most * part, self._least), cap)
+        cap = PAIR if is_pair else CAPS[min(candidate.count, 1)]
+        allowed = min(max(most, self._least), cap)
         return proof if proof.worst <= allowed and not proof.candidate.is_nothing else None
 
     def _left(self, candidate: Candidate) -> _Proven | None:

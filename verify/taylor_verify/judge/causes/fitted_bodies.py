@@ -1,0 +1,66 @@
+"""Words for a body that was fitted: its entries beside those of the scene, and how they come about."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.changed_equations import Equations
+from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.other_bodies import OF_RIGID_BODY, is_up_to_a_factor
+
+_SAME: Final = 1e-9
+# Entries whose ratios differ by less than this are unchanged together.
+_UNCHANGED: Final = 1e-3
+_NEAR: Final = 1e-6
+
+
+def nearest_factor(right: Equations, mass: Floats) -> Floats:
+    """Return a mass matrix, known up to a factor, with the factor that leaves most entries unchanged."""
+    if not is_up_to_a_factor(right):
+        return mass
+    own, upper = right.mass, np.triu_indices(right.size)
+    is_seen = np.abs(own[upper]) > _SAME * np.max(np.abs(own))
+    ratios = mass[upper][is_seen] / own[upper][is_seen]
+    ratios = np.sort(ratios[ratios > _NEAR])
+    unchanged = [np.count_nonzero(np.abs(ratios / ratio - 1) < _UNCHANGED) for ratio in ratios]
+    return mass / ratios[int(np.argmax(unchanged))] if len(ratios) else mass
+
+
+def entries(right: Floats, mass: Floats) -> tuple[tuple[str, ...], Floats, Floats]:
+    """Return the labels of the entries that one of two mass matrices has, and both of their values."""
+    letter, size = "I" if len(mass) == 3 else "M", _SAME * np.max(np.abs(right))
+    places = [
+        (i, k)
+        for i, k in zip(*np.triu_indices(len(mass)), strict=True)
+        if max(abs(right[i, k]), abs(mass[i, k])) > size
+    ]
+    rows, columns = np.transpose(places)
+    labels = tuple(f"{letter}_{i + 1}{k + 1}" for i, k in places)
+    return labels, right[rows, columns], mass[rows, columns]
+
+
+def structure(family: Family, numbers: Floats) -> str:
+    """Return in words how the masses of the Coriolis terms follow from the body's; empty if they do not.
+
+    With an added mass A = M - m 1 that enters f times, they are m + f A: a straight line.
+    """
+    if family.name.endswith(OF_RIGID_BODY):
+        free = ", moments of inertia known up to a common number" * ("mass" in family.labels)
+        return f"the added mass is missing{free}" if abs(numbers[0]) < _NEAR else ""
+    is_diagonal = family.labels[:3] == ("M_11", "M_22", "M_33") and family.kind != "body"
+    own, other = family.right[:3], numbers[:3]
+    if not is_diagonal or "Munk" in family.name or np.ptp(own) < _SAME * np.max(own):
+        return ""
+    factor, offset = np.polyfit(own, other, 1)
+    if np.any(np.abs(other - factor * own - offset) > _NEAR * np.max(own)):
+        return ""
+    nice = {0.0: "lack the added mass", 2.0: "have the added mass twice"}
+    nice |= {-1.0: "have the added mass with the other sign", 1.0: "lack the rigid body"}
+    near = [words for value, words in nice.items() if abs(factor - value) < _NEAR]
+    of_body = offset / (1 - factor) if abs(factor - 1) > _NEAR else -offset
+    if not near or not 0 < of_body <= np.min(own) * (1 + _NEAR):
+        return ""
+    return f"the Coriolis terms {near[0]} (a rigid body of mass {of_body:.6g})"
