@@ -137,3 +137,50 @@ def test_parts_of_an_added_mass_are_named(
         assert not any(title.startswith(near) for title in named_ones)
     else:
         assert named_ones == [words]
+
+
+WHOLE = VEHICLE.replace("mass = 31.9", f"mass_matrix = {(body()[0] + FULL).tolist()}")
+WHOLE = "\n".join(
+    line
+    for line in WHOLE.splitlines()
+    if not line.startswith(("inertia", "centre_of", "added_mass"))
+)
+# A steady run, on which what a matrix turns the velocities by is hardly seen.
+GENTLE = WHOLE.replace("[1.5, 0.1, -0.05]", "[1.8, 0.004, -0.003]").replace(
+    "[0.05, 0.1, 0.15]", "[0.006, 0.002, 0.0015]"
+)
+LOWER = np.block([[np.ones((3, 6))], [np.zeros((3, 3)), np.ones((3, 3))]])
+MISSING = "the added mass is missing"
+
+
+@pytest.mark.parametrize(
+    ("factors", "noise", "words"),
+    [
+        (np.zeros((6, 6)), 0.0, f"{MISSING}, moments of inertia known up to a common number"),
+        (LOWER, 0.0, f"{MISSING}: Munk moment of a rigid body alone"),
+        (LOWER + 0.1 * (1 - LOWER), 0.0, "Munk moment of a rigid body alone: factor of what"),
+        (np.zeros((6, 6)), 3e-6, ""),
+        (LOWER, 3e-6, ""),
+    ],
+    ids=["whole", "lower left block", "a tenth of it", "whole, and noise", "block, and noise"],
+)
+def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
+    factors: Array, noise: float, words: str, tmp_path: Path
+) -> None:
+    """What is left of the terms is a rigid body: few numbers, which leave nothing, or none are said.
+
+    Beside the errors of a method a run as steady as this fixes no entry of a matrix.
+    """
+    own, _ = body()
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        matrix = coriolis(own, nu) + factors * coriolis(FULL, nu)
+        return np.linalg.solve(own + FULL, noise * np.sin(7 * t) * nu - matrix @ nu)
+
+    times = np.round(np.arange(0, 61) * 0.05, 6)
+    made = rows(law, [1.8, 0.004, -0.003, 0.006, 0.002, 0.0015], np.eye(4)[0], times, ())
+    said = titles(tmp_path, GENTLE, columns(times, made, ("u1", "u2", "u3", "w1", "w2", "w3")))
+    if words:
+        assert said[0].startswith(words)
+    else:
+        assert not said
