@@ -233,6 +233,12 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
                 "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
             ),
             (
+                VEHICLE.replace("-0.2*w3", "-0.2*abs(w3)*w3"),
+                SPEEDS,
+                "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1), "
+                "in the force alone",
+            ),
+            (
                 WHOLE,
                 [(f"s*u{i}", f"abs(u{i})*u{i}") for i in (1, 2, 3)],
                 "the loads have abs(u1) or abs(w1), where the scene has the whole speed",

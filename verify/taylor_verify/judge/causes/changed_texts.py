@@ -40,6 +40,14 @@ _ALWAYS: Final[dict[str, _Names]] = {
     "the loads take omega in degrees": {f"w{i}": f"(180/pi*w{i})" for i in _AXES},
     "the loads take omega in radians for degrees": {f"w{i}": f"(pi/180*w{i})" for i in _AXES},
 }
+_SPEEDS: Final[dict[str, Callable[[str], str]]] = {
+    "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)": (
+        lambda text: _COMPONENT.sub(_speed, text)
+    ),
+    "the loads have linear drag, 1 for abs(u1), abs(w1) or the whole speed": (
+        lambda text: _COMPONENT.sub("1", _LENGTH.sub("1", text))
+    ),
+}
 _WRONG_WAY: Final = "turned the wrong way, by R"
 # What is done to three parts of texts, one for each axis, beside which three others stay.
 _Change = Callable[[Sequence[str], int], str]
@@ -63,21 +71,7 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
         other = rewritten(loads, changed)
         if other != loads:
             yield words, other
-    speeds = rewritten(loads, lambda text: _COMPONENT.sub(_speed, text))
-    if speeds != loads:
-        yield (
-            "the loads have the whole speed, |U| or |W|, where the scene has abs(u1) or abs(w1)",
-            speeds,
-        )
-    by_components = _by_components(loads)
-    if by_components != loads:
-        yield (
-            "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
-            by_components,
-        )
-    linear = rewritten(loads, lambda text: _COMPONENT.sub("1", _LENGTH.sub("1", text)))
-    if linear != loads:
-        yield "the loads have linear drag, 1 for abs(u1), abs(w1) or the whole speed", linear
+    yield from _other_speeds(loads)
     yield from _exchanged(loads)
     yield from _hung_otherwise(loads)
     for name, entries in loads.vectors:
@@ -86,6 +80,24 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
             yield f"{name} {_WRONG_WAY}", turned
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
+
+
+def _other_speeds(loads: Loads) -> Iterator[tuple[str, Loads]]:
+    """Yield drag by other speeds, in all texts and in those of one vector alone."""
+    for words, change in _SPEEDS.items():
+        every = rewritten(loads, change)
+        if every != loads:
+            yield words, every
+        for name, _ in loads.vectors:
+            alone = rewritten(loads, change, name)
+            if alone not in (loads, every):
+                yield f"{words}, in the {name} alone", alone
+    by_components = _by_components(loads)
+    if by_components != loads:
+        yield (
+            "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
+            by_components,
+        )
 
 
 def _speed(component: re.Match[str]) -> str:
