@@ -22,12 +22,13 @@ from taylor_verify.judge.causes.changed_equations import (
 )
 from taylor_verify.judge.causes.dynamics import Search
 from taylor_verify.judge.causes.fit import Family, fault, linear
-from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles
+from taylor_verify.judge.causes.float_answer import Answer, Motion, Places, angles, matrices
 from taylor_verify.judge.causes.many_flows import Floats, flow
 from taylor_verify.judge.causes.other_frames import steady_rate
 from taylor_verify.judge.causes.proof import chained, maps_of_attitude, may_leave, with_units
 from taylor_verify.judge.causes.replayed_methods import OF_SECOND_ORDER, UPDATES
 from taylor_verify.judge.causes.replays import Steps, replay
+from taylor_verify.judge.conventions.angle_meanings import Angles
 from taylor_verify.scenes.instants import evenly
 from taylor_verify.words.causes import steps_in_words
 
@@ -57,6 +58,9 @@ _WRONG: Final = (
     ("attitude stands still: R' = 0", (0.0, 0.0)),
     ("attitude turns twice as fast: q' = q omega, where q' = q omega / 2", (0.0, 2.0)),
     ("attitude turns half as fast: q' = q omega / 4, where q' = q omega / 2", (0.0, 0.5)),
+)
+_ANGLES: Final = (
+    "attitude by roll' = p, pitch' = q, yaw' = r: the body's rates are no rates of Euler angles"
 )
 
 
@@ -92,6 +96,8 @@ def kinematics(answer: Answer, right: Equations, method: Steps | None = None) ->
             "attitude kinematics with omega in space axes: R' = R [omega]x, which is for body axes"
         )
         candidates.append(turns.candidate(name, "kinematics", partial(_by_space, right)))
+        if right.coupled == answer.n:
+            candidates.append(_by_angles(answer, right))
     return search.cause(candidates)
 
 
@@ -153,6 +159,37 @@ def _by_space(right: Equations, arcs: Arcs) -> Floats:
 
     ends = flow(rates, begin, arcs.since, arcs.spans, arcs.steps)
     return np.asarray(ends[:, n + 4 :].transpose(2, 1, 0))
+
+
+def _by_angles(answer: Answer, right: Equations) -> Candidate:
+    """Return the candidate of Euler angles whose rates are p, q and r, tried on all rows at once."""
+    motion = _turned_by_angles(right, answer, {})
+    left = answer.leaves(motion).get("attitude", np.inf)
+    of_angles = fault(_ANGLES, "kinematics", {})
+    return Candidate(of_angles, of_angles.right, left, partial(_turned_by_angles, right), _REPLAYED)
+
+
+def _turned_by_angles(right: Equations, answer: Answer, _: Changes) -> Motion:
+    """Return attitudes whose roll, pitch and yaw are the integrals of p, q and r."""
+    n, arcs = answer.n, row_to_row(answer)
+    begin = np.concatenate([arcs.begin(n)[0], np.zeros((3, len(arcs.first)))])
+
+    def rates(time: Floats, z: Floats) -> Floats:
+        v = z[:, :n]
+        return np.concatenate([right.rates(time, v), _omega(right, v)], axis=1)
+
+    ends = flow(rates, begin[None], arcs.since, arcs.spans, arcs.steps)[0, n:].T
+    assert answer.start.q is not None
+    R = matrices(answer.start.q[:1])[0]
+    first = (
+        np.arctan2(R[2, 1], R[2, 2]),
+        -np.arcsin(np.clip(R[2, 0], -1, 1)),
+        np.arctan2(R[1, 0], R[0, 0]),
+    )
+    roll, pitch, yaw = (
+        np.array(first) + np.concatenate([np.zeros((1, 3)), np.cumsum(ends, axis=0)])
+    ).T
+    return Motion(answer.truth.v, Angles("zyx").quaternions(np.stack([yaw, pitch, roll], axis=1)))
 
 
 def _families(answer: Answer, right: Equations) -> list[Family]:
