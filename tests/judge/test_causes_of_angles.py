@@ -34,6 +34,6 @@ def by_angles(factor: float) -> Columns:
 def test_body_rates_taken_for_rates_of_angles_are_named(
     factor: float, is_named: bool, tmp_path: Path
 ) -> None:
-    """Integrals of p, q and r in the place of roll, pitch and yaw have their name; near it there is none."""
+    """Integrals of p, q and r in the place of roll, pitch and yaw are named; near ones are not."""
     said = titles(tmp_path, RIGID.format(load=""), by_angles(factor))
     assert [title.startswith("attitude by roll' = p") for title in said] == [True] * is_named
