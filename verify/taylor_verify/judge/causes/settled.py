@@ -26,10 +26,12 @@ _FLOAT64: Final = 5e-13
 # Defects of so many roundings of the file may be left.
 _DEFECT_ROUNDINGS: Final = 30.0
 # Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
-_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1}
+_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1, 4: 1e-4, 5: 1e-4, 6: 1e-4}
+# Two families at once have so many numbers, or leave nothing.
+_OF_PAIR: Final = 3
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
-# With more numbers, a near family fits all that is not nothing.
+# A near family with more numbers fits all that is not nothing.
 NOTHING: Final = 1e-9
 # Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
 FIT_ROWS: Final = 160
@@ -121,20 +123,14 @@ class Choice:
         proof = self._left(candidate)
         if proof is None or candidate.is_nothing:
             return None
-        is_pair, has_few = candidate.kind == "pair", candidate.count <= max(_STRICTER)
-        if (
-            candidate.count
-            and proof.worst > (PAIR if has_few else NOTHING)
-            and self._polished < _POLISHED
-        ):
+        is_pair, count = candidate.kind == "pair", candidate.count
+        part = float(count <= _OF_PAIR) if is_pair else _STRICTER.get(count, 0.0)
+        most = max(most * part, NOTHING)
+        if count and proof.worst > min(PAIR, most) and self._polished < _POLISHED:
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
                 proof = better
-        if has_few:
-            most *= 1.0 if is_pair else _STRICTER[candidate.count]
-        else:
-            most = NOTHING
         # The rounding of a file allows two faults nothing: near to it a pair fits what one fault does not.
         cap = PAIR if is_pair else CAPS[min(candidate.count, 1)]
         allowed = min(max(most, self._least), cap)
