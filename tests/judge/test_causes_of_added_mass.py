@@ -160,16 +160,16 @@ MISSING = "the added mass is missing"
         (LOWER, 0.0, f"{MISSING}: Munk moment of a rigid body alone"),
         (LOWER + 0.1 * (1 - LOWER), 0.0, "Munk moment of a rigid body alone: factor of what"),
         (np.zeros((6, 6)), 3e-6, ""),
-        (LOWER, 3e-6, ""),
+        (LOWER, 3e-6, "Munk moment of a rigid body alone: factor of what"),
     ],
     ids=["whole", "lower left block", "a tenth of it", "whole, and noise", "block, and noise"],
 )
 def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
     factors: Array, noise: float, words: str, tmp_path: Path
 ) -> None:
-    """What is left of the terms is a rigid body: few numbers, which leave nothing, or none are said.
+    """What is left of the terms is a rigid body: as few numbers as it has are said, or none.
 
-    Beside the errors of a method a run as steady as this fixes no entry of a matrix.
+    Beside the errors of a method a run as steady as this fixes no matrix of eleven numbers.
     """
     own, _ = body()
 
