@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, titles
-from builders.trajectories import VECTORS, Columns, named
+from builders.trajectories import QUATERNION, VECTORS, Columns, named
 
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.causes.float_answer import steady_signs
+from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import read
 
@@ -38,12 +40,17 @@ def float32_sums(count: int, step: float) -> Array:
 SUMS = np.concatenate([[0.0], float32_sums(400, 0.02)])
 
 
-def with_times(written: Array, exact: Array) -> Columns:
+TRACKED = FREE.replace('"euler"', '"euler"\ntrack = ["omega", "attitude"]')
+
+
+def with_times(written: Array, exact: Array, scene: str = FREE) -> Columns:
     """Rows that are exact at some times, with others beside them."""
-    motion = solution(read(FREE, "free")).motion([exact_value(float(t)) for t in exact], 20)
-    return named(("t",), written[:, None]) | named(
-        VECTORS["omega"], motion.quantities["omega"].astype(float)
-    )
+    motion = solution(read(scene, "free")).motion([exact_value(float(t)) for t in exact], 20)
+    rows = {name: values.astype(float) for name, values in motion.quantities.items()}
+    made = named(("t",), written[:, None]) | named(VECTORS["omega"], rows["omega"])
+    if "attitude" in rows:
+        made |= named(QUATERNION, steady_signs(quaternion_columns(rows["attitude"])))
+    return made
 
 
 @pytest.mark.parametrize(
@@ -81,3 +88,10 @@ def test_other_times_without_such_a_rule_have_none(
 ) -> None:
     """Times between whole steps of nothing are no steps, and nothing is rounded or cut off."""
     assert not titles(tmp_path, FREE, with_times(EVEN, EVEN + off(EVEN)))
+
+
+def test_a_clock_that_drifts_is_named_where_the_attitude_shows_it(tmp_path: Path) -> None:
+    """One time for each row explains omega and attitude alike, and the times follow a law of two numbers."""
+    made = with_times(EVEN, EVEN - 1e-3 * EVEN + 1e-4 * EVEN**2, TRACKED)
+    (title,) = titles(tmp_path, TRACKED, made)
+    assert title.endswith("holds the motion at t -0.001 t +0.0001 t^2")

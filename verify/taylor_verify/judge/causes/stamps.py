@@ -31,6 +31,7 @@ _ON_A_LINE: Final = 1e-6
 # Times of a file may be rounded to so many decimals.
 _MOST_DECIMALS: Final = 6
 _SCATTER: Final = "times scatter"
+_DRIFTS: Final = "the clock drifts"
 
 
 def other_times(answer: Answer) -> Cause | None:
@@ -46,7 +47,8 @@ def other_times(answer: Answer) -> Cause | None:
         return None
     words = _pattern(answer, late)
     is_telling = (answer.n == 6 or answer.file.q is not None) and not is_line
-    if words is None or not answer.failed or (words.startswith(_SCATTER) and not is_telling):
+    of_rows = (_SCATTER, _DRIFTS)
+    if words is None or not answer.failed or (words.startswith(of_rows) and not is_telling):
         return None  # one number for each row explains much of three, and all of a motion on a line
     worst = answer.worst
     leaves = {name: remains * units.get(name, 1.0) / worst[name] for name in answer.failed}
@@ -213,4 +215,10 @@ def _factor_or_jumps(answer: Answer, late: Floats, size: float, spacing: float) 
             firsts, off = answer.places[jumps + 1] + 1, np.cumsum(np.rint(rows)).astype(int)
             words = (f"of row k{n:+d} from row {k} on" for k, n in zip(firsts, off, strict=True))
             return f"rows dropped or doubled: row k holds the state {', '.join(words)}"
+    since = times - answer.begins
+    powers = np.stack([since, since**2], axis=1)
+    rate, bend = np.linalg.lstsq(powers, late, rcond=None)[0]
+    if np.max(np.abs(powers @ (rate, bend) - late)) < _PATTERN * size:
+        law = f"{'' if abs(rate) < _PATTERN * abs(bend) else f' {rate:+.6g} t'} {bend:+.6g} t^2"
+        return f"{_DRIFTS}: the row of the time t since the start holds the motion at t{law}"
     return f"{_SCATTER}: each row is exact at another time, at most {size:.3g} away"
