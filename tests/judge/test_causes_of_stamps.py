@@ -91,7 +91,7 @@ def test_other_times_without_such_a_rule_have_none(
 
 
 def test_a_clock_that_drifts_is_named_where_the_attitude_shows_it(tmp_path: Path) -> None:
-    """One time for each row explains omega and attitude alike, and the times follow a law of two numbers."""
+    """One time for each row explains omega and attitude, and the times have a law of two numbers."""
     made = with_times(EVEN, EVEN - 1e-3 * EVEN + 1e-4 * EVEN**2, TRACKED)
     (title,) = titles(tmp_path, TRACKED, made)
     assert title.endswith("holds the motion at t -0.001 t +0.0001 t^2")
