@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +20,12 @@ from builders.caused_rows import (
     rigid,
     titles,
 )
-from builders.trajectories import QUATERNION, Columns, file_judgement, write_csv
+from builders.trajectories import QUATERNION, Columns, columns_at, file_judgement, write_csv
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
 from scipy.spatial.transform import Rotation
 
-from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.reading.reader import load, read
 
 SPRING = 'moment = ["-0.4*q1 - 0.1*w1", "-0.4*q2 - 0.1*w2", "-0.4*q3 - 0.1*w3"]'
 
@@ -54,6 +55,17 @@ def test_attitudes_alone_name_the_cause(
     assert cause.sentence.startswith(words)
     assert cause.quantity == "attitude"
     assert "of omega" not in cause.sentence
+
+
+def test_a_pose_alone_has_the_convention_of_its_path(tmp_path: Path) -> None:
+    """Attitude and centre of a body in a fluid need no velocities to show that a height is a depth."""
+    scene = load("kirchhoff/ellipsoid-prolate")
+    scene = replace(scene, track=frozenset({"attitude", "centre"}))
+    made = columns_at(scene, scene.clock.instants)
+    pose = {name: made[name] for name in ("t", *QUATERNION, "c1", "c2", "c3")}
+    path = write_csv(tmp_path / "pose.csv", pose | {"c3": [-float(c) for c in pose["c3"]]})
+    (cause,) = file_judgement(str(path), scene).causes
+    assert cause.sentence.startswith("the centre has the other sign on axis 3; leaves ")
 
 
 KNOTS = """moment = ["tab", "0", "0"]

@@ -35,5 +35,5 @@ def test_body_rates_taken_for_rates_of_angles_are_named(
     factor: float, is_named: bool, tmp_path: Path
 ) -> None:
     """Integrals of p, q and r in the place of roll, pitch and yaw are named; near ones are not."""
-    said = titles(tmp_path, RIGID.format(load=""), by_angles(factor))
-    assert [title.startswith("attitude by roll' = p") for title in said] == [True] * is_named
+    sentences = titles(tmp_path, RIGID.format(load=""), by_angles(factor))
+    assert [title.startswith("attitude by roll' = p") for title in sentences] == [True] * is_named

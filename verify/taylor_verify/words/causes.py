@@ -14,6 +14,8 @@ _STILL: Final = 1e-12
 # A change below this part of the largest one is none: the entry agrees.
 _AGREES: Final = 1e-4
 _MOST_DIGITS: Final = 15
+# A number is another one if it is off by more than so many of its errors.
+_ERRORS: Final = 5.0
 # Of a load between rows as many times are listed.
 _TIMES: Final = 5
 # An entry below this part of the largest one is 0, rounded.
@@ -60,9 +62,16 @@ def steps_in_words(spans: Sequence[float], count: int) -> str:
 
 
 def with_numbers(
-    name: str, labels: Sequence[str], right: Iterable[Any], numbers: Iterable[Any]
+    name: str,
+    labels: Sequence[str],
+    right: Iterable[Any],
+    numbers: Iterable[Any],
+    errors: Iterable[Any] = (),
 ) -> str:
-    """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones."""
+    """Return a fault with its numbers; those with ``labels`` are compared with the ``right`` ones.
+
+    What changes by no more than some of its ``errors``, where they are known, agrees.
+    """
     values = [float(number) for number in numbers]
     if name == "clock" and abs(values[0]) < _STILL:
         return "clock = 0: the motion stands still"
@@ -73,7 +82,8 @@ def with_numbers(
     if labels and name.startswith("factor of ") and (words := _of_term(values[0])):
         return f"{name.removeprefix('factor of ')} {words}"
     if labels:
-        changes = _changes(labels, [float(number) for number in right], values)
+        known = [float(error) for error in errors] or [0.0] * len(values)
+        changes = _changes(labels, [float(number) for number in right], values, known)
         return changes if [*labels] == [name] else f"{name}: {changes}"
     largest = max(map(abs, values)) or 1.0
     cut = (0.0 if abs(value) < _NOTHING * largest else value for value in values)
@@ -94,7 +104,9 @@ def _pace(clock: float) -> str:
     return f"the motion is {number} times too {pace}, or t counts {counts} of time"
 
 
-def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> str:
+def _changes(
+    labels: Sequence[str], right: list[float], values: list[float], errors: list[float]
+) -> str:
     """Return the entries that changed, each with its relative change, and how well the others agree."""
     largest = max(map(abs, right)) or 1.0
     right = [0.0 if abs(old) < _ROUNDED * largest else old for old in right]
@@ -102,22 +114,26 @@ def _changes(labels: Sequence[str], right: list[float], values: list[float]) -> 
         abs(value - old) / (abs(old) or largest) for old, value in zip(right, values, strict=True)
     ]
     most = max(parts)
-    changed = [k for k, part in enumerate(parts) if part > _AGREES * most]
-    words = [_change(labels[k], right[k], values[k]) for k in changed]
-    rest = [part for part in parts if part <= _AGREES * most]
+    by_chance = [abs(v - r) <= _ERRORS * e for v, r, e in zip(values, right, errors, strict=True)]
+    agrees = [p <= _AGREES * most or c for p, c in zip(parts, by_chance, strict=True)]
+    changed = [k for k, same in enumerate(agrees) if not same]
+    words = [_change(labels[k], right[k], values[k], errors[k]) for k in changed]
+    rest = [part for part, same in zip(parts, agrees, strict=True) if same]
     if rest:
         words.append(f"the other entries agree to {max(*rest, 2.0**-52):.0e}")
     return ", ".join(words)
 
 
-def _change(label: str, old: float, value: float) -> str:
+def _change(label: str, old: float, value: float, error: float) -> str:
+    known = ceil(log10(abs(value) / error)) if 0 < error < abs(value) else _MOST_DIGITS
     if not old:
-        return f"{label} = {value:.6g} for 0"
+        return f"{label} = {value:.{max(1, min(6, known))}g} for 0"
     part = value / old - 1
     digits = min(_MOST_DIGITS, 6 + max(0, ceil(-log10(abs(part)))) if part else 6)
-    if abs(value) < _NOTHING * abs(old):
+    if abs(value) < max(_NOTHING * abs(old), error):
         return f"{label} = 0 for {old:.6g}"
-    return f"{label} = {value:.{digits}g} for {old:.{digits}g} ({100 * part:+.3g} %)"
+    shown = max(2, min(digits, known))
+    return f"{label} = {value:.{shown}g} for {old:.{digits}g} ({100 * part:+.3g} %)"
 
 
 def missing_load_line(loads: Sequence[MissingLoad]) -> str:

@@ -32,7 +32,7 @@ class Candidate:
     """A fault with its numbers, the part of the ``defects`` that it leaves, and its motion at rows.
 
     It may be proven if it leaves no more than ``near``. The steps of a ``method`` take the place of its
-    changes.
+    changes. ``errors`` are those of its numbers, where they are known.
     """
 
     family: Family
@@ -41,6 +41,7 @@ class Candidate:
     motion: Callable[[Answer, Changes], Motion | None]
     near: float
     method: Any = None
+    errors: Floats | None = None
 
     @property
     def kind(self) -> str:
@@ -63,8 +64,11 @@ class Candidate:
         if not self.count:
             return family.name
         for part in family.parts or (family,):
-            own = self.numbers[first : first + part.count]
-            words.append(with_numbers(part.name, part.labels, part.right, own))
+            places = slice(first, first + part.count)
+            errors = () if self.errors is None else self.errors[places]
+            words.append(
+                with_numbers(part.name, part.labels, part.right, self.numbers[places], errors)
+            )
             first += part.count
         return " and ".join(words)
 

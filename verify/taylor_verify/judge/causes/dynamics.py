@@ -268,7 +268,8 @@ class Search:
         coupled = right.changed(family.changes(fit.numbers)).coupled
         near = _LOOSE if answer.file.q is None and coupled > answer.n else LEAVES
         motion = self.motion if family.count else self.motion_of_faults
-        return Candidate(family, fit.numbers, fit.size / self.evidence.size, motion, near)
+        left = fit.size / self.evidence.size
+        return Candidate(family, fit.numbers, left, motion, near, errors=fit.errors)
 
     def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""

@@ -21,6 +21,7 @@ DIFFERENCE: Final = 1e-4
 _ROUNDS: Final = 8
 _ROUNDS_OF_ONE: Final = 16
 # Trial steps: directions below this part of the largest singular value are left alone; length of the step.
+_SEEN: Final = 1e-10
 _TRIALS: Final = (
     (1e-10, 1.0),
     (1e-7, 1.0),
@@ -180,10 +181,14 @@ def both(equations: Equations, one: Family, other: Family) -> Family:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The numbers of a family that fit best, and the size of the defects that they leave."""
+    """The numbers of a family that fit best, the size of the defects that they leave, and their errors.
+
+    ``errors`` are those that defects of this size by chance would make; none where they are not known.
+    """
 
     numbers: Floats
     size: float
+    errors: Floats | None = None
 
 
 def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None) -> Fitted:
@@ -216,7 +221,15 @@ def gauss_newton(evidence: Evidence, family: Family, begin: Floats | None = None
             break
     if measured != evidence.defects:
         size = float(_sizes(evidence.defects([family.changes(numbers)]))[0])
-    return Fitted(numbers, size)
+    return Fitted(numbers, size, _errors(slopes * family.scale, size) * family.scale)
+
+
+def _errors(slopes: Floats, size: float) -> Floats:
+    """Return the errors of numbers by defects of this size; what no slope shows is left out."""
+    _, singular, V = np.linalg.svd(slopes, full_matrices=False)
+    is_seen = singular > _SEEN * max(singular[0], 1e-300)
+    each = size / np.sqrt(len(slopes))
+    return np.asarray(each * np.linalg.norm(V[is_seen] / singular[is_seen, None], axis=0))
 
 
 def by_factor(arcs: Arcs, family: Family, best: Fitted) -> Fitted:

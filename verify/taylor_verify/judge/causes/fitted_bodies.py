@@ -9,12 +9,14 @@ import numpy as np
 from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.fit import Family
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.other_bodies import OF_RIGID_BODY, is_up_to_a_factor
+from taylor_verify.judge.causes.other_bodies import AND_REST, is_up_to_a_factor
 
 _SAME: Final = 1e-9
 # Entries whose ratios differ by less than this are unchanged together.
 _UNCHANGED: Final = 1e-3
 _NEAR: Final = 1e-6
+# What an added mass is that has this factor.
+_ADDED: Final = {0.0: "is missing", 2.0: "is there twice", -1.0: "has the other sign"}
 
 
 def nearest_factor(right: Equations, mass: Floats) -> Floats:
@@ -47,9 +49,10 @@ def structure(family: Family, numbers: Floats) -> str:
 
     With an added mass A = M - m 1 that enters f times, they are m + f A: a straight line.
     """
-    if family.name.endswith(OF_RIGID_BODY):
+    if family.name.endswith(AND_REST):
         free = ", moments of inertia known up to a common number" * ("mass" in family.labels)
-        return f"the added mass is missing{free}" if abs(numbers[0]) < _NEAR else ""
+        near = [words for value, words in _ADDED.items() if abs(numbers[0] - value) < _NEAR]
+        return f"the added mass {near[0]}{free}" if near else ""
     is_diagonal = family.labels[:3] == ("M_11", "M_22", "M_33") and family.kind != "body"
     own, other = family.right[:3], numbers[:3]
     if not is_diagonal or "Munk" in family.name or np.ptp(own) < _SAME * np.max(own):

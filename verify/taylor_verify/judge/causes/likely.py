@@ -166,10 +166,20 @@ def explained(answer: Answer) -> Explained:
 
 
 def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
-    """Return the causes that explain the attitude, of a file that has no omega."""
-    explains = may_leave(answer, ["attitude"], 1) if "attitude" in answer.failed else 0.0
-    left = [(cause, cause.leaves.get("attitude", np.inf)) for cause in causes]
-    return [replace(cause, leaves={"attitude": part}) for cause, part in left if part <= explains]
+    """Return the causes that explain the attitude, or the centre, of a file that has no velocities."""
+    frame = [name for name in answer.failed if name in ("attitude", "centre")]
+    explain = {name: may_leave(answer, [name], 1) for name in frame}
+    some = [
+        replace(
+            cause, leaves={name: part for name, part in cause.leaves.items() if name in explain}
+        )
+        for cause in causes
+    ]
+    return [
+        cause
+        for cause in some
+        if cause.leaves and all(part <= explain[name] for name, part in cause.leaves.items())
+    ]
 
 
 def _likely(cause: Cause, answer: Answer) -> LikelyCause:

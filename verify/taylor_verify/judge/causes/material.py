@@ -192,8 +192,11 @@ def material_of_file(
         group, times = _frame_of(file), np.array([float(t) for t in file.times])
         if not group:
             return None
-        q, unit = _quaternions(file, group, conventions), 2 * half_units(file)[group]
-        return material_of_attitudes(given, times, q, unit, verdicts, every)
+        units, centre = half_units(file), None
+        q, unit = _quaternions(file, group, conventions), 2 * units[group]
+        if "centre" in file.groups:
+            centre = _read(file, "centre", conventions, None), units["centre"]
+        return material_of_attitudes(given, times, q, unit, verdicts, every, centre)
     frame = _frame_of(file)
     own = _own_attitudes(file, frame, conventions) if frame else None
     in_space = not MOVING.isdisjoint(conventions.readings)
@@ -220,13 +223,17 @@ def material_of_attitudes(
     unit: float,
     verdicts: Iterable[Verdict],
     every: int = 1,
+    centre: tuple[Floats, float] | None = None,
 ) -> Answer | None:
-    """Return attitudes as material: with their own rates, or else with the exact motion."""
+    """Return attitudes as material: with their own rates, or else with the exact motion and the centre.
+
+    ``centre`` are its rows, and half a unit of their last digit.
+    """
     if given.model != "euler" or len(times) < _FEWEST_ATTITUDES:
-        return _of_frame_alone(given, q, unit, verdicts, every)
+        return _of_frame_alone(given, q, unit, verdicts, every, centre)
     omega, noise = rates_of_attitudes(times, q, unit)
     if noise > _TOO_COARSE * np.max(np.abs(omega)):
-        return _of_frame_alone(given, q, unit, verdicts, every)
+        return _of_frame_alone(given, q, unit, verdicts, every, centre)
     inner = range(ASIDE, len(times) - ASIDE)
     instants = tuple(given.clock.instants[k] for k in inner)
     scene = replace(given, clock=replace(given.clock, instants=instants))
@@ -245,11 +252,16 @@ def material_of_attitudes(
 
 
 def _of_frame_alone(
-    given: Scene, q: Floats, unit: float, verdicts: Iterable[Verdict], every: int
+    given: Scene,
+    q: Floats,
+    unit: float,
+    verdicts: Iterable[Verdict],
+    every: int,
+    centre: tuple[Floats, float] | None,
 ) -> Answer | None:
-    """Return attitudes beside the exact motion, for causes in the attitude alone."""
-    n = len(given.body.energy_matrix)
-    motion, noises = Motion(np.zeros((len(q), n)), q), (np.zeros(n), unit, 0.0)
+    """Return attitudes and the centre beside the exact motion, for causes in these alone."""
+    n, (c, of_centre) = len(given.body.energy_matrix), centre or (None, 0.0)
+    motion, noises = Motion(np.zeros((len(q), n)), q, c), (np.zeros(n), unit, of_centre)
     answer = material(given, motion, n == 6, noises, verdicts, every=every)
     if answer is None:
         return None

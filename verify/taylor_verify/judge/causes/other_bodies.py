@@ -15,8 +15,8 @@ from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.terms import load_names
 
-OF_RIGID_BODY: Final = "of a rigid body alone"
-_REST: Final = "factor of what is no rigid body"
+AND_REST: Final = "of a rigid body, and a factor of the rest"
+_REST: Final = "factor of the rest"
 _KIND: Final = "Coriolis matrix"
 _Places = tuple[tuple[int, int], ...]
 _LOWER: Final = ((5, 1), (5, 3), (6, 1), (6, 2))
@@ -219,9 +219,9 @@ def _rigid_alone(
     inertia = [number for number in entries if number.label[2] > "3"]
     rest = mass - sum(number.value * number.along for number in (heavy, *arm, *inertia))
     factor = _Number(_REST, 1.0, 1.0, rest)
-    yield _of_coriolis(right, f"Coriolis terms {OF_RIGID_BODY}", [factor, heavy, *arm, *inertia])
+    yield _of_coriolis(right, f"Coriolis terms {AND_REST}", [factor, heavy, *arm, *inertia])
     munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in (factor, *arm)]
-    yield _of_coriolis(right, f"Munk moment {OF_RIGID_BODY}", [factor, *arm], munk)
+    yield _of_coriolis(right, f"Munk moment {AND_REST}", [factor, *arm], munk)
 
 
 def _single_terms(right: Equations) -> Iterator[Family]:

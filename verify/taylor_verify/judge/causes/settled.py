@@ -144,7 +144,20 @@ class Choice:
         leaves = self.answer.leaves(motion)
         # Two faults at once explain whatever the motion has, or nothing.
         names = {*self.groups, *(leaves if candidate.kind == "pair" else ())}
-        return _Proven(candidate, leaves, max(leaves.get(name, np.inf) for name in names))
+        worst = max(self._weighed(name, leaves.get(name, np.inf)) for name in names)
+        return _Proven(candidate, leaves, worst)
+
+    def _weighed(self, name: str, left: float) -> float:
+        """Return what is left as a part of the error, or of the file's own motion where that is smaller.
+
+        Beside the motion of an unstable scene a file that hardly moves is explained by anything.
+        """
+        if name not in self.answer.groups or left <= self._least:
+            return left
+        rows = self.answer.rows(self.answer.file, name)
+        unit = self.answer.sizes[self.answer.groups[name]][0]
+        size = float(np.max(np.linalg.norm(rows, axis=1)) / unit)
+        return left * max(1.0, self.answer.worst[name] / size) if size > 0 else left
 
     def _refitted(self, candidate: Candidate) -> _Proven | None:
         """Return a candidate whose numbers are fitted once more, on the whole answer."""
