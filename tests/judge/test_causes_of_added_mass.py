@@ -12,6 +12,10 @@ from builders.caused_rows import Array, Law, columns, rows, titles
 from builders.trajectories import Columns
 from builders.turns import by_turns
 
+from taylor_verify.judge.causes.fitted_bodies import nearest_factor
+from taylor_verify.judge.causes.material import equations_of
+from taylor_verify.scenes.reading.reader import read
+
 VEHICLE = """
 title = "Vehicle"
 model = "kirchhoff"
@@ -185,3 +189,11 @@ def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
         assert sentences[0].startswith(words)
     else:
         assert not sentences
+
+
+def test_the_factor_of_a_free_body_leaves_the_entries_that_agree_best_unchanged() -> None:
+    """Entries that agree to the last digit weigh more than as many that agree to a thousandth."""
+    right = equations_of(read(WHOLE, "vehicle"), has_momenta=False)
+    fitted = right.mass * np.where(np.eye(6, dtype=bool), 1.0, 0.5)
+    fitted[[3, 4, 5], [3, 4, 5]] *= [0.9992, 0.9991, 0.9993]
+    assert np.allclose(nearest_factor(right, 1.0008 * fitted), fitted, rtol=1e-12)

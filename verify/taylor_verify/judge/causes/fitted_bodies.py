@@ -12,8 +12,8 @@ from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import AND_REST, is_up_to_a_factor
 
 _SAME: Final = 1e-9
-# Entries whose ratios differ by less than this are unchanged together.
-_UNCHANGED: Final = 1e-3
+# Entries are unchanged together as far as their ratios agree, at best and at worst to this part.
+_UNCHANGED: Final = (1e-9, 1e-3)
 _NEAR: Final = 1e-6
 # What an added mass is that has this factor.
 _ADDED: Final = {0.0: "is missing", 2.0: "is there twice", -1.0: "has the other sign"}
@@ -27,7 +27,8 @@ def nearest_factor(right: Equations, mass: Floats) -> Floats:
     is_seen = np.abs(own[upper]) > _SAME * np.max(np.abs(own))
     ratios = mass[upper][is_seen] / own[upper][is_seen]
     ratios = np.sort(ratios[ratios > _NEAR])
-    unchanged = [np.count_nonzero(np.abs(ratios / ratio - 1) < _UNCHANGED) for ratio in ratios]
+    apart = np.abs(ratios[:, None] / ratios - 1)
+    unchanged = -np.sum(np.log(np.clip(apart, *_UNCHANGED)), axis=0)
     return mass / ratios[int(np.argmax(unchanged))] if len(ratios) else mass
 
 
