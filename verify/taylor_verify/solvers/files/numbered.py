@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from taylor_verify.records.faults import refusal
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, IMPULSES, VELOCITIES
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import is_fraction
 from taylor_verify.solvers.files.columns.assigned import Request, is_ours
@@ -59,8 +59,18 @@ def _elements(names: Sequence[str]) -> list[str]:
 
 
 def _example(names: Sequence[str], scene: Scene | None) -> str:
-    """Return a request of whole groups; three columns in place of a quaternion may be angles."""
+    """Return a request for whole groups, of all columns where they are enough.
+
+    A simulator of a body in a fluid writes velocities. Three columns in place of a quaternion may be
+    angles, and six beside velocities a centre and angles.
+    """
     groups = [group.columns for group in scene.groups] if scene else [("w1", "w2", "w3")]
+    if scene and scene.model == "kirchhoff":
+        centre = [COLUMNS["centre"]] * (len(names) == 1 + len(IMPULSES) + 2 * len(_ANGLES))
+        others = [group for group in groups if not set(group) <= {*IMPULSES, *COLUMNS["centre"]}]
+        tracked = [group for group in groups if group == COLUMNS["centre"]]
+        groups = [*(COLUMNS[name] for name in VELOCITIES), *(centre or tracked), *others]
+        groups += [COLUMNS["quaternion"]] * (COLUMNS["quaternion"] not in groups)
     asked, angles = ["t"], ""
     for group in groups:
         left = len(names) - len(asked)
