@@ -77,7 +77,7 @@ def _hanging(table: Table) -> tuple[Hung, ...] | None:
 
 
 def _hung(table: Table, name: str) -> Hung | None:
-    inner = table.table(name)
+    inner = table.table(name, f"write {name} = {{ force = [0, 0, -2], at = [0, 0, 0] }}")
     if inner is None:
         return None
     force, at = inner.vector("force"), inner.vector("at", default=ZERO_VECTOR)

@@ -89,9 +89,10 @@ class Table:
             mend = advice(key, value) or near(cut(key), self._known)
             self.fault("a known key", f"`{cut(key)}`", cut(key), mend)
 
-    def table(self, key: str) -> Table | None:
+    def table(self, key: str, mend: str = "") -> Table | None:
+        """Return a table; ``mend`` says how to write one."""
         entries = self.take(key, "a table")
-        return None if entries is None else self._table(entries, key)
+        return None if entries is None else self._table(entries, key, mend)
 
     def tables(self, key: str) -> tuple[Table, ...] | None:
         """Return an array of tables; an empty array, and each entry that is no table, is a fault."""
@@ -211,10 +212,10 @@ class Table:
         """Return True if the scene writes the key with an array, without taking it."""
         return isinstance(self._left.get(key), list)
 
-    def _table(self, value: object, key: str) -> Table | None:
+    def _table(self, value: object, key: str, mend: str = "") -> Table | None:
         if isinstance(value, dict):
             return Table(value, self.path(key), self.faults)
-        self.fault("a table", shown(value), key)
+        self.fault("a table", shown(value), key, mend)
         return None
 
     def _row(
