@@ -10,7 +10,7 @@ from typing import Final
 from rich.text import Text
 
 from taylor_verify.check import check
-from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table, titled
 from taylor_verify.cli.inputs import (
@@ -30,8 +30,8 @@ from taylor_verify.cli.sentences import (
     status_text,
 )
 from taylor_verify.cli.standard_input import scene_and_files
-from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR, states_among
@@ -113,18 +113,20 @@ def _of_events(options: argparse.Namespace) -> Answer:
     if len(options.files) > 1:
         raise WrongCall(f"expected one file with --event, got {len(options.files)}")
     scene, (file,) = read_scene(options.scene), options.files
-    try:
-        with working(f"check {file}"), wrong_calls():
-            tolerance = parse_tolerance(options.tolerance)
-            judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
-    except Unsettled as doubt:
-        because = f"undecided: {doubt} @ {scene.name}"
-        content = {"scene": scene.name, "event": options.event, "because": because}
-        return Answer(UNDECIDED, content, str, [because])
-    status = PASS if judged.passed else FAIL if judged.is_wrong else UNDECIDED
+    asked = outputs(options)
+    with working(f"check {file}"), wrong_calls():
+        tolerance = parse_tolerance(options.tolerance)
+        judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
     content, event = judged.document(), judged.true.text
-    text = partial(titled, event, judged.heading.removeprefix(event), event_lines(content))
-    return Answer(status, content, text)
+    lines = list(event_lines(content))
+    text = partial(_text_of_events, event, judged.heading.removeprefix(event), lines)
+    row = Judgement(judged.verdicts, None)
+    return concluded(asked, row, exit_status(row.verdicts), content, text)
+
+
+def _text_of_events(event: str, heading: str, lines: Sequence[str], status: int | None) -> str:
+    del status
+    return titled(event, heading, lines)
 
 
 # The text about a file.
