@@ -56,20 +56,19 @@ def growing(tape: Tape, box: Box, now: Fraction, step: Fraction, named: Mapping[
         here, change = Series(tape, box.point, now, step, 2).rows[:2]
     except (Kink, Domain):
         return ""
-    most, text = _GROWING, ""
+    most, largest = _GROWING, ""
     for name, span in named.items():
         size = sum((here[i] ** 2 for i in span), arb(0))
         share = sum((here[i] * change[i] for i in span), arb(0)) / size
         if share > most:
-            least = sum((box.balls()[i].abs_lower() ** 2 for i in span), arb(0)).sqrt()
-            most, text = (
-                share,
-                (
-                    f"{name} seems to grow without bound: steps become ever shorter, and it is proven to be "
-                    f"above {_rounded_down(least)} near"
-                ),
-            )
-    return text
+            most, largest = share, name
+    if not largest:
+        return ""
+    least = sum((box.balls()[i].abs_lower() ** 2 for i in named[largest]), arb(0)).sqrt()
+    return (
+        f"{largest} seems to grow without bound: steps become ever shorter, and it is proven to be above "
+        f"{_rounded_down(least)} near"
+    )
 
 
 def _rounded_down(size: arb) -> str:
