@@ -12,7 +12,7 @@ from rich.text import Text
 from taylor_verify.check import check
 from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
-from taylor_verify.cli.console import Page, bold, print_table, titled
+from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.inputs import (
     known_rungs,
     parse_tolerance,
@@ -30,6 +30,7 @@ from taylor_verify.cli.sentences import (
     status_text,
 )
 from taylor_verify.cli.standard_input import scene_and_files
+from taylor_verify.judge.events import EventsJudgement
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
@@ -117,16 +118,20 @@ def _of_events(options: argparse.Namespace) -> Answer:
     with working(f"check {file}"), wrong_calls():
         tolerance = parse_tolerance(options.tolerance)
         judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
-    content, event = judged.document(), judged.true.text
+    content = judged.document()
     lines = list(event_lines(content))
-    text = partial(_text_of_events, event, judged.heading.removeprefix(event), lines)
     row = Judgement(judged.verdicts, None)
+    text = partial(_text_of_events, judged, lines)
     return concluded(asked, row, exit_status(row.verdicts), content, text)
 
 
-def _text_of_events(event: str, heading: str, lines: Sequence[str], status: int | None) -> str:
-    del status
-    return titled(event, heading, lines)
+def _text_of_events(judged: EventsJudgement, lines: Sequence[str], status: int | None) -> str:
+    event, page = judged.true.text, Page()
+    page.line(bold(event), judged.heading.removeprefix(event))
+    for line in lines:
+        page.line(line)
+    print_end(page, [], counts(judged.verdicts), status, explained=True)
+    return page.text()
 
 
 # The text about a file.
