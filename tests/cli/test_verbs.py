@@ -20,7 +20,21 @@ def add(parser):
 def run(arguments):
     return Answer(0, {"word": arguments.word}, lambda: arguments.word)
 """
+RAISING = """
+def add(parser):
+    parser.add_argument("word")
+def run(arguments):
+    raise KeyError(arguments.word)
+"""
+RAISING_EARLY = """
+def add(parser):
+    raise ZeroDivisionError("no arguments")
+def run(arguments):
+    return 0
+"""
 ENTRIES = """[taylor_verify.verbs]
+early = plugged_early
+late = plugged_late
 echo = plugged_echo
 broken = plugged_broken
 half = plugged_half
@@ -34,14 +48,16 @@ def plugged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (tmp_path / "plugged_echo.py").write_text(GOOD, encoding="utf-8")
     (tmp_path / "plugged_broken.py").write_text("import no_such_module\n", encoding="utf-8")
     (tmp_path / "plugged_half.py").write_text("def add(parser): pass\n", encoding="utf-8")
+    (tmp_path / "plugged_late.py").write_text(RAISING, encoding="utf-8")
+    (tmp_path / "plugged_early.py").write_text(RAISING_EARLY, encoding="utf-8")
     info = tmp_path / "plugged-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: plugged\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(ENTRIES)
     monkeypatch.syspath_prepend(str(tmp_path))
     yield
-    for name in ("plugged_echo", "plugged_broken", "plugged_half"):
-        sys.modules.pop(name, None)
+    for name in ("echo", "broken", "half", "late", "early"):
+        sys.modules.pop(f"plugged_{name}", None)
 
 
 @pytest.mark.usefixtures("plugged")
@@ -68,6 +84,28 @@ def test_a_broken_verb_is_named_in_one_line(
     (line,) = capsys.readouterr().err.splitlines()[-1:]
     assert f"the verb {verb} of plugged" in line
     assert why in line
+
+
+@pytest.mark.usefixtures("plugged")
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (
+            ["late", "hello"],
+            "expected an answer of the verb late of plugged, got KeyError: 'hello'",
+        ),
+        (["early"], "expected arguments of the verb early of plugged, got ZeroDivisionError: no"),
+    ],
+)
+def test_a_verb_that_raises_is_named_in_one_line(
+    words: list[str], why: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Exit status 2, with the verb, its package and the error; a word of another verb loads none."""
+    assert main(words) == 2
+    *_, line = capsys.readouterr().err.splitlines()
+    assert why in line
+    assert main(["echo", words[0]]) == 0
+    assert capsys.readouterr().out == f"{words[0]}\n"
 
 
 @pytest.mark.usefixtures("plugged")

@@ -139,13 +139,37 @@ def test_a_switch_by_the_time_is_no_loss() -> None:
         assert abs(motion["y"][0] - (mpf(1) / 3 + mpf(1) / 9)) <= motion.errors["y"][0]
 
 
-def test_a_motion_that_ends_says_how_far_it_came() -> None:
-    """y' = y^2 ends at t = 1: the row before is proven, and the reason has the time that was reached."""
-    with pytest.raises(Unsettled, match=r"to reach t = 2, each .* from t = (0\.9|1\.0)") as doubt:
-        enclose({"y": "y^2"}, {"y": 1}, ["1/2", 2], 6)
+@pytest.mark.parametrize("until", ["1", "2", "1000", "1e7"])
+def test_a_motion_without_bound_says_so_and_how_far_it_came(until: str) -> None:
+    """y' = y^2 has no bound at t = 1: the row before is proven; the reason has that time and a size."""
+    sentence = (
+        r"^y seems to grow without bound: .* proven to be above \S+e\+\d+ near t = (0\.9999|1\.0)"
+    )
+    with pytest.raises(Unsettled, match=sentence) as doubt:
+        enclose({"y": "y^2", "z": "cos(t)"}, {"y": 1, "z": 0}, ["1/2", until], 6)
+    assert doubt.value.is_end
     assert doubt.value.places == (0,)
     assert doubt.value.motion is not None
     assert abs(doubt.value.motion["y"][0] - 2) <= doubt.value.motion.errors["y"][0]
+
+
+@pytest.mark.parametrize(
+    ("rate", "function"),
+    [("-sqrt(x) - 1", r"sqrt\(x\)"), ("1/(1/2 - t)", r"1 / \(1/2 - t\)")],
+)
+def test_a_function_without_a_value_ends_a_motion(rate: str, function: str) -> None:
+    """The reason names the function, the rate that it stands in, and the time."""
+    with pytest.raises(
+        Unsettled, match=rf"{function} in the rate of x has no value .* near t = 0\."
+    ):
+        enclose({"x": rate}, {"x": 1}, [2], 6)
+
+
+def test_a_fast_motion_is_no_end() -> None:
+    """Steps that are short and stay so are too many; nothing is said of an end."""
+    with pytest.raises(Unsettled, match="would take about") as doubt:
+        enclose({"x": "v", "v": "-x*1e9"}, {"x": 1, "v": 0}, [100000], 6)
+    assert not doubt.value.is_end
 
 
 @pytest.mark.parametrize("rate", ["1/(x - x)", "(x - x)^(-1)", "(x - x)/(x - x)", "x/(pi - pi)"])

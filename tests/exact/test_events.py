@@ -5,16 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 import pytest
-from builders.written_loads import about_axes
+from builders.written_loads import ABOUT_AXES, about_axes
 from mpmath import mp
 
 from taylor_verify.cli import main
 from taylor_verify.exact import events, exact
-from taylor_verify.exact.event_times import Events, EventTime
+from taylor_verify.exact.event_times import Events, EventTime, Incomplete
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 
@@ -145,6 +146,36 @@ def test_a_text_that_is_no_event_is_refused(text: str, why: str) -> None:
     """A fault of the text is one sentence with its place."""
     with pytest.raises(Refused, match=why):
         events(GENERIC, text, 1)
+
+
+def test_events_before_the_end_of_a_motion_are_known() -> None:
+    """w' = w^2 has no bound at t = 1: the events before that are all, up to the time that is reached."""
+    endless = about_axes('["w1^2", "0", "0"]', "[1, 0, 0]", end="2")
+    with pytest.raises(
+        Incomplete, match=r"omega seems to grow without bound: .* near t = 1\.0"
+    ) as cut:
+        events(endless, "w1 = 4", 2, DIGITS)
+    (event,) = cut.value.events
+    assert abs(event.t - mp.mpf("0.75")) <= event.radius <= mp.mpf(10) ** -DIGITS
+    assert Fraction(999999, 1000000) < cut.value.events.until < 1
+    assert cut.value.events.passed
+
+
+def test_events_before_the_end_of_a_motion_are_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They stand on stdout with the time up to which they are all; the reason follows; exit 3."""
+    scene = tmp_path / "ends.toml"
+    moment = 'moment = ["-1 - sqrt(w1)", 0, 0]'
+    scene.write_text(ABOUT_AXES.format(moment=moment[9:], omega="[1, 0, 0]", end="2"))
+    assert main(["exact", str(scene), "--event", "w1 = 1/2", "--until", "2", "--digits", "12"]) == 3
+    printed = capsys.readouterr()
+    first, second = printed.out.splitlines()
+    assert "1 time of w1 = 1/2 up to t = 0.61370" in first
+    assert second.startswith("t = 0.2")
+    assert (
+        "sqrt(w1) in body.moment[0] has no value or no derivative near t = 0.613706" in printed.err
+    )
 
 
 @pytest.mark.parametrize(("text", "status"), [("w2 = 0", 0), ("w2^2 = 0", 3), ("sqrt(w2) = 2", 3)])

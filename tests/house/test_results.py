@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 from xml.etree import ElementTree
@@ -14,6 +15,7 @@ import pytest
 
 import taylor_verify
 from taylor_verify.records.showing import picture
+from taylor_verify.tradeoff.setting import chosen
 
 SCENE = "euler/with-attitude"
 TIMES = [0, "1/3", 2]
@@ -51,6 +53,76 @@ def test_a_repr_is_one_line_that_says_what_it_is(name: str, results: dict[str, A
     assert text.startswith(f"<{name} ")
     assert len(text) < 200
     assert "\n" not in text
+
+
+RESULTS: dict[str, Callable[[], Any]] = {
+    **{name: make for name, make in MAKERS.items() if name != "Scene"},
+    "Events": lambda: taylor_verify.events("euler/tennis-racket", "w2 = 0", 20),
+    "Judgements": lambda: taylor_verify.run_many(["euler/rest"], rungs=["f64"]),
+    "SweepSummary": lambda: taylor_verify.sweep("satellites", count=1),
+    "TradeOff": lambda: taylor_verify.tradeoff("euler/rest", chosen([], ["f64"]), repeats=1),
+    "Recommendation": lambda: taylor_verify.recommend("euler/rest", 1e-6, chosen([], ["f64"])),
+}
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_all_results_have_the_same_face(name: str) -> None:
+    """Each has passed, which is its truth value, raise_for_failure, a table, a short repr and HTML."""
+    result = RESULTS[name]()
+    assert type(result).__name__ == name
+    assert bool(result) is result.passed
+    if result.passed:
+        result.raise_for_failure()
+    else:
+        with pytest.raises(AssertionError):
+            result.raise_for_failure()
+    assert len(result.to_dataframe())
+    assert repr(result).startswith(f"<{name}")
+    assert len(repr(result)) < 200
+    page = ElementTree.fromstring(f"<div>{result._repr_html_()}</div>")
+    assert page.find("table/tbody/tr/td") is not None
+
+
+def test_a_sweep_is_read_by_quantity() -> None:
+    """Each spread is found under its quantity; the table has a row for each."""
+    summary = taylor_verify.sweep("satellites", count=1)
+    assert [summary[each.quantity] for each in summary.quantities] == [*summary.quantities]
+    frame = summary.to_dataframe()
+    assert [*frame["quantity"]] == [each.quantity for each in summary.quantities]
+    assert {"pass", "ratio_median", "max_largest"} <= {*frame.columns}
+    with pytest.raises(KeyError, match="omega"):
+        _ = summary["centre"]
+
+
+def test_a_trajectory_passed_if_its_outcome_is_success() -> None:
+    """One that did not reach the last sample is false, and its error says why."""
+
+    def broken(problem: Any) -> Any:
+        raise FloatingPointError("too hard")
+
+    answer = taylor_verify.solve("euler/rest", broken)
+    assert not answer
+    with pytest.raises(AssertionError, match="too hard"):
+        answer.raise_for_failure()
+
+
+def test_a_motion_passed_if_its_rows_have_the_digits() -> None:
+    """A row that is known to fewer digits than asked for makes it false."""
+    motion = taylor_verify.exact("euler/generic", [1, 2], 20)
+    assert motion.passed
+    assert not replace(motion, digits=200).passed
+
+
+@pytest.mark.parametrize(
+    ("rung", "kind"), [("f32", np.float32), ("f64", np.float64), ("f128", object)]
+)
+def test_solved_doubles_are_arrays_of_numpy(rung: str, kind: type) -> None:
+    """Quantities on f64 are float64, on f32 float32, each rounded once; on other rungs they are exact."""
+    answer = taylor_verify.solve("euler/with-attitude", "taylor", rung)
+    assert {rows.dtype for rows in answer.quantities.values()} == {np.dtype(kind)}
+    assert answer.motion(53).attitude.shape[1:] == (3, 3)
+    if rung == "f64":
+        assert taylor_verify.check(SCENE, {"t": answer.times, **answer.quantities})
 
 
 def test_a_motion_prints_all_digits_that_were_asked_for(results: dict[str, Any]) -> None:

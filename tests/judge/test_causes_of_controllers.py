@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,9 +17,11 @@ from taylor_verify import check, exact
 from taylor_verify.judge.causes.float_answer import Motion
 from taylor_verify.judge.causes.likely import Explained, explained
 from taylor_verify.judge.causes.material import material
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
+from taylor_verify.scenes.families.toml_text import toml
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
@@ -186,6 +190,76 @@ def test_an_own_state_without_a_first_value_or_with_large_effects_is_named(
     assert names(changed, text) == ([] if name is None else [name])
 
 
+THIRDS = (
+    HELD.replace('"1/10"', '"1/15"').replace("21", "16").replace('"clip(-w3,-0.45,0.45)"', '"1/3"')
+)
+CONTINUOUSLY = HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        LATE,
+        CONTINUOUSLY,
+        LATER,
+        HELD.replace('"1/10"', '"1/5"'),
+        HELD.replace("-w1,", "w1,"),
+        HELD.replace("0.45", "0.35"),
+        HELD.replace(VALUE, 'value = ["-w1", "-w2", "-w3"]'),
+    ],
+    ids=["late", "continuous", "phase", "rate", "sign", "limit", "no limits"],
+)
+def test_the_printed_scene_of_a_cause_moves_as_the_answer_does(changed: str) -> None:
+    """Its keys, put into the scene, are read, and make the motion of the answer."""
+    _, error = as_printed(changed, HELD)
+    assert error <= 1e-8
+
+
+@pytest.mark.parametrize(
+    ("changed", "key"),
+    [
+        (THIRDS.replace('"1/15"', '"2/15"'), 'states.m.every = "2/15"'),
+        (THIRDS.replace(', "1/3"]', ', "1/6"]'), '"1/6"]'),
+        (THIRDS.replace("-w2,-0.45,0.45", "-w2,-0.45,0.35"), ', "1/3"]'),
+    ],
+    ids=["times", "found", "own"],
+)
+def test_a_printed_number_has_all_of_its_digits(changed: str, key: str) -> None:
+    """A number that no short decimal is, is printed as a fraction."""
+    (cause,) = check(scene(THIRDS), of_scene(changed)).causes
+    assert key in cause.sentence
+
+
+def of_scene(text: str) -> dict[str, Any]:
+    """Return the exact motion of a scene, rounded to doubles, as an answer."""
+    times = list(scene(text).clock.instants)
+    motion = exact(scene(text), times, 17).quantities.items()
+    columns = {name: values.astype(float) for name, values in motion}
+    return {"t": [float(t) for t in times], **columns}
+
+
+def as_printed(changed: str, text: str) -> tuple[str, float]:
+    """Return the sentence of the cause of a changed scene, and how far its printed scene moves from it."""
+    (cause,) = of_motion(changed, text).causes
+    document = tomllib.loads(text)
+    for line in cause.sentence.partition("as a scene: ")[2].split("; "):
+        for name, value in tomllib.loads(line).items():
+            put(document if name in ("define", "states") else document["body"], name, value)
+    printed = read(toml(document, repr), "printed")
+    times = list(printed.clock.instants)
+    moved, answer = (exact(s, times, 20)["omega"] for s in (printed, scene(changed)))
+    return cause.sentence, float(np.max(np.abs(moved - answer)))
+
+
+def put(table: dict[str, Any], name: str, value: Any) -> None:
+    """Put a value into a table, and the entries of a table into that of its name."""
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            put(table.setdefault(name, {}), key, entry)
+    else:
+        table[name] = value
+
+
 def test_what_a_cause_leaves_is_computed_through_the_kinks_of_limits() -> None:
     """Another limit leaves the digits of the file, and a right file no moment between its rows."""
     (cause,) = of_motion(SMOOTH.replace("0.45", "0.35"), SMOOTH).causes
@@ -210,6 +284,19 @@ def test_a_moment_beside_own_states_is_listed_from_row_to_row(text: str, key: st
     for each in known.missing_load:
         middle = (each.t + each.until) / 2
         assert each.load == pytest.approx([0, 0.02 * np.sin(3 * middle), 0], abs=2e-4)
+
+
+def test_where_no_moment_leads_to_the_second_row_nothing_is_said() -> None:
+    """Where limits hold, another moment changes nothing at first: the file fails, and that is all."""
+    text = Path("cases/loads/sampled-controller.toml").read_text(encoding="utf-8")
+    text = text.replace('limit = "0.15"', 'limit = "0.45"').replace("end = 0.4", "end = 2")
+    own = text.replace("samples = 3", "samples = 21")
+    other = own.replace(TENTH, 'every = "1/5"')
+    judged = check(scene(own), of_scene(other))
+    assert isinstance(judged, FileJudgement)
+    assert judged["omega"].verdict is Status.FAIL
+    assert not judged.causes
+    assert not judged.missing_load
 
 
 def test_rows_on_instants_that_no_double_is_have_a_floor(tmp_path: Path) -> None:

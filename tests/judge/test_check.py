@@ -305,6 +305,28 @@ def test_json_numbers_are_read_as_text(document: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("names", "ignored"),
+    [
+        ("x1", "`x1`"),
+        ("u1 c2 y3", "`u1` `c2` `y3`"),
+        ("x1[kg] x2[kg] x3[kg]", "`x1[kg]` `x2[kg]` `x3[kg]`"),
+        ("px py pz x y z", "`px` `py` `pz` `x` `y` `z`"),
+    ],
+)
+def test_what_means_nothing_in_a_scene_is_ignored_and_named(
+    names: str, ignored: str, tmp_path: Path
+) -> None:
+    """In a file of a rigid body a part of an impulse, or one that is not clear, is no fault."""
+    file = tmp_path / "mine.csv"
+    others = names.split()
+    numbers = ",".join(map(str, range(4 + len(others))))
+    file.write_text(",".join(["t,w1,w2,w3", *others]) + f"\n{numbers}\n")
+    assert f"ignored: {ignored}" in read(file, scene=load("euler/generic")).notes
+    with pytest.raises(Refused):
+        read(file, scene=load("kirchhoff/whole-motion"))
+
+
+@pytest.mark.parametrize(
     ("text", "fault"),
     [
         ("w1,w2,w3\n1,2,3\n", "expected a column `t` of times, got none"),

@@ -288,6 +288,10 @@ class TestOfAClass:
             "expected a rung",
         ),
         (
+            '@pytest.mark.verify_scenes("euler/rest", rung=[])\ndef test_it(verify_scene): pass',
+            "expected rungs, such as 'f64', got none",
+        ),
+        (
             '@pytest.mark.verify_scenes("euler/rest", rungs=1)\ndef test_it(verify_scene): pass',
             "expected rung, tolerance or only, got rungs",
         ),

@@ -27,7 +27,7 @@ from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.files.file import TrajectoryFile
 from taylor_verify.solvers.registry import as_solver
 from taylor_verify.solvers.solver import Lack, Solver, raised
-from taylor_verify.solvers.trajectory import Outcome, Trajectory
+from taylor_verify.solvers.trajectory import Outcome, Trajectory, native
 
 
 @in_turn
@@ -81,13 +81,14 @@ def solve_scene(
     rung: types.Rung | str = "f64",
 ) -> types.Trajectory:
     """Return the trajectory of a solver, as the public `solve` describes it."""
-    solver = as_solver(solver)
-    problem = posed(as_scene(scene), solver, rung_named(rung))
+    solver, rung = as_solver(solver), rung_named(rung)
+    problem = posed(as_scene(scene), solver, rung)
     if isinstance(problem, Trajectory):
         return problem
     answered = _answer(solver, problem)
     times = problem.given.clock.instants if answered.file is None else answered.file.times
-    return replace(answered, times=tuple(times) if answered.quantities else ())
+    quantities = native(answered.quantities, rung)
+    return replace(answered, quantities=quantities, times=tuple(times) if quantities else ())
 
 
 def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:

@@ -141,7 +141,8 @@ def check(
         scene = as_scene(question)
         times = read_events(answer) if is_path else exact_times(given_times(answer))
         allowed = tolerances(tolerance, [scene]).every
-        return judge_events(scene, event, times, rung_named(rung), allowed)
+        name = str(answer) if is_path else ""
+        return judge_events(scene, event, times, rung_named(rung), allowed, name)
     is_named = isinstance(answer, str) and answer.startswith(PYTHON)
     if callable(answer) or is_named or isinstance(answer, Solver):
         if columns:

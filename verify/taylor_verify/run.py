@@ -85,8 +85,9 @@ def solve(
     Returns
     -------
     solvers.trajectory.Trajectory
-        The states at the scene's times, in the scene's units and body axes, and an ``outcome``. A run that
-        fails or cannot begin has no states, and says why in ``outcome`` and ``detail``.
+        The states at the scene's times, in the scene's units and body axes, and an ``outcome``: NumPy
+        arrays of float64 on f64, of float32 on f32, and of exact numbers elsewhere. A run that fails or
+        cannot begin has no states, says why in ``outcome`` and ``detail``, and is false.
 
     Raises
     ------

@@ -11,7 +11,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Sequence
 
-from taylor_verify.cli.answer import INTERRUPTED, WRONG_CALL, Answer, WrongCall, lines_of
+from taylor_verify.cli.answer import INTERRUPTED, PASS, WRONG_CALL, Answer, WrongCall, lines_of
 from taylor_verify.cli.interrupts import heard_once
 from taylor_verify.cli.streams import (
     MANNER,
@@ -68,13 +68,15 @@ def _print(answer: Answer, as_json: bool) -> int:
     if as_json:
         print_out(as_json_text(answer.document))
     else:
-        text = answer.text()
-        print_out(text.rstrip().rpartition("\n")[2] if MANNER.quiet else text)
+        text = answer.short_text if MANNER.quiet else answer.text()
+        print_out(text)
         # On a terminal both streams are read together, the text folded to its width.
         shown = "".join(text.split()) if sys.stdout.isatty() else ""
+    # Where nothing else says what is wrong, a message does.
+    is_needed = answer.status == WRONG_CALL or (answer.status != PASS and not answer.failing)
     for message in answer.messages:
         if "".join(message.split()) not in shown:
-            (tell if answer.status == WRONG_CALL else say)(message)
+            (tell if is_needed else say)(message)
     return answer.status
 
 

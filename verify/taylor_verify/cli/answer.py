@@ -37,12 +37,25 @@ def lines_of(error: Exception) -> Sequence[str]:
 
 
 class Answer(NamedTuple):
-    """``document`` as JSON or else ``text()`` is for stdout; ``messages`` follow on stderr."""
+    """``document`` as JSON or else ``text()`` is for stdout; ``messages`` follow on stderr.
+
+    ``failing`` are the lines on what is no pass, for a caller who wants no more.
+    """
 
     status: int
     document: dict[str, Any] | list[dict[str, Any]]
     text: Callable[[], str]
     messages: Sequence[str] = ()
+    failing: Sequence[str] = ()
+
+    @property
+    def short_text(self) -> str:
+        """The lines on what is no pass, and the last line of the text that is no hint."""
+        lines = self.text().rstrip().split("\n")
+        if not self.failing:
+            return lines[-1]
+        end = next((line for line in reversed(lines) if not line.startswith(" ")), "")
+        return "\n".join(dict.fromkeys([*self.failing, end]))
 
 
 def graver(*statuses: int) -> int:

@@ -23,14 +23,13 @@ from typing import Final
 
 from taylor_verify.cli.answer import Answer
 from taylor_verify.cli.parser import Parser, add_argument, near_word, unknown_words
-from taylor_verify.cli.verbs import add, described, verbs
+from taylor_verify.cli.verbs import OWN_PACKAGE, add, described, verbs
 from taylor_verify.records.plugins import package_of
 from taylor_verify.records.version import __version__
 
 _VERB: Final = "VERB"
 COLOURS: Final = ("auto", "always", "never")
 # Of the verbs that our second package adds, those that publish are not on the first page of help.
-_OWN_PACKAGE: Final = "taylor-verify"
 _LISTED: Final = {"board": "show the boards of engines, and put one of yours on them"}
 # Words that count as rungs, even if misspelt: a scene with such a name is written ./f64.
 _RUNG_NAME = re.compile(r"(f|mp)\d*", re.IGNORECASE)
@@ -299,11 +298,11 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     first = next((word for word in words if not word.startswith("-")), "")
     # The packages of this environment are asked for verbs only if none of ours is called: that takes time.
     for plugged in verbs(OWN_VERBS) if first not in OWN_VERBS else ():
-        if plugged.name in words:
+        if plugged.name == first:
             add(_verb_parser(own, plugged.name, *described(plugged)), plugged)
         elif plugged.name in _LISTED:
             own.add_parser(plugged.name, help=_LISTED[plugged.name])
-        elif package_of(plugged) == _OWN_PACKAGE:
+        elif package_of(plugged) == OWN_PACKAGE:
             own.add_parser(plugged.name)
         else:
             own.add_parser(plugged.name, help=f"a verb of the package {package_of(plugged)}")
@@ -323,7 +322,10 @@ def _verb_parser(
     )
     verb.add_argument("--json", action="store_true", help="print one JSON document on stdout")
     verb.add_argument(
-        "-q", "--quiet", action="store_true", help="print the last line of the answer alone"
+        "-q",
+        "--quiet",
+        action="store_true",
+        help="print the last line alone, below what failed",
     )
     verb.add_argument(
         "--color",

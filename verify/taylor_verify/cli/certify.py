@@ -31,7 +31,8 @@ def answer(options: argparse.Namespace) -> Answer:
     status = PASS if certificate.passed else UNDECIDED if certificate.is_undecided else FAIL
     lines = certificate_lines(certificate)
     text = partial(titled, options.file, f" against {certificate.scene}", lines)
-    return Answer(status, document(certificate), text, messages)
+    failing = [] if certificate.passed else lines
+    return Answer(status, document(certificate), text, messages, failing)
 
 
 def document(certificate: Certificate) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from typing import Final
 from rich.text import Text
 
 from taylor_verify.check import check
-from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
 from taylor_verify.cli.ci import concluded, outputs
-from taylor_verify.cli.console import Page, bold, print_table, titled
+from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.inputs import (
     known_rungs,
     parse_tolerance,
@@ -30,8 +30,9 @@ from taylor_verify.cli.sentences import (
     status_text,
 )
 from taylor_verify.cli.standard_input import scene_and_files
-from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.events import EventsJudgement
 from taylor_verify.judge.files.judgement import FileJudgement, judge_file
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.judge.series.files import FilesJudgement, checked_steps, judge_files, repeated
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.quantities import GATE_FACTOR, states_among
@@ -113,18 +114,24 @@ def _of_events(options: argparse.Namespace) -> Answer:
     if len(options.files) > 1:
         raise WrongCall(f"expected one file with --event, got {len(options.files)}")
     scene, (file,) = read_scene(options.scene), options.files
-    try:
-        with working(f"check {file}"), wrong_calls():
-            tolerance = parse_tolerance(options.tolerance)
-            judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
-    except Unsettled as doubt:
-        because = f"undecided: {doubt} @ {scene.name}"
-        content = {"scene": scene.name, "event": options.event, "because": because}
-        return Answer(UNDECIDED, content, str, [because])
-    status = PASS if judged.passed else FAIL if judged.is_wrong else UNDECIDED
-    content, event = judged.document(), judged.true.text
-    text = partial(titled, event, judged.heading.removeprefix(event), event_lines(content))
-    return Answer(status, content, text)
+    asked = outputs(options)
+    with working(f"check {file}"), wrong_calls():
+        tolerance = parse_tolerance(options.tolerance)
+        judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)
+    content = judged.document()
+    lines = list(event_lines(content))
+    row = Judgement(judged.verdicts, None)
+    text = partial(_text_of_events, judged, lines)
+    return concluded(asked, row, exit_status(row.verdicts), content, text)
+
+
+def _text_of_events(judged: EventsJudgement, lines: Sequence[str], status: int | None) -> str:
+    event, page = judged.true.text, Page()
+    page.line(bold(event), judged.heading.removeprefix(event))
+    for line in lines:
+        page.line(line)
+    print_end(page, [], counts(judged.verdicts), status, explained=True)
+    return page.text()
 
 
 # The text about a file.

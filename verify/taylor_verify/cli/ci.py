@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,9 +20,11 @@ from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.regular_file import open_without_waiting
+from taylor_verify.records.status import Status
 from taylor_verify.records.sums import with_sum
 from taylor_verify.records.verdict import Verdict, exit_status
 from taylor_verify.words.annotations import annotation_lines
+from taylor_verify.words.case import cases
 from taylor_verify.words.opening import opening
 from taylor_verify.words.step_summary import step_summary
 
@@ -91,7 +93,25 @@ def concluded(
             status = WRONG_CALL
     last = f"\n{decision}" if decision else ""
     stated = None if decision else status
-    return Answer(status, with_sum(content), lambda: f"{text(stated)}{last}", messages)
+    failing = [*_failing(results, comparison)]
+    return Answer(status, with_sum(content), lambda: f"{text(stated)}{last}", messages, failing)
+
+
+def _failing(results: Judgements | Judgement, comparison: Comparison | None) -> Iterator[str]:
+    """Yield the lines on each row that is no pass: its sentences, with its run where there are several."""
+    verdicts = shown_verdicts(results)
+    by_comparison = comparison is not None and comparison.decides
+    is_one_run = len({verdict.run for verdict in verdicts}) == 1
+    for case in cases(verdicts, remarks(results, comparison), by_comparison):
+        if case.counted is not Status.PASS and not case.is_harmless:
+            run = (
+                ""
+                if is_one_run
+                else f"{' '.join(filter(None, (case.scene, case.rung, case.mark)))} "
+            )
+            first, *others = case.sentences
+            yield f"{case.counted}  {run}{first}"
+            yield from others
 
 
 def _decision(file: str, comparison: Comparison, verdicts: Iterable[Verdict]) -> str:

@@ -11,9 +11,13 @@ from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
 from taylor_verify.cli.console import Page, bold, titled
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
-from taylor_verify.exact.event_times import events_of
+from taylor_verify.exact.event_times import Incomplete, events_of
 from taylor_verify.exact.printed import document
-from taylor_verify.exact.printed_events import event_lines, events_document
+from taylor_verify.exact.printed_events import (
+    event_lines,
+    events_document,
+    incomplete_document,
+)
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
@@ -45,14 +49,16 @@ def _of_events(options: argparse.Namespace) -> Answer:
         with working(f"exact {scene.name}"):
             content = events_document(events_of(scene, options.event, until, options.digits))
     except Unsettled as doubt:
+        if isinstance(doubt, Incomplete):
+            content = incomplete_document(doubt.events, scene.clock.start)
         content["because"] = f"undecided: {doubt} @ {scene.name}"
     doubts = [content["because"]] if "because" in content else []
     status = UNDECIDED if doubts or content["undecided"] else PASS
     document = {"scene": scene.name, "event": options.event, "until": options.until, **content}
-    if doubts:
+    if "reached" not in document and doubts:
         return Answer(status, document, str, doubts)
     first, *rest = event_lines(document)
-    return Answer(status, document, partial(titled, scene.name, f": {first}", rest))
+    return Answer(status, document, partial(titled, scene.name, f": {first}", rest), doubts)
 
 
 def _of_times(options: argparse.Namespace) -> Answer:

@@ -20,6 +20,7 @@ from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
 from taylor_verify.records.json_text import complete
 from taylor_verify.records.quantities import INITIAL
+from taylor_verify.records.status import Status
 from taylor_verify.records.sweep import Spread, SweepSummary
 from taylor_verify.words.account import cause_line
 
@@ -78,7 +79,14 @@ def answer(options: argparse.Namespace) -> Answer:
     messages += [f"refused, for example: {refusal}" for refusal in summary.refusals]
     if folder is not None:
         messages.append(f"wrote {folder}, with {len(summary.worst)} of the worst cases as scenes")
-    return Answer(summary.exit_status, complete(summary), partial(_text, summary), messages)
+    failing = [
+        f"{case.verdict}  {case.scene} {case.quantity}: {case.because}"
+        for case in summary.worst
+        if case.verdict in (Status.FAIL, Status.UNDECIDED)
+    ]
+    return Answer(
+        summary.exit_status, complete(summary), partial(_text, summary), messages, failing
+    )
 
 
 # The text.

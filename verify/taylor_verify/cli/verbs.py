@@ -7,25 +7,35 @@ An entry point's name is the verb. It points to a module or an object with
                      what a verb prints by itself goes to stderr
     help, example    texts, which may be left out
 
-A plug-in is imported when its verb is called. One that cannot be imported, or whose name is taken, is named
-in one line, and everything else goes on.
+A plug-in is imported when its verb is called. One that cannot be imported, whose name is taken, or that
+raises, is named in one line, and everything else goes on.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
-from taylor_verify.records.plugins import BrokenPlugin, entries, load, package_of, taken
+from taylor_verify.records.faults import Refused
+from taylor_verify.records.plugins import (
+    BrokenPlugin,
+    entries,
+    in_one_line,
+    load,
+    package_of,
+    taken,
+)
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 KIND: Final = "verbs"
+OWN_PACKAGE: Final = "taylor-verify"
 
 
 def described(verb: EntryPoint) -> tuple[str, str]:
@@ -58,19 +68,40 @@ def verbs(own: Collection[str]) -> Iterator[EntryPoint]:
 def add(parser: argparse.ArgumentParser, verb: EntryPoint) -> None:
     """Let a plug-in add its arguments to the parser of its verb. Raises WrongCall as ``described`` does."""
     plugin = _loaded(verb)
-    try:
+    with _named(verb, "arguments"):
         plugin.add(parser)
-    except SystemExit as end:
-        got = f"sys.exit({end.code!r:.60})"
-        raise WrongCall(f"expected arguments of the verb {verb.name}, got {got}") from end
-    parser.set_defaults(act=partial(_act, plugin, verb.name))
+    parser.set_defaults(act=partial(_act, plugin, verb))
 
 
-def _act(plugin: Any, name: str, options: argparse.Namespace) -> Answer:
+def _act(plugin: Any, verb: EntryPoint, options: argparse.Namespace) -> Answer:
     """Run a verb; an exit status stands for an answer that is printed already."""
-    result = plugin.run(options)
+    with _named(verb, "an answer"):
+        result = plugin.run(options)
     if isinstance(result, Answer):
-        return result
+        return result._replace(text=partial(_text, verb, result))
     if result is not None and not isinstance(result, int):
-        raise WrongCall(f"expected an Answer or a status of the verb {name}, got {result!r:.60}")
+        expected = f"expected an Answer or a status of the verb {verb.name}"
+        raise WrongCall(f"{expected}, got {result!r:.60}")
     return Answer(PASS if result is None else result, {}, str)
+
+
+def _text(verb: EntryPoint, answer: Answer) -> str:
+    with _named(verb, "a text"):
+        return answer.text()
+
+
+@contextmanager
+def _named(verb: EntryPoint, what: str) -> Iterator[None]:
+    """Name the verb and its package where its code raises an error that names neither."""
+    try:
+        yield
+    except (WrongCall, Refused):
+        raise
+    except (Exception, SystemExit) as error:
+        if package_of(verb) == OWN_PACKAGE and isinstance(error, Exception):
+            raise
+        got = (
+            f"sys.exit({error.code!r:.60})" if isinstance(error, SystemExit) else in_one_line(error)
+        )
+        source = f"the verb {verb.name} of {package_of(verb)}"
+        raise WrongCall(f"expected {what} of {source}, got {got}") from error

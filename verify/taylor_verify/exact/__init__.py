@@ -155,8 +155,11 @@ def events(
     ------
     records.faults.Refused
         For a scene or a text that cannot be read, and for an expression that jumps.
+    exact.event_times.Incomplete
+        Where the motion is not followed to the end of the span, or the expression has no value on the way:
+        an Unsettled whose ``events`` are all up to ``events.until``.
     exact.solution.Unsettled
-        Where the motion is not followed to the end of the span, or the expression has no value on the way.
+        Where the times cannot be had to so many digits.
     ValueError
         For what is no finite time, and no number of digits up to ten thousand.
     """

@@ -108,6 +108,17 @@ class Events(Passing):
         return not self.undecided
 
 
+class Incomplete(Unsettled):
+    """The error for a motion that is not followed to the end of the span; ``events`` has those before.
+
+    ``events.until`` is the time up to which they are all.
+    """
+
+    def __init__(self, because: str, events: Events, is_end: bool) -> None:
+        super().__init__(because, is_end=is_end)
+        self.events = events
+
+
 def events_of(scene: Scene, text: str, until: Fraction, digits: int) -> Events:
     """Return the events between the start of a scene and a time. Raises as `events`."""
     event, scene = event_of(scene, text), as_written(scene)
@@ -118,19 +129,18 @@ def events_of(scene: Scene, text: str, until: Fraction, digits: int) -> Events:
     search = _Search(system(scene, event.loads, elapsed, 1 + event.is_extremum), event, elapsed)
     bits, stuck, looked = target + _GUARD_BITS, False, False
     for _ in range(_ATTEMPTS):
-        try:
-            with ctx.workprec(bits):
-                every = list(search.zeros(bits))
-                lacking = max((_lacking(z, target, elapsed) for z in every), default=0)
-                if lacking <= 0 and (looked or all(zero.is_crossed for zero in every)):
-                    return _events(event, until, digits, every)
-        except Coarse as reason:
-            if reason.stuck is not None and stuck:
-                raise Unreached(reason.because, reason.stuck) from reason
-            bits, stuck = reason.bits, reason.stuck is not None
-            continue
-        except Domain as end:
-            raise Unsettled(str(end)) from end
+        with ctx.workprec(bits):
+            every, reached, end = search.zeros(bits)
+            lacking = max((_lacking(z, target, elapsed) for z in every), default=0)
+            if isinstance(end, Coarse) and not (end.stuck is not None and stuck):
+                bits, stuck = end.bits, end.stuck is not None
+                continue
+            if lacking <= 0 and (looked or all(zero.is_crossed for zero in every)):
+                events = _events(event, reached if end else until, digits, every)
+                if end is None:
+                    return events
+                because = end.because if isinstance(end, Coarse) else str(end)
+                raise Incomplete(because, events, getattr(end, "is_end", False)) from end
         looked, bits = True, bits + max(lacking + _GUARD_BITS // 2, _MORE_BITS * (lacking <= 0))
         if bits > _MOST_BITS:
             break
@@ -160,16 +170,25 @@ class _Search:
     event: Event
     elapsed: Fraction
 
-    def zeros(self, bits: int) -> Iterator[Zero]:
+    def zeros(self, bits: int) -> tuple[list[Zero], Fraction, ArithmeticError | None]:
+        """Return the zeros, the time up to which they are all, and why the motion is not followed on."""
         skipped = int(self.event.is_extremum)
-        origin = self.event.loads.origin
-        every = (
-            Part(part.begin, part.length, part.functions[skipped:])
-            for part in parts_of(self.system, self.elapsed, origin, bits)
-        )
+        origin = reached = self.event.loads.origin
+
+        def every() -> Iterator[Part]:
+            nonlocal reached
+            for part in parts_of(self.system, self.elapsed, origin, bits):
+                yield Part(part.begin, part.length, part.functions[skipped:])
+                reached = origin + part.end
+
+        before = list[Zero]()
         begins_with_zero = self._at_start(skipped) == 0
-        for zero in zeros(every, begins_with_zero, is_continuous=not skipped):
-            yield zero._replace(time=zero.time + ball(origin))
+        try:
+            for zero in zeros(every(), begins_with_zero, is_continuous=not skipped):
+                before.append(zero._replace(time=zero.time + ball(origin)))
+        except (Coarse, Domain, Unreached) as end:
+            return before, reached, end
+        return before, reached, None
 
     def _at_start(self, place: int) -> Any:
         """The exact value of the function at the start; None where it is not known."""

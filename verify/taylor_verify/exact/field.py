@@ -18,6 +18,7 @@ from taylor_verify.exact.enclosure.walk import Row
 from taylor_verify.exact.proving import Proving, SoFar, Times, rows_of
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.loads import Piece as Texts
+from taylor_verify.scenes.loads.steps import text_with_address
 
 # Minutes of work. Beside the end of a motion steps become short before anything else shows it.
 _MOST_STEPS: Final = 20_000
@@ -79,10 +80,15 @@ def _system(loads: Loads, tapes: dict[Any, Tape]) -> System:
             tapes[key] = _tape(names, texts)
         return Piece(tapes[key], texts.end if is_later else texts.begin)
 
+    def step_text(elapsed: Fraction, is_later: bool, place: int) -> str:
+        texts = loads.piece(elapsed, is_later)
+        outputs = ((f"the rate of {name}", k) for name, k in zip(names, texts.rates, strict=True))
+        return text_with_address(texts.steps, place, outputs)
+
     ends = tuple(range(1, len(names) + 1))
     start = tuple(entry for state in loads.states for entry in state.start or ())
     own: Mapping[str, range] = {name: range(k, k + 1) for k, name in enumerate(names)}
-    return System(piece, ends, start, own=own)
+    return System(piece, ends, start, own=own, step_text=step_text)
 
 
 def _tape(names: Sequence[str], texts: Texts) -> Tape:

@@ -91,7 +91,7 @@ class Proving(Solution):
         first = target + _GUARD_BITS + self._rounding_bits(elapsed)
         most_bits = 2 * target + _MOST_BITS
         proven: dict[int, Proven] = {}
-        doubts = []
+        doubts, ends = [], False
         for is_later in (True, False):
             limit, doubt = most_bits, None
             times: Times = {k: time for k, time in enumerate(elapsed) if (time >= 0) is is_later}
@@ -101,6 +101,7 @@ class Proving(Solution):
                 except Unreached as reason:
                     # The sentence on a nearer time replaces the sentence on a later time.
                     hint = "; ask for it without the times behind it" if doubt else ""
+                    ends = ends or reason.is_end
                     limit, doubt = min(limit, 2 * target + _MOST_BITS_BESIDE), f"{reason}{hint}"
                     times = self._before(times, reason.time)
                 times = {place: time for place, time in times.items() if place not in proven}
@@ -109,7 +110,7 @@ class Proving(Solution):
         places = sorted(proven)
         motion = self._gathered([proven[place] for place in places])
         if doubts:
-            raise Unsettled("; ".join(doubts), motion if places else None, places)
+            raise Unsettled("; ".join(doubts), motion if places else None, places, ends)
         return motion
 
     def _rounding_bits(self, elapsed: Sequence[Fraction]) -> int:

@@ -42,14 +42,19 @@ class Unsettled(ArithmeticError):
     """The error for digits that cannot be reached at every time; the text says why.
 
     ``motion`` holds the rows that have their digits all the same, and is None where none has. Its row k
-    belongs to time number ``places[k]`` of those that were asked for.
+    belongs to time number ``places[k]`` of those that were asked for. With ``is_end`` the motion itself
+    ends on the way, so that no solver can reach the other times.
     """
 
     def __init__(
-        self, because: str, motion: Motion | None = None, places: Sequence[int] = ()
+        self,
+        because: str,
+        motion: Motion | None = None,
+        places: Sequence[int] = (),
+        is_end: bool = False,
     ) -> None:
         super().__init__(because)
-        self.motion, self.places = motion, tuple(places)
+        self.motion, self.places, self.is_end = motion, tuple(places), is_end
 
     @classmethod
     def beside(cls, because: str, motion: Motion | None, digits: int) -> Unsettled:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from os import PathLike
 from typing import Any
@@ -27,6 +28,7 @@ from taylor_verify.models.problem import NotRepresentable, pose
 from taylor_verify.numbers.patience import Patience
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
+from taylor_verify.records.faults import shown
 from taylor_verify.records.json_text import finite
 from taylor_verify.records.quantities import TRACKED
 from taylor_verify.records.reason import Cause, stated
@@ -39,6 +41,8 @@ from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
 
 _DIGITS = 15
+# Enough to know whether a motion reaches a time.
+_FEW_DIGITS = 3
 # Whoever asks for an explanation reads it at once.
 _SECONDS = 8.0
 _NO_ORBIT: Mapping[str, Any] = {"orbit": {}, "elements": [], "sentences": []}
@@ -53,10 +57,11 @@ def explanation(scene: Scene | str | PathLike[str], rung: Rung | str) -> dict[st
     Without heyoka the exact motion, rounded to the rung, is judged in place of an answer, and a warning
     says so.
     """
-    scene, rung = as_scene(scene), rung_named(rung)
+    rung = rung_named(rung)
+    patience = Patience(_SECONDS)
+    scene, ending = _before_end(as_scene(scene), patience)
     body = scene.body
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
-    patience = Patience(_SECONDS)
     orbit = patience.made(partial(_orbit, scene), _NO_ORBIT)
     path = patience.made(partial(_loaded_path, scene, rung), None)
     loads = patience.made(lambda: path and loads_document(scene, path), None)
@@ -75,7 +80,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: Rung | str) -> dict[st
         "rung": rung.name,
         "bits": rung.bits,
         "track": sorted(quantity.name for quantity in scene.tracked),
-        "warnings": [*scene.warnings, *lacking],
+        "warnings": [*scene.warnings, *ending, *lacking],
         "body": [*shape, *scene.notes],
         **{name: record.get(name) for name in _FROM_RECORD},
         "regime": solution(scene).regime,
@@ -104,6 +109,28 @@ def _unjudged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
         reason=stated(Cause.UNFINISHED, sentence),
     )
     return Judgement((row,), None), [sentence]
+
+
+def _before_end(scene: Scene, patience: Patience) -> tuple[Scene, list[str]]:
+    """Return the scene up to its last sample before the motion ends, and a warning that says so."""
+    whole: tuple[Scene, list[str]] = scene, []
+    if scene.body.loads is None:
+        return whole
+    clock = scene.clock
+
+    def reached() -> tuple[Scene, list[str]]:
+        try:
+            solution(scene).motion(clock.elapsed, _FEW_DIGITS)
+        except Unsettled as doubt:
+            if doubt.is_end and len(doubt.places) > 1:
+                instants = tuple(clock.instants[k] for k in doubt.places)
+                sentence = (
+                    f"explained up to t = {shown(instants[-1])}, where its motion is known: {doubt}"
+                )
+                return replace(scene, clock=replace(clock, instants=instants)), [sentence]
+        return whole
+
+    return patience.made(reached, whole)
 
 
 def _loaded_path(scene: Scene, rung: Rung) -> Path | None:

@@ -11,14 +11,21 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from mpmath import mp, mpf
 
-from taylor_verify.exact.event_times import Events, EventTime, events_of
+from taylor_verify.exact.event_times import Events, EventTime, Incomplete, events_of
 from taylor_verify.exact.printed_events import event_row
+from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.judged_rows import verdict_on
 from taylor_verify.models.problem import pose_as_stored
-from taylor_verify.numbers.precision import Rung
+from taylor_verify.numbers.precision import Rung, rung
 from taylor_verify.records.faults import brief, refusal
 from taylor_verify.records.passing import Passing
+from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.showing import dataframe, html_table
+from taylor_verify.records.status import Status
+from taylor_verify.records.verdict import Verdict, summary
 from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.files.file import Recorded
+from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify.words.account import event_lines
 
 if TYPE_CHECKING:
@@ -42,14 +49,27 @@ class Answered(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class EventsJudgement(Passing):
-    """The times given for an event, against ``true``: answered, missed, invented; true if it passed."""
+    """The times given for an event, against ``true``: answered, missed, invented; true if it passed.
 
-    scene: str
+    ``because`` says why the events are not known beyond ``true.until``, empty where they are. Times behind
+    it are not judged. ``given`` is the scene with its data rounded to the ``rung``, ``file`` the path of
+    the times.
+    """
+
+    given: Scene
     true: Events
     answered: tuple[Answered, ...]
     missed: tuple[EventTime, ...]
     invented: tuple[Fraction, ...]
     tolerance: float | None = None
+    because: str = ""
+    rung: str = ""
+    file: str = ""
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene."""
+        return self.given.name
 
     def __repr__(self) -> str:
         word = "passed" if self.passed else "failed" if self.is_wrong else "undecided"
@@ -84,7 +104,28 @@ class EventsJudgement(Passing):
     @property
     def passed(self) -> bool:
         """True if every event is answered, no other time is, and nothing is undecided."""
-        return self.true.passed and not self.is_wrong
+        return self.true.passed and not (self.is_wrong or self.because)
+
+    @property
+    def verdicts(self) -> tuple[Verdict]:
+        """The verdict on all times together, as a row of its own."""
+        status = Status.PASS if self.passed else Status.FAIL if self.is_wrong else Status.UNDECIDED
+        counts = {
+            "answered": self.answered,
+            "missed": self.missed,
+            "invented": self.invented,
+            "undecided": self.true.undecided,
+        }
+        words = [f"{len(times)} {word}" for word, times in counts.items() if times]
+        if self.answered:
+            words.append(f"right to {min(each.digits for each in self.answered)} digits at least")
+        text = "; ".join(filter(None, (", ".join(words) or "no event", self.because)))
+        row = verdict_on(
+            *(self.given, Recorded({}, setting=self.file), rung(self.rung), self.true.text),
+            *(status, Outcome.FINISHED),
+            reason=stated(Cause.EVENTS, text),
+        )
+        return (row,)
 
     def document(self) -> dict[str, Any]:
         """Return what `check --event --json` prints."""
@@ -101,19 +142,31 @@ class EventsJudgement(Passing):
             "invented": [float(time) for time in self.invented],
             "undecided": [event_row(event, digits) for event in self.true.undecided],
             "passed": self.passed,
-        }
+            "verdicts": [verdict.row() for verdict in self.verdicts],
+            "summary": summary(self.verdicts),
+        } | ({"because": self.because} if self.because else {})
 
 
 def judge_events(
-    scene: Scene, text: str, times: Sequence[Fraction], rung: Rung, tolerance: float | None = None
+    scene: Scene,
+    text: str,
+    times: Sequence[Fraction],
+    rung: Rung,
+    tolerance: float | None = None,
+    file: str = "",
 ) -> EventsJudgement:
     """Judge the times of an event over the whole span of a scene.
 
-    Raises Refused for a text or a time that cannot be read, and Unsettled where the events are not known.
+    Raises Refused for a text or a time that cannot be read.
     """
     given = pose_as_stored(scene, rung).given
-    true = events_of(given, text, given.clock.instants[-1], _DIGITS)
-    left, answered, missed = sorted(times), list[Answered](), list[EventTime]()
+    true, because = _known_events(given, text)
+    # A time behind those that are known is neither right nor wrong.
+    start, sign = given.clock.start, 1 if true.until >= given.clock.start else -1
+    left = sorted(
+        t for t in times if not because or (t - start) * sign <= (true.until - start) * sign
+    )
+    answered, missed = list[Answered](), list[EventTime]()
     windows = _windows(true)
     for event in true.undecided:
         # It is not known how many events there are.
@@ -127,7 +180,27 @@ def judge_events(
         best = min(near, key=lambda time: _distance(time, event))
         left.remove(best)
         answered.append(_answered(event, best))
-    return EventsJudgement(scene.name, true, tuple(answered), tuple(missed), tuple(left), tolerance)
+    return EventsJudgement(
+        given,
+        true,
+        tuple(answered),
+        tuple(missed),
+        tuple(left),
+        tolerance,
+        because,
+        rung.name,
+        file,
+    )
+
+
+def _known_events(given: Scene, text: str) -> tuple[Events, str]:
+    """Return the events as far as they are known, and why no farther; empty where they all are."""
+    try:
+        return events_of(given, text, given.clock.instants[-1], _DIGITS), ""
+    except Incomplete as doubt:
+        return doubt.events, str(doubt)
+    except Unsettled as doubt:
+        return Events(text, given.clock.start, _DIGITS, ()), str(doubt)
 
 
 def _windows(true: Events) -> dict[mpf, mpf]:
@@ -140,7 +213,8 @@ def _windows(true: Events) -> dict[mpf, mpf]:
 def _answered(event: EventTime, time: Fraction) -> Answered:
     error = float(_distance(time, event))
     relative = error / abs(float(event.t)) if event.t else error
-    return Answered(event, time, error, floor(-log10(relative)) if relative else _DIGITS)
+    digits = min(_DIGITS, floor(-log10(relative))) if relative else _DIGITS
+    return Answered(event, time, error, digits)
 
 
 def _distance(time: Fraction, event: EventTime) -> mpf:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.first_row import initial_verdict
 from taylor_verify.judge.floor.counted_steps import count_steps
@@ -30,6 +31,9 @@ from taylor_verify.words.cells import figure
 
 if TYPE_CHECKING:
     import pandas
+
+# Enough to know whether a motion reaches a time.
+_FEW_DIGITS: Final = 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,6 +131,11 @@ def judgement(
         detail = f" ({trajectory.detail})" if trajectory.detail else ""
         text = f"a run that did not finish is not scored: it {outcome.value}{detail}"
         status, reason = Status.FAIL, stated(Cause.UNFINISHED, text)
+        if end := _end_of_motion(problem):
+            text = (
+                f"the motion ends before the last sample: {end}; the solver {outcome.value}{detail}"
+            )
+            status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, text)
     else:
         try:
             steps = count_steps(problem, solver, trajectory.steps, seconds)
@@ -137,6 +146,16 @@ def judgement(
         except Unsettled as doubt:
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, str(doubt))
     return Judgement((run.verdict(main, status, reason=reason),), None)
+
+
+def _end_of_motion(problem: Problem) -> str:
+    """Return why the exact motion ends before the last sample; empty where it does not."""
+    if problem.given.body.loads is not None:
+        try:
+            solution(problem.given).motion(problem.given.clock.elapsed[-1:], _FEW_DIGITS)
+        except Unsettled as doubt:
+            return str(doubt) if doubt.is_end else ""
+    return ""
 
 
 def unjudged(

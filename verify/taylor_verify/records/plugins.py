@@ -112,10 +112,11 @@ def _readable(group: str) -> Iterator[EntryPoint]:
         try:
             yield from package.entry_points.select(group=group)
         except Exception as error:  # other people's file
-            say_once(f"the entry points of {name} cannot be read: {_in_one_line(error)}")
+            say_once(f"the entry points of {name} cannot be read: {in_one_line(error)}")
 
 
-def _in_one_line(error: BaseException) -> str:
+def in_one_line(error: BaseException) -> str:
+    """Return the kind and the text of an error."""
     return f"{type(error).__name__}: {one_line(str(error))}"
 
 
@@ -132,7 +133,7 @@ def load(kind: str, entry: EntryPoint) -> Any:
     try:
         content = entry.load()
     except (Exception, SystemExit) as error:
-        raise BrokenPlugin(f"{expected}, got {_in_one_line(error)}") from error
+        raise BrokenPlugin(f"{expected}, got {in_one_line(error)}") from error
     if lack := _LACKS[kind](content):
         raise BrokenPlugin(f"{expected} {lack}")
     return content

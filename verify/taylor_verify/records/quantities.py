@@ -221,6 +221,13 @@ def state_groups(model: str, track: Collection[str]) -> tuple[str, ...]:
     return tuple(name for quantity in state_quantities(model, track) for name in quantity.groups)
 
 
+def answerable_groups(model: str) -> frozenset[str]:
+    """Return the groups that a file for a model may have; for a solid in a fluid also its velocities."""
+    quantities = {MAIN[model], *TRACKED[model]}
+    every = {name for name, group in GROUPS.items() if group.quantity in quantities}
+    return frozenset(every | set(VELOCITIES) if model == "kirchhoff" else every)
+
+
 def own_state(name: str, columns: tuple[str, ...]) -> tuple[Quantity, Group]:
     """Return the records of a state of a scene's own, whose components are these columns of files."""
     quantity = Quantity(name, f"max|{name}|", (name,), measure=Measure.SO_FAR)

@@ -35,6 +35,7 @@ class Cause(StrEnum):
     MISSING_PACKAGE = "missing package"
     TOO_FAR = "too far"
     INCOMPLETE = "incomplete"
+    EVENTS = "events"
 
 
 class Carried(StrEnum):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from mpmath import mp
 
+from taylor_verify.records.passing import Passing
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.showing import dataframe, html_table, picture
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 _MOST_SHOWN: Final = 20
 
 
-class Sampled:
+class Sampled(Passing):
     """Quantities, each an array with a row for each time; ``motion.omega`` is ``motion["omega"]``.
 
     ``times`` are on the clock of the scene; empty where they were not asked for by a caller.
@@ -53,8 +54,8 @@ class Sampled:
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame with a row for each time, and columns named as those of a file.
 
-        Numbers are the exact ones; ``.astype(float)`` makes doubles of them. Raises ModuleNotFoundError
-        without pandas (``pip install pandas``).
+        Numbers are those of the quantities; ``.astype(float)`` makes doubles of exact ones. Raises
+        ModuleNotFoundError without pandas (``pip install pandas``).
         """
         names = [name for name, _ in self._columns()]
         return dataframe(dict(zip(names, row, strict=True)) for row in self._rows())

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Annotated
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Annotated, Any
 
 from taylor_verify.records.json_text import Count, Size, about
 from taylor_verify.records.passing import Passing
 from taylor_verify.records.provenance import Provenance
+from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.records.status import Status
+
+if TYPE_CHECKING:
+    import pandas
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,7 @@ class WorstCase:
     drawn: dict[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SweepSummary(Passing):
     """The sweep of one family or folder by one solver.
 
@@ -102,5 +106,48 @@ class SweepSummary(Passing):
         """The number of bodies of each verdict that occurs, in words."""
         return ", ".join(f"{n} {word}" for word, n in self.bodies.items() if n) or "none"
 
+    def __getitem__(self, quantity: str) -> Spread:
+        """Return the spread of a quantity, as ``summary["omega"]``; KeyError with those there are."""
+        for spread in self.quantities:
+            if spread.quantity == quantity:
+                return spread
+        raise KeyError(f"{quantity}, of {', '.join(each.quantity for each in self.quantities)}")
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame with a row for each quantity: its counts, and its quantiles.
+
+        Raises ModuleNotFoundError without pandas (``pip install pandas``).
+        """
+        return dataframe(self._rows)
+
+    @property
+    def _rows(self) -> list[dict[str, Any]]:
+        return [
+            {"quantity": each.quantity, "judged": each.judged, "unit": each.unit}
+            | each.counts
+            | {f"ratio_{name}": size for name, size in _sizes(each.ratio)}
+            | {f"max_{name}": size for name, size in _sizes(each.max)}
+            for each in self.quantities
+        ]
+
     def __str__(self) -> str:
         return f"{self.name}: {self.total} bodies by {self.solver} on {self.rung}: {self.counts}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self}: {'passed' if self.passed else 'not passed'}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            [each.quantity, str(each.judged), str(each.counts["fail"])]
+            + [f"{size:.3g}" if size is not None else "" for _, size in _sizes(each.ratio)]
+            for each in self.quantities
+        ]
+        headings = ("quantity", "judged", "fail", *(each.name for each in fields(Quantiles)))
+        sentences = [f"errors over the roundoff floor; a body fails above {self.bound}"]
+        sentences += [f"{case.scene}: {case.quantity} {case.verdict}" for case in self.worst]
+        return html_table(repr(self)[1:-1], headings, rows, [*sentences, *self.lacks])
+
+
+def _sizes(quantiles: Quantiles | None) -> list[tuple[str, float | None]]:
+    """Return the sizes by name, None for each where there are none."""
+    return [(each.name, getattr(quantiles, each.name, None)) for each in fields(Quantiles)]

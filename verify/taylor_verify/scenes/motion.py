@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from mpmath import mp
 
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.quantities import MOMENTA
@@ -123,7 +124,8 @@ class Motion(Sampled):
     ``errors`` that of every component, absolutely: shaped as the quantities are. Quantities are also the
     scene's own states that it tracks, by name and of shape (n, components), read after an instant; the
     radius of such a one is relative to ``peaks``, a lower bound of its largest norm up to each row.
-    ``digits`` are those that were asked for: each number prints with them.
+    ``digits`` are those that were asked for: each number prints with them. The truth value of a motion
+    is ``passed``.
     """
 
     quantities: Mapping[str, np.ndarray[Any, Any]]
@@ -133,6 +135,15 @@ class Motion(Sampled):
     peaks: Mapping[str, np.ndarray[Any, Any]] = field(default_factory=dict)
     times: Sequence[Fraction] = ()
     digits: int | None = None
+
+    @property
+    def passed(self) -> bool:
+        """True if every row has the digits that were asked for, by its radius.
+
+        The radius is proven, or, by the route ``mpmath``, as two precisions agree.
+        """
+        limit = mp.inf if self.digits is None else mp.mpf(10) ** -self.digits
+        return all(radius <= limit for radius in self.radius)
 
     @property
     def _remark(self) -> str:

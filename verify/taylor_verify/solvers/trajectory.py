@@ -10,7 +10,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from mpmath import mp
@@ -24,11 +24,13 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.models.registry import mechanics
 from taylor_verify.models.written import unit_of
 from taylor_verify.numbers import tensors
-from taylor_verify.numbers.precision import exact_value, held_exactly
+from taylor_verify.numbers.precision import Rung, exact_value, held_exactly
 from taylor_verify.records.sampled import Sampled
 from taylor_verify.scenes.instants import MOST_KEPT
 from taylor_verify.scenes.motion import Motion
 from taylor_verify.scenes.mpfr import precision, to_mpf, to_mpfr
+
+_NATIVE: Final = {"f32": np.float32, "f64": np.float64}
 
 
 class Outcome(Enum):
@@ -123,6 +125,26 @@ def rows_at(
     return {name: rows[list(places)] for name, rows in quantities.items()}
 
 
+def native(
+    quantities: Mapping[str, np.ndarray[Any, Any]], rung: Rung
+) -> Mapping[str, np.ndarray[Any, Any]]:
+    """Return the quantities in NumPy's own numbers of a rung; exact ones where it has none."""
+    if rung.name not in _NATIVE or not quantities:
+        return quantities
+    count = (
+        len(next(iter(quantities.values())))
+        if not isinstance(quantities, ByRows)
+        else quantities.count
+    )
+    blocks: dict[str, list[np.ndarray[Any, Any]]] = {name: [] for name in quantities}
+    with np.errstate(over="ignore", under="ignore"):
+        for begin in range(0, count, MOST_KEPT):
+            places = range(begin, min(begin + MOST_KEPT, count))
+            for name, rows in rows_at(quantities, places).items():
+                blocks[name].append(rows.astype(_NATIVE[rung.name]))
+    return {name: np.concatenate(parts) for name, parts in blocks.items()}
+
+
 def motion_of(quantities: Mapping[str, np.ndarray[Any, Any]], bits: int) -> Motion:
     """Return the quantities of an answer as a Motion; ``bits`` is the precision of attitude matrices."""
     by_name = {k: v for k, v in quantities.items() if k != "quaternion"}
@@ -139,11 +161,13 @@ class Trajectory(Sampled):
 
     ``quantities`` maps ``omega``, ``linear_impulse``, ``angular_impulse``, ``centre`` (n, 3) and
     ``quaternion`` (n, 4; body to space, any sign, nearly unit) to object arrays of mpf that hold the
-    solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED.
+    solver's numbers exactly, one row per sample; empty unless the outcome is FINISHED. Those that `solve`
+    returns are rounded to NumPy's float64 on f64, and to float32 on f32.
     ``evaluations`` counts derivatives of the whole state, ``seconds`` the propagation alone and
     ``compile_seconds`` what came before it. ``inner_seconds`` is the part of ``seconds`` that was
     spent in somebody else's compiled integrator, where that is told apart. A ``file`` is an answer of a
-    user's function at times of its own, or by names: it is judged as a trajectory file is.
+    user's function at times of its own, or by names: it is judged as a trajectory file is. The truth value
+    of a trajectory is ``passed``.
     """
 
     outcome: Outcome
@@ -156,6 +180,11 @@ class Trajectory(Sampled):
     inner_seconds: float | None = None
     file: types.TrajectoryFile | None = None
     times: Sequence[Fraction] = ()
+
+    @property
+    def passed(self) -> bool:
+        """True if the solver reached the last sample. Whether its states are right, `run` says."""
+        return self.outcome is Outcome.FINISHED
 
     @property
     def _remark(self) -> str:

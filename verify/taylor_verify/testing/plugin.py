@@ -216,12 +216,15 @@ def _cases(mark: pytest.Mark) -> Iterator[Case]:
     if not mark.args:
         _wrong_mark("expected scenes, such as 'euler/generic', got none")
     rungs = options.get("rung", "f64")
+    ladder = [rungs] if isinstance(rungs, str) else [*rungs]
+    if not ladder:
+        _wrong_mark("expected rungs, such as 'f64', got none")
     try:
         # A word of a marker stands for scenes as on the command line.
         names = [name for word in mark.args for name in named(str(word))]
         for name in names:
             find(name)
-        for rung in [rungs] if isinstance(rungs, str) else rungs:
+        for rung in ladder:
             for name in names:
                 rung_name = rung_named(rung).name
                 yield Case(name, rung_name, options.get("tolerance"), options.get("only"))

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from taylor_verify.models.problem import NotRepresentable
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.records.showing import dataframe
+from taylor_verify.records.passing import Passing
+from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.scenes.reading.positive import positive
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
@@ -39,7 +40,7 @@ class OutOfReach(Exception):  # noqa: N818 (it names what the target is)
 
 
 @dataclass(frozen=True, repr=False)
-class Recommendation:
+class Recommendation(Passing):
     """A setting that is ready to run: by ``taylor_verify.run``, by ``command``, or by ``solver`` itself.
 
     ``solver.solve(solver.problem(scene, rung))`` returns a trajectory that is not judged. ``error`` is the
@@ -75,6 +76,15 @@ class Recommendation:
             "command": self.command,
             "sentence": self.sentence,
         }
+
+    @property
+    def passed(self) -> bool:
+        """True if the error stays below the target with the margin, as that of each one returned does."""
+        return self.margin * self.error <= self.target
+
+    def _repr_html_(self) -> str:
+        rows = [(name, str(value)) for name, value in self.document().items()]
+        return html_table(repr(self)[1:-1], ("", ""), rows)
 
     def to_dataframe(self) -> pandas.DataFrame:
         """Return a pandas.DataFrame of one row. Raises ModuleNotFoundError without pandas."""

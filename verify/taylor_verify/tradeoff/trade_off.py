@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from taylor_verify.judge.provenance import provenance
 from taylor_verify.models.problem import NotRepresentable, Problem
 from taylor_verify.records.json_text import finite
+from taylor_verify.records.passing import Passing
+from taylor_verify.records.showing import dataframe, html_table
 from taylor_verify.records.standing import Standing
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.tradeoff.accuracy import Truths
@@ -18,9 +20,12 @@ from taylor_verify.tradeoff.point import Point, digits, point
 from taylor_verify.tradeoff.setting import Setting, settings
 from taylor_verify.tradeoff.solves import PATIENCE, REPEATS, SEED, WHAT_IS_TIMED, timed
 
+if TYPE_CHECKING:
+    import pandas
 
-@dataclass(frozen=True)
-class TradeOff:
+
+@dataclass(frozen=True, repr=False)
+class TradeOff(Passing):
     """The points of one scene from one run, in the order of the settings."""
 
     scene: Scene
@@ -32,6 +37,27 @@ class TradeOff:
     def front(self) -> list[Point]:
         """The sound points that no other beats in both time and error, the fastest first."""
         return front(self.points)
+
+    @property
+    def passed(self) -> bool:
+        """True if some setting gave a sound answer."""
+        return bool(self.front)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return a pandas.DataFrame, a row a setting. Raises ModuleNotFoundError without pandas."""
+        return dataframe(p.row() for p in self.points)
+
+    def __repr__(self) -> str:
+        best, every = len(self.front), len(self.points)
+        return f"<TradeOff of {self.scene.name}: {best} of {every} settings on the front>"
+
+    def __str__(self) -> str:
+        return "\n".join([repr(self)[1:-1], *front_sentences(self.points)])
+
+    def _repr_html_(self) -> str:
+        rows = [(p.label, f"{p.error:.2g}", f"{p.seconds:.3g}") for p in self.points]
+        headings = ("setting", "error", "seconds")
+        return html_table(repr(self)[1:-1], headings, rows, front_sentences(self.points))
 
     def document(self) -> dict[str, Any]:
         """Return the document of `tradeoff --json`.

@@ -84,3 +84,5 @@ def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
         yield f"invented: t = {time:.17g}"
     for row in document["undecided"]:
         yield f"undecided: t = {row['t']}, within {row['radius']}"
+    if "because" in document:
+        yield f"undecided: {document['because']}"

@@ -95,7 +95,8 @@ def _text(rows: Sequence[ClaimRow], in_full: bool) -> str:
         for label, text in parts.items():
             page.indented(f"  {label:11}", text)
     counts = Counter(row.verdict.value for row in rows)
-    page.line(f"\n{', '.join(f'{count} {verdict}' for verdict, count in counts.items())}")
+    page.line()
+    page.line(f"{', '.join(f'{count} {verdict}' for verdict, count in counts.items())}")
     return page.text()
 
 

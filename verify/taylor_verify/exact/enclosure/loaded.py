@@ -30,7 +30,7 @@ from taylor_verify.numbers.rotation import rotation_matrix, rotation_rows
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.loads.loads import VECTORS, Loads
 from taylor_verify.scenes.loads.states import Instant
-from taylor_verify.scenes.loads.steps import needed, text_of
+from taylor_verify.scenes.loads.steps import text_with_address
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
 
@@ -96,6 +96,7 @@ class LoadedBody:
             instants=loads.instants if loads.held_values else None,
             taken=self._taken,
             step_text=self._step_text,
+            moving=("the momentum",) if loads.rotor else self._kind.moving,
         )
 
     @cached_property
@@ -162,15 +163,7 @@ class LoadedBody:
         addresses += [f"the value of {name}" for name in self._loads.held_values]
         addresses += [f"body.rotor[{i}]" for i in range(3)]
         outputs = (*piece.outputs, *piece.rates, *piece.values, *piece.rotor)
-        where = next(
-            (
-                a
-                for a, k in zip(addresses, outputs, strict=False)
-                if place in needed(piece.steps, [k])
-            ),
-            "a load",
-        )
-        return f"{text_of(piece.steps, place)} in {where}"
+        return text_with_address(piece.steps, place, zip(addresses, outputs, strict=False))
 
     def _taken(self, instant: Instant) -> Taken:
         """The values that are taken at an instant, by the later piece."""

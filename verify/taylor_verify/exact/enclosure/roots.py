@@ -51,16 +51,23 @@ def zeros(
     """Yield the zeros of the first function of the parts, whose rate is the second, in order.
 
     The function may be known to be zero at the very beginning. One that is not continuous may jump from
-    part to part, and changes its sign there, too.
+    part to part, and changes its sign there, too. Where the parts end with an error, it is raised after
+    the zeros before it.
     """
     clusters = _Clusters(begins_with_zero, is_continuous)
-    for part in parts:
-        clusters.begin = clusters.begin or ball(part.begin)
-        for k, leaf in enumerate(_Search(part).leaves(Fraction(0), Fraction(1))):
-            if not (k or is_continuous):
-                yield from clusters.jump(ball(part.begin), leaf)
-            yield from clusters.add(leaf)
+    end = None
+    try:
+        for part in parts:
+            clusters.begin = clusters.begin or ball(part.begin)
+            for k, leaf in enumerate(_Search(part).leaves(Fraction(0), Fraction(1))):
+                if not (k or is_continuous):
+                    yield from clusters.jump(ball(part.begin), leaf)
+                yield from clusters.add(leaf)
+    except ArithmeticError as error:
+        end = error
     yield from clusters.settled(None)
+    if end is not None:
+        raise end
 
 
 class _Clusters:

@@ -37,10 +37,13 @@ class Coarse(ArithmeticError):
 
 
 class Unreached(Unsettled):
-    """More steps or more bits would be needed than there may be; ``time`` is the first one to need them."""
+    """More steps or more bits would be needed than there may be; ``time`` is the first one to need them.
 
-    def __init__(self, because: str, time: Fraction) -> None:
-        super().__init__(because)
+    With ``is_end`` the motion itself ends before that time.
+    """
+
+    def __init__(self, because: str, time: Fraction, is_end: bool = False) -> None:
+        super().__init__(because, is_end=is_end)
         self.time = time
 
 
@@ -90,7 +93,7 @@ class Watch:
             if is_lost or has_shrunk:
                 raise Coarse(self.needed(now, pending))
             limit = abs(now) + (self.most_steps - steps) * usual
-            if abs(pending[0]) > limit:
+            if abs(pending[0]) > limit and not _still_shrinks(lengths):
                 time = next(time for time in reversed(pending) if abs(time) > limit)
                 needed, usual_text = steps + abs(time - now) / usual, float_text(usual)
                 raise Unreached(
@@ -123,6 +126,16 @@ class Watch:
     def _shown(self, time: Fraction) -> str:
         """The time on the clock, for a time since the start."""
         return shown(self.begin + time)
+
+
+def has_shrunk_at_last(lengths: Sequence[Fraction]) -> bool:
+    """True if the last step is next to nothing beside the longest one, as where a motion ends."""
+    return bool(lengths) and lengths[-1] < max(lengths) * power_of_two(_SHRUNK)
+
+
+def _still_shrinks(lengths: Sequence[Fraction]) -> bool:
+    """True if steps become ever shorter, and further ones may show that the motion ends there."""
+    return 2 * lengths[-1] < lengths[-_SEVERAL] and not has_shrunk_at_last(lengths)
 
 
 def _brief(value: Fraction) -> str:

@@ -54,7 +54,7 @@ class System:
     ``exactly`` is the start in exact numbers, as far as it has any. ``own`` are the places of the scene's
     own states, behind all others. ``instants`` up to an elapsed time are those at which values are
     ``taken``; None where no value is held. ``step_text`` writes a step of the loads of an elapsed time
-    as text, with its place in the scene.
+    as text, with its place in the scene. ``moving`` are the names of the first blocks.
     """
 
     pieces: Callable[[Fraction, bool], Piece]
@@ -67,6 +67,7 @@ class System:
     instants: Callable[[Fraction], Sequence[Instant]] | None = None
     taken: Callable[[Instant], Taken] | None = None
     step_text: Callable[[Fraction, bool, int], str] | None = None
+    moving: Sequence[str] = ()
 
     def start_balls(self, time: Fraction = Fraction(0)) -> list[arb]:
         """The start in balls at the ambient precision, for a motion that begins at an elapsed time."""
@@ -76,6 +77,11 @@ class System:
     def others(self) -> list[range]:
         """The places of each block but the own states."""
         return self.spans[: len(self.blocks) - len(self.own)]
+
+    @property
+    def named(self) -> dict[str, range]:
+        """The places of each block that has a name."""
+        return {**dict(zip(self.moving, self.spans, strict=False)), **self.own}
 
     @property
     def size(self) -> int:

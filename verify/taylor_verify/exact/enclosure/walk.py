@@ -21,13 +21,18 @@ from taylor_verify.exact.enclosure.box import (
     within,
 )
 from taylor_verify.exact.enclosure.crossing import Touched
-from taylor_verify.exact.enclosure.ending import ending
+from taylor_verify.exact.enclosure.ending import ending, growing
 from taylor_verify.exact.enclosure.flow import Flow
 from taylor_verify.exact.enclosure.image import Functions, Image
 from taylor_verify.exact.enclosure.jumps import OnJump
 from taylor_verify.exact.enclosure.operations import Domain
 from taylor_verify.exact.enclosure.step import Step, size_of
-from taylor_verify.exact.enclosure.stopping import Coarse, Unreached, Watch
+from taylor_verify.exact.enclosure.stopping import (
+    Coarse,
+    Unreached,
+    Watch,
+    has_shrunk_at_last,
+)
 from taylor_verify.exact.enclosure.tape import Tape
 from taylor_verify.exact.enclosure.tube import BOUND_BITS, StepTooLong
 from taylor_verify.numbers.irrational import ball
@@ -335,16 +340,27 @@ class Walk:
         return self._at_end() or self._watch.stuck(because, self._now, self._pending)
 
     def _at_end(self) -> Unreached | None:
-        if not (function := self._ending()):
-            return None
-        return self._unreached(f"{function} has no value or no derivative near")
+        if function := self._ending():
+            return self._unreached(f"{function} has no value or no derivative near")
+        if part := self._growing():
+            return self._unreached(part)
+        return None
 
     def _ended(self, end: Domain, function: str) -> Unreached:
         return self._unreached(f"{end} near", f" ({function})" if function else "")
 
     def _unreached(self, because: str, more: str = "") -> Unreached:
         time = float_text(self._course.begin + self._now)
-        return Unreached(f"{because} t = {time}{more}", self._pending[-1])
+        return Unreached(f"{because} t = {time}{more}", self._pending[-1], is_end=True)
+
+    def _growing(self) -> str:
+        """The part of the state that seems to grow without bound, as a text; empty of none."""
+        if not has_shrunk_at_last(self._lengths):
+            return ""
+        now, is_later = self._course.origin + self._now, self._last >= 0
+        step = self._lengths[-1] if is_later else -self._lengths[-1]
+        tape = self._system.pieces(now, is_later).tape
+        return growing(tape, self._box, now, step, self._system.named)
 
     def _ending(self) -> str:
         """The function at which the motion ends here, and where it is written; empty of none."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
+from fractions import Fraction
 from typing import Final
 
 import numpy as np
@@ -13,11 +14,14 @@ from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import places
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
-from taylor_verify.scenes.loads.vocabulary import VECTORS
+from taylor_verify.scenes.loads.vocabulary import VECTORS, Entry
 
 # Changes that no scene has: of the clock, of the attitude's equation, of the time of texts.
 _NO_SCENE: Final = frozenset({"clock", "turns", "ahead", "late", "loss"})
 _NOTHING: Final = 1e-10
+# A number that was fitted is a fraction of so small a denominator if it is as near to one.
+_LARGEST_DENOMINATOR: Final = 1000
+_KNOWN: Final = Fraction(1, 10**11)
 # Names in the texts of loads whose values are those of another body if the mass changes.
 _OF_MASS: Final = frozenset(f"{letter}{i}" for letter in "xy" for i in (1, 2, 3))
 
@@ -50,20 +54,27 @@ def changed_scene(right: Equations, changes: Changes) -> str:
 
 def _changed_entries(loads: Loads | None, other: Loads | None) -> dict[str, str]:
     """Return the keys whose entries are others in other loads, with these entries."""
-    before, after = _entries_by_key(loads), _entries_by_key(other)
+    own = set() if loads is None else {(place.key, place.entry) for place in places(loads)}
+    before, after = _entries_by_key(loads, own), _entries_by_key(other, own)
     return {key: words for key, words in after.items() if before.get(key) != words}
 
 
-def _entries_by_key(loads: Loads | None) -> dict[str, str]:
-    """Return the keys of the numbers and texts of a scene's loads, each with all of its entries."""
+def _entries_by_key(loads: Loads | None, own: Container[tuple[str, Entry]]) -> dict[str, str]:
+    """Return the keys of the numbers and texts of a scene's loads, each with all of its entries.
+
+    A number that is not one of the scene's ``own`` was fitted.
+    """
     entries: dict[str, list[str]] = {}
     for place in () if loads is None else places(loads):
-        text = f'"{place.entry}"' if isinstance(place.entry, str) else number(float(place.entry))
+        if isinstance(place.entry, str):
+            text = f'"{place.entry}"'
+        else:
+            text = _exact(place.entry, is_fitted=(place.key, place.entry) not in own)
         key, bracket, _ = place.key.partition("[")
         entries.setdefault(key + bracket, []).append(text)
     for state in () if loads is None else loads.held_states:
-        entries[f"states.{state.name}.every"] = [number(float(state.every))]
-        entries[f"states.{state.name}.offset"] = [number(float(state.offset))]
+        entries[f"states.{state.name}.every"] = [_exact(state.every)]
+        entries[f"states.{state.name}.offset"] = [_exact(state.offset)]
     return {
         key.removesuffix("["): _list(texts) if key.endswith("[") else texts[0]
         for key, texts in entries.items()
@@ -80,6 +91,18 @@ def number(value: float) -> str:
     """Return a number with twelve digits, and a point, so that it is a float of TOML."""
     text = f"{value + 0.0:.12g}"
     return text if set(text) & set(".en") else f"{text}.0"
+
+
+def _exact(value: Fraction, is_fitted: bool = False) -> str:
+    """Return a number as a decimal or a fraction; of one that ``is_fitted`` twelve digits are known."""
+    text = number(float(value))
+    if Fraction(text) == value:
+        return text
+    if is_fitted:
+        near = value.limit_denominator(_LARGEST_DENOMINATOR)
+        return f'"{near}"' if abs(near - value) <= _KNOWN * abs(value) else text
+    # The scene's numbers are rounded to doubles here, its times are not.
+    return repr(float(value)) if Fraction(float(value)) == value else f'"{value}"'
 
 
 def _list(parts: Iterable[str]) -> str:

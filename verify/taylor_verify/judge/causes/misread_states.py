@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import added, written_out
+from taylor_verify.judge.causes.changed_texts import NAME, added, rewritten, written_out
 from taylor_verify.judge.causes.fit import Family, fault
 from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
@@ -170,11 +170,22 @@ def _late(loads: Loads, state: Held) -> tuple[str, Loads]:
 
 
 def _continuous(loads: Loads, held: tuple[Held, ...]) -> tuple[str, Loads]:
-    """Return held states as continuous functions of the state."""
-    texts = [pair for each in held for pair in zip(each.components, each.value, strict=True)]
-    left = tuple(state for state in loads.states if not isinstance(state, Held))
+    """Return loads that read held states as continuous functions; the states stay, unread."""
+    now = {name: f"{name}_now" for each in held for name in each.components}
+
+    def renamed(text: object) -> str:
+        return NAME.sub(lambda match: now.get(match.group(), match.group()), str(text))
+
+    texts = [
+        (now[name], renamed(text))
+        for each in held
+        for name, text in zip(each.components, each.value, strict=True)
+    ]
+    free = tuple(state for state in loads.states if not isinstance(state, Held))
+    others = rewritten(replace(loads, states=free), renamed)
     names = " and ".join(state.name for state in held)
-    changed = replace(loads, definitions=(*loads.definitions, *texts), states=left)
+    definitions = (*others.definitions, *texts)
+    changed = replace(others, definitions=definitions, states=(*others.states, *held))
     return f"{names} continuous, where the scene samples", changed
 
 

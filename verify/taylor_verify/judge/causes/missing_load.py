@@ -54,7 +54,9 @@ def _clear(answer: Answer, load: Floats, slopes: Floats) -> tuple[MissingLoad, .
     """Return the loads that stand out of the rounding, with their times."""
     unit = np.abs(np.linalg.inv(slopes)) @ answer.rounding
     sizes = np.linalg.norm(load / Sizes.of(answer).load, axis=1)
-    is_clear = np.any(np.abs(load) > _STANDS_OUT * unit, axis=1) & (sizes > _PART * np.max(sizes))
+    is_clear = np.any(np.abs(load) > _STANDS_OUT * unit, axis=1) & (
+        sizes > _PART * np.max(sizes, initial=0.0)
+    )
     clear = np.flatnonzero(is_clear)
     times = (answer.times + answer.right.start).tolist()
     return tuple(MissingLoad(times[k], times[k + 1], tuple(load[k].tolist())) for k in clear)

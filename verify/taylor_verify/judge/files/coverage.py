@@ -20,11 +20,10 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import (
     COMPLETE,
-    MAIN,
     MOMENTA,
-    TRACKED,
     VELOCITIES,
     Group,
+    answerable_groups,
 )
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
@@ -169,12 +168,9 @@ def _columns(scene: Scene, groups: Iterable[str]) -> str:
 
 
 def _known(scene: Scene) -> list[str]:
-    """Return the groups that a file for this model may have; for a solid in a fluid also its velocities."""
-    own = (state.name for state in scene.own_states)
-    quantities = {MAIN[scene.model], *TRACKED[scene.model], *own}
-    velocities = VELOCITIES if scene.model == "kirchhoff" else ()
-    every = scene.known_groups
-    return [n for n, group in every.items() if group.quantity in quantities or n in velocities]
+    """Return the groups that a file for this scene may have."""
+    known = answerable_groups(scene.model) | {state.name for state in scene.own_states}
+    return [name for name in scene.known_groups if name in known]
 
 
 def coverage_notes(file: TrajectoryFile, groups: Sequence[str], scene: Scene) -> Iterator[str]:

@@ -6,7 +6,7 @@ such as sqrt(2), stays a step.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -82,6 +82,12 @@ def text_of(steps: Sequence[Step], place: int) -> str:
         is_short = len(text) <= _LONGEST_TEXT
         texts[k] = (text, strength) if is_short else (f"{steps[k].operation}(...)", _STRONGEST)
     return texts[place][0]
+
+
+def text_with_address(steps: Sequence[Step], place: int, outputs: Iterable[tuple[str, int]]) -> str:
+    """Return a step as text, with the address of the first output that needs it."""
+    places = (address for address, output in outputs if place in needed(steps, [output]))
+    return f"{text_of(steps, place)} in {next(places, 'a load')}"
 
 
 def _text(step: Step, operands: Sequence[tuple[str, int]]) -> tuple[str, int]:

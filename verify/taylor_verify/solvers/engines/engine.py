@@ -216,7 +216,7 @@ def solve_together(asked: Sequence[tuple[Outside, Problem]]) -> list[Trajectory]
         with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
             answers = process.together(command, questions, first.time_limit, folder)
     return [
-        answer or solver.solve(problem)
+        solver.solve(problem) if answer is None else answer
         for answer, (solver, problem) in zip(answers, asked, strict=True)
     ]
 

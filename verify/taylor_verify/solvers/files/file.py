@@ -20,7 +20,7 @@ import numpy as np
 from taylor_verify.models.problem import Problem
 from taylor_verify.records.escapes import one_line
 from taylor_verify.records.faults import Faults, Refused, cut
-from taylor_verify.records.quantities import COLUMNS
+from taylor_verify.records.quantities import COLUMNS, answerable_groups
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.clock import with_times
 from taylor_verify.solvers.files.columns.assigned import Request
@@ -144,7 +144,8 @@ def from_columns(
     every, asked, timed = with_times(every, asked, scene, place, faults)
     own = own_columns(scene)
     beside, left, asked = apart(every, asked, own, place, faults)
-    selection = select(left, asked, place, faults)
+    foreign = () if scene is None else COLUMNS.keys() - answerable_groups(scene.model)
+    selection = select(left, asked, place, faults, foreign)
     own = whole(beside, own, place, faults)
     taken = {column.name: column for column in (*selection.columns, *beside)}
     parts = Parts(taken, own)

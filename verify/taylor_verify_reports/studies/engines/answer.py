@@ -128,7 +128,8 @@ def _trajectories(asked: Sequence[Asked]) -> list[Trajectory]:
     if pairs:
         trajectories |= zip(pairs, solve_together([*pairs.values()]), strict=True)
     return [
-        trajectories.get(k) or solve(run.scene, run.solver, run.rung) for k, run in enumerate(asked)
+        trajectories[k] if k in trajectories else solve(run.scene, run.solver, run.rung)
+        for k, run in enumerate(asked)
     ]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import difflib
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Final, NamedTuple
@@ -64,12 +64,22 @@ class Selection(NamedTuple):
         return len(self.attitudes) == 1 and bool(self.attitudes[0].doubt)
 
 
-def select(columns: Sequence[Column], wanted: Request, place: str, faults: Faults) -> Selection:
-    """Return the columns that are ours, and record what is wrong with them as faults."""
+def select(
+    columns: Sequence[Column],
+    wanted: Request,
+    place: str,
+    faults: Faults,
+    others: Collection[str] = (),
+) -> Selection:
+    """Return the columns that are ours, and record what is wrong with them as faults.
+
+    Groups of the ``others`` mean nothing in the scene: what is no clear choice of one is ignored.
+    """
     names = [Name(column) for column in columns]
     before = len(faults.lines)
     asked, units = asked_columns(wanted, names, place, faults)
     chooser = _Chooser(Candidates(names, asked, units), place, faults)
+    chooser.others = set(others) - {GROUP_OF.get(name, name) for name in asked}
     if len(faults.lines) > before:
         # The rest of a group that was asked for in vain is no second fault.
         chooser.doubted |= {GROUP_OF.get(name, name) for name, _ in wanted}
@@ -88,7 +98,10 @@ def select(columns: Sequence[Column], wanted: Request, place: str, faults: Fault
 
 @dataclass
 class _Chooser:
-    """The choice of each group so far, groups that are not clear, and names of incomplete groups."""
+    """The choice of each group so far, groups that are not clear, and names of incomplete groups.
+
+    ``others`` are groups that mean nothing in the scene.
+    """
 
     candidates: Candidates
     place: str
@@ -96,6 +109,7 @@ class _Chooser:
     chosen: dict[str, Choice] = field(default_factory=dict)
     doubted: set[str] = field(default_factory=set)
     half: list[Name] = field(default_factory=list)
+    others: set[str] = field(default_factory=set)
     notes: list[str] = field(default_factory=list)
 
     def choose(self) -> None:
@@ -103,12 +117,13 @@ class _Chooser:
         for group in GROUPS:
             if choice := self._choice(group):
                 self.chosen[group] = choice
+        self._drop_others()
         self._drop_weaker_attitudes()
         self._refuse_shared()
         for group in GROUPS:
             if group in self.chosen:
                 self._refuse_odd(self.chosen[group])
-            elif group not in self.doubted:
+            elif group not in self.doubted | self.others:
                 self._refuse_incomplete(group)
 
     @property
@@ -155,12 +170,21 @@ class _Chooser:
 
     def _doubt(self, group: str, expected: str, got: str, request: str = "") -> None:
         self.doubted.add(group)
+        if group in self.others:
+            return
         ours = GROUPS[group]
         names = f"{ours[0]}=NAME" if len(ours) == 1 else f"{ours[0]}=NAME,{ours[1]}=NAME,..."
         mend = f"say which: --columns {request or names}"
         self.faults.add(expected, got, self.place, mend)
 
     # All groups.
+
+    def _drop_others(self) -> None:
+        """Drop groups that mean nothing in the scene, where a unit or a column would be a fault."""
+        for group in self.others & self.chosen.keys():
+            choice = self.chosen.pop(group)
+            if None not in choice.units and not self.used & set(choice.names):
+                self.chosen[group] = choice
 
     def _drop_weaker_attitudes(self) -> None:
         """Keep the attitudes of the strongest rank and the best frame, and doubts that these settle."""
