@@ -20,7 +20,15 @@ from builders.caused_rows import (
     rigid,
     titles,
 )
-from builders.trajectories import QUATERNION, Columns, columns_at, file_judgement, write_csv
+from builders.trajectories import (
+    QUATERNION,
+    VECTORS,
+    Columns,
+    columns_at,
+    file_judgement,
+    named,
+    write_csv,
+)
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
 from scipy.spatial.transform import Rotation
@@ -66,6 +74,30 @@ def test_a_pose_alone_has_the_convention_of_its_path(tmp_path: Path) -> None:
     path = write_csv(tmp_path / "pose.csv", pose | {"c3": [-float(c) for c in pose["c3"]]})
     (cause,) = file_judgement(str(path), scene).causes
     assert cause.sentence.startswith("the centre has the other sign on axis 3; leaves ")
+
+
+def euler_after_a_jump(jump: float, noise: float) -> Columns:
+    """Rows of explicit Euler with ten steps a row, before which omega has a factor, and noise after it."""
+    w, made, draws = np.array([0.8, -0.5, 1.1]), [], np.random.default_rng(1)
+    for k in range(len(TIMES)):
+        made.append(w)
+        w = w * (jump if not k else 1.0) + noise * draws.standard_normal(3)
+        for _ in range(10):
+            w = w + 0.01 * np.linalg.solve(TENSOR, np.cross(TENSOR @ w, w))
+    return named(("t",), TIMES[:, None]) | named(VECTORS["omega"], np.array(made))
+
+
+@pytest.mark.parametrize(("jump", "noise", "count"), [(0.9, 0.0, 2), (1.0, 0.0, 1), (0.9, 1e-3, 0)])
+def test_a_jump_before_the_steps_of_a_method_is_said_with_them(
+    jump: float, noise: float, count: int, tmp_path: Path
+) -> None:
+    """What stands out in the first row is said with the cause of the rest, and not without it."""
+    scene = RIGID.format(load="").replace(', "attitude"', "")
+    sentences = titles(tmp_path, scene, euler_after_a_jump(jump, noise))
+    expected = ["a jump between the first two rows, from t = 0 to 0.1", "explicit Euler, h = 0.01"]
+    assert len(sentences) == count
+    for sentence, words in zip(sentences, expected[-count or 2 :], strict=False):
+        assert words in sentence
 
 
 KNOTS = """moment = ["tab", "0", "0"]

@@ -37,6 +37,8 @@ _PROVEN: Final = 0.1
 _SLIGHT: Final = 1e-6
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
+# A jump stands out if it is so many times what any other row is off by.
+_JUMP: Final = 100.0
 _SHORTEST: Final = 12
 # The truth has left the start if it is so many roundings of the file away.
 _LEFT: Final = 30.0
@@ -228,6 +230,8 @@ def _pieces(answer: Answer, defects: Floats) -> list[Cause] | None:
     cause = starts.exact_in_pieces(answer, defects)
     if cause is not None:
         return [cause]
+    if causes := _after_a_jump(answer, defects):
+        return causes
     causes, last = list[Cause](), answer.count - 1
     for begin, end in starts.wrong_spans(answer, defects):
         stopped = starts.stopped(answer, begin) if end == last else None
@@ -236,6 +240,17 @@ def _pieces(answer: Answer, defects: Floats) -> list[Cause] | None:
         with suppress(Spent):
             causes += _within(answer, begin, end)
     return causes or None
+
+
+def _after_a_jump(answer: Answer, defects: Floats) -> list[Cause]:
+    """Return a jump between the first two rows, and the causes of the motion from the second row on."""
+    if len(defects) < _SHORTEST or defects[0] < _JUMP * np.max(defects[1:]):
+        return []
+    part = starts.piece(answer, 1, answer.count - 1)
+    begin, end = (answer.times[row] + answer.right.start for row in (0, 1))
+    words = f"a jump between the first two rows, from t = {begin:.6g} to {end:.6g}"
+    later = [_of_part(answer, part, cause, "from the second row on") for cause in causes_of(part)]
+    return [Cause(words, "jump at the start", {}), *later] if later else []
 
 
 def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) -> list[Cause]:
