@@ -33,6 +33,11 @@ _OF_PAIR: Final = 3
 PAIR: Final = 1e-4
 # A near family with more numbers fits all that is not nothing.
 NOTHING: Final = 1e-9
+# Defects that noise may make, and how many candidates are tried that leave no more.
+_NOISY: Final = 0.3
+_TRIED: Final = 3
+# Of noise this part is left in the next row, by chance in some tens of rows.
+_MEMORY: Final = 0.4
 # Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
 FIT_ROWS: Final = 160
 _POLISHED: Final = 4
@@ -76,7 +81,7 @@ class Choice:
     def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
         proven: list[_Proven] = []
-        for candidate in sorted(filter(self._is_near, candidates), key=_simplest):
+        for candidate in sorted(self._worth_a_proof([*candidates]), key=_simplest):
             if proven and candidate.count > proven[0].candidate.count:
                 decided = self._is_decided(proven[0].candidate, candidate, proven)
                 if decided and candidate.count > 1:
@@ -86,7 +91,7 @@ class Choice:
             if proven and self._is_far_behind(proven[0], candidate):
                 continue
             proof = self._proof(candidate, leaves)
-            if proof is None:
+            if proof is None or not (self._is_near(candidate) or self._leaves_noise(proof)):
                 continue
             if proven and candidate.count > max(1, proven[0].candidate.count):
                 if not proven[0].worst > max(BETTER * proof.worst, self._least):
@@ -97,9 +102,25 @@ class Choice:
                 break
         return self._cause(proven)
 
+    def _worth_a_proof(self, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Return the candidates whose defects allow a proof; without one, the best that noise may hide.
+
+        Noise in the rows is more of an arc from row to row than of the motion over all rows.
+        """
+        near = [*filter(self._is_near, candidates)]
+        some = [c for c in candidates if c.count <= 1 and c.defects < _NOISY and not c.is_nothing]
+        return near or sorted(some, key=lambda each: each.defects)[:_TRIED]
+
     def _is_near(self, candidate: Candidate) -> bool:
         """Return True if the defects that are left allow a proof."""
         return candidate.defects < max(candidate.near, _DEFECT_ROUNDINGS * self.floor)
+
+    def _leaves_noise(self, proven: _Proven) -> bool:
+        """Return True if what is left has no memory from row to row, as the error of a method has."""
+        motion = proven.candidate.motion(self.answer, proven.candidate.changes)
+        assert motion is not None
+        left = (self.answer.file.v - motion.v) / self.answer.sizes
+        return float(np.sum(left[1:] * left[:-1])) < _MEMORY * float(np.sum(left * left))
 
     def _is_decided(self, simple: Candidate, other: Candidate, proven: Sequence[_Proven]) -> bool:
         """Return True if a proven candidate with fewer numbers makes another one needless."""
