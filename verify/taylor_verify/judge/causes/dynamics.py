@@ -52,6 +52,7 @@ _BESIDE: Final = 100_000.0
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
+_IMITATED: Final = {"damping", "gyroscopic term"}
 # What the steps of a fair simulator leave; a near family leaves a hundred times as much.
 _FAIR: Final = 1e-6
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
@@ -126,7 +127,6 @@ class Dynamics:
 
 
 def dynamics(answer: Answer) -> Cause | None:
-    """Return the proven cause of the errors of the moving part, with all others that explain as well."""
     return Dynamics(answer).cause()
 
 
@@ -258,8 +258,9 @@ class Search:
 
     def _telling(self, pairs: list[Candidate]) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
-        paces = (part.kind == "clock" for pair in pairs for part in pair.family.parts)
-        return [p for p in pairs if has_few_digits(p, self.floor)] if any(paces) else pairs
+        kinds = ({part.kind for part in pair.family.parts} for pair in pairs)
+        has_pace = any("clock" in own or own == _IMITATED for own in kinds)
+        return [p for p in pairs if has_few_digits(p, self.floor)] if has_pace else pairs
 
     # Evidence.
 
@@ -268,8 +269,8 @@ class Search:
         coupled = right.changed(family.changes(fit.numbers)).coupled
         near = _LOOSE if answer.file.q is None and coupled > answer.n else LEAVES
         motion = self.motion if family.count else self.motion_of_faults
-        left = fit.size / self.evidence.size
-        return Candidate(family, fit.numbers, left, motion, near, errors=fit.errors)
+        left, errors = fit.size / self.evidence.size, fit.errors
+        return Candidate(family, fit.numbers, left, motion, near, errors=errors)
 
     def without_numbers(self, faults: Sequence[Family]) -> Iterator[Candidate]:
         """Yield the faults that leave little of the defects."""

@@ -196,6 +196,8 @@ def _whole_steps(times: Floats, exact: Floats, size: float) -> str | None:
     if np.max(np.abs(exact - h * counts)) > _PATTERN * size:
         return None
     ahead = counts - times / h
+    if np.all(np.abs(ahead - np.rint(ahead)) < _PATTERN):
+        return None  # rows that are dropped or doubled
     for which, least, most in (("nearest", -0.5, 0.5), ("last", -1.0, 0.0), ("next", 0.0, 1.0)):
         if np.all((ahead > least - _PATTERN) & (ahead < most + _PATTERN)):
             return (

@@ -118,7 +118,7 @@ def _named(kind: Kind, body: Sample, rows: Rows) -> Named:
     with np.errstate(all="ignore"):
         if kind.has_rates:
             noises = noise, unit, float(np.max(of_c))
-            answer = material(given, motion, has_momenta, noises, verdicts, 3)
+            answer = material(given, motion, has_momenta, noises, verdicts)
         else:
             answer = material_of_attitudes(given, rows.times, steady_signs(q), unit, verdicts[2:3])
         if answer is None or not answer.failed:
