@@ -52,7 +52,6 @@ _BESIDE: Final = 100_000.0
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
-_IMITATED: Final = {"damping", "gyroscopic term"}
 # What the steps of a fair simulator leave; a near family leaves a hundred times as much.
 _FAIR: Final = 1e-6
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
@@ -259,7 +258,7 @@ class Search:
     def _telling(self, pairs: list[Candidate]) -> list[Candidate]:
         """Return the pairs that a method does not imitate: it changes the pace, and damps, at once."""
         kinds = ({part.kind for part in pair.family.parts} for pair in pairs)
-        has_pace = any("clock" in own or own == _IMITATED for own in kinds)
+        has_pace = any("clock" in own or own == {"damping", "gyroscopic term"} for own in kinds)
         return [p for p in pairs if has_few_digits(p, self.floor)] if has_pace else pairs
 
     # Evidence.
