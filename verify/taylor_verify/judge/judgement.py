@@ -133,7 +133,7 @@ def judgement(
         status, reason = Status.FAIL, stated(Cause.UNFINISHED, text)
         if end := _end_of_motion(problem):
             text = (
-                f"the motion ends before the last sample: {end}; the solver {outcome.value}{detail}"
+                f"no exact motion is known at the last sample: {end}; the solver {outcome.value}{detail}"
             )
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, text)
     else:
