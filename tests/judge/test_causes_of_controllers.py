@@ -230,6 +230,24 @@ def test_a_printed_number_has_all_of_its_digits(changed: str, key: str) -> None:
     assert key in cause.sentence
 
 
+TRACKED = HELD.replace("[body]", 'track = ["m"]\n[body]')
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        (TRACKED.replace("-w2,", "w2,"), "does not explain the error of m;"),
+        (TRACKED.replace("0.45", "0.35"), " of m;"),
+    ],
+    ids=["contradicted", "explained"],
+)
+def test_a_cause_says_what_it_leaves_of_own_states(changed: str, words: str) -> None:
+    """Where the file's own held values are others than those of the cause, the sentence says so."""
+    (cause,) = check(scene(TRACKED), of_scene(changed)).causes
+    assert words in cause.sentence
+    assert ("does not explain" in cause.sentence) is words.startswith("does not")
+
+
 def of_scene(text: str) -> dict[str, Any]:
     """Return the exact motion of a scene, rounded to doubles, as an answer."""
     times = list(scene(text).clock.instants)

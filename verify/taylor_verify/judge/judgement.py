@@ -132,9 +132,7 @@ def judgement(
         text = f"a run that did not finish is not scored: it {outcome.value}{detail}"
         status, reason = Status.FAIL, stated(Cause.UNFINISHED, text)
         if end := _end_of_motion(problem):
-            text = (
-                f"the motion ends before the last sample: {end}; the solver {outcome.value}{detail}"
-            )
+            text = f"no exact motion is known at the last sample: {end}; the solver {outcome.value}{detail}"
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, text)
     else:
         try:

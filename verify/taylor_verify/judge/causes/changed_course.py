@@ -123,6 +123,16 @@ def courses(answer: Answer, sets: Sequence[Changes], h: float) -> Iterator[Motio
         yield from (_motion(answer, each) for each in np.stack(rows, axis=1))
 
 
+def own_rows(answer: Answer, changes: Changes) -> dict[str, Floats]:
+    """Return the rows of each own state in a changed scene, (rows, components), by its name."""
+    course = Course(answer, answer.right.copies([changes]), 1, Courses.of(answer).step)
+    rows = list[dict[str, list[float]]]()
+    for time in answer.times.tolist():
+        course.move(time)
+        rows.append(course.own)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
 class Course:
     """The motion of changed scenes with their own states, from the start on, in steps of about ``h``."""
 
@@ -144,6 +154,16 @@ class Course:
         """The velocities, the attitude and the centre now, (sets, components)."""
         nu = self._equations.velocities(np.array([self._now]), self._z)
         return np.concatenate([nu, self._z[:, self._equations.size :]], axis=1)[:, :, 0]
+
+    @property
+    def own(self) -> dict[str, list[float]]:
+        """The own states of the first set now, by their names."""
+        loads = self._equations.loads
+        assert loads is not None
+        first = self._z.shape[1] - len(loads.continuous)
+        names = (*loads.continuous, *loads.held_values)
+        now = dict(zip(names, [*self._z[0, first:, 0], *self._held[0]], strict=True))
+        return {state.name: [now[each] for each in state.components] for state in loads.states}
 
     @property
     def v(self) -> Floats:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.budget import Budget, Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.cause_search import causes_of
+from taylor_verify.judge.causes.changed_course import own_rows
 from taylor_verify.judge.causes.changed_scene import changed_scene
-from taylor_verify.judge.causes.float_answer import Answer
+from taylor_verify.judge.causes.float_answer import Answer, Places
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.material import (
     are_known,
     material_of_file,
@@ -81,7 +83,9 @@ def causes_of_file(
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = material_of_file(first, rung, conventions, judged.verdicts, every)
         if answer is not None:
-            known, facts = explained(answer), (*facts, *_lost_rows(file, answer))
+            rows = {name: group.doubles() for name, group in first.groups.items()}
+            own = _own_states(answer, rows, answer.places // every)
+            known, facts = explained(answer, own), (*facts, *_lost_rows(file, answer))
             # A convention tells the story of the rows: no load is missing beside it.
             missing = () if conventions.findings else known.missing_load
             return replace(known, facts=facts, missing_load=missing)
@@ -143,14 +147,30 @@ def with_causes(judged: Judgement, problem: Problem, trajectory: Trajectory) -> 
     with np.errstate(all="ignore"), suppress(*_SILENT):
         answer = material_of_trajectory(problem, trajectory, judged.verdicts)
         if answer is not None:
-            known = explained(answer)
+            own = _own_states(answer, trajectory.quantities, answer.places)
+            known = explained(answer, own)
             causes, judged = known.causes, replace(judged, notes=(*judged.notes, *known.notes))
     named = (replace(cause, scene=scene.name, rung=problem.rung.name) for cause in causes)
     return replace(judged, causes=tuple(named))
 
 
-def explained(answer: Answer) -> Explained:
-    """Return the causes of an answer with their sentences; none at the end of the budget."""
+def _own_states(
+    answer: Answer, quantities: Mapping[str, np.ndarray[Any, Any]], places: Places
+) -> dict[str, Floats]:
+    """Return the rows of the scene's own states that failed, (rows, components), by their names."""
+    states = () if answer.scene is None else answer.scene.own_states
+    return {
+        s.name: quantities[s.name].reshape(-1, len(s.components))[places].astype(float)
+        for s in states
+        if s.name in answer.quantities and s.name in quantities
+    }
+
+
+def explained(answer: Answer, own: Mapping[str, Floats] | None = None) -> Explained:
+    """Return the causes of an answer with their sentences; none at the end of the budget.
+
+    ``own`` are the rows of own states that failed.
+    """
     causes: list[Cause] = []
     with suppress(*_SILENT):
         causes = causes_of(answer)
@@ -161,7 +181,7 @@ def explained(answer: Answer) -> Explained:
     if not causes and answer.has_rates and not set(answer.moving).isdisjoint(answer.failed):
         with suppress(*_SILENT):
             missing = missing_load(replace(answer, budget=Budget(_FOR_A_LOAD)))
-    likely = tuple(_likely(cause, answer) for cause in causes)
+    likely = tuple(_likely(cause, answer, own or {}) for cause in causes)
     return Explained(likely, is_motion, missing_load=missing)
 
 
@@ -182,10 +202,30 @@ def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
     ]
 
 
-def _likely(cause: Cause, answer: Answer) -> LikelyCause:
+def _likely(cause: Cause, answer: Answer, own: Mapping[str, Floats]) -> LikelyCause:
     group = next(iter(cause.leaves), "omega")
     changed = changed_scene(answer.right, cause.changes)
-    words = sentence(cause.title, cause.leaves, answer.worst, cause.alike, changed)
+    parts, errors = _left_of_states(answer, cause, own) if changed and own else ({}, {})
+    all_left, all_errors = {**cause.leaves, **parts}, {**answer.worst, **errors}
+    words = sentence(cause.title, all_left, all_errors, cause.alike, changed)
     leaves = max(cause.leaves.values(), default=1.0)
     name = cause.name.partition(":")[0]
     return LikelyCause(name, answer.quantity(group), leaves, words)
+
+
+def _left_of_states(
+    answer: Answer, cause: Cause, own: Mapping[str, Floats]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the parts of the errors of own states that a cause leaves, and these errors."""
+    parts, errors = dict[str, float](), dict[str, float]()
+    with suppress(*_SILENT):
+        answer = replace(answer, budget=Budget(_FOR_A_LOAD))
+        right, changed = (own_rows(answer, changes) for changes in ({}, cause.changes))
+        for name, rows in own.items():
+            error = float(np.max(np.abs(rows - right[name])))
+            if error > 0 and name in changed:
+                parts[name], errors[name] = (
+                    float(np.max(np.abs(rows - changed[name]))) / error,
+                    error,
+                )
+    return parts, errors

@@ -367,4 +367,4 @@ SIMPLE: Final = (
     Kind("Radau at 1e-6", (), _coarse("Radau", 1e-6)),
     Kind("load for a while", ("from t =",), of(_for_a_while), ("free", "wheels", *FLUID)),
 )
-KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS, *LATER, DAMPING_STEP)
+KINDS: Final = (*SIMPLE, *OF_ROWS, *OF_STEPS, *OF_LOADS, *LATER, DAMPING_STEP, AT_WHOLE_STEPS)

@@ -185,7 +185,6 @@ _AXES: Final = ("fixed rotation", "space axes turned", "contradicts")
 OF_ROWS: Final = (
     Kind("times in frames", _PACE, _frames),
     Kind("times by a float32 sum", ("float32", "times", "clock"), _float32_sum),
-    Kind("rows at whole steps", ("the last whole step",), _at_whole_steps),
     Kind("times that scatter", ("times scatter", "times are rounded"), _jitter),
     Kind("rows dropped", ("rows dropped", "jump"), _dropped),
     Kind("rows saved twice", ("saved twice", "repeat", "held"), _changed(_twice)),
@@ -229,3 +228,4 @@ LATER: Final = (
     ),
     Kind("attitude a row late", ("attitude is late",), _changed(_late_attitude)),
 )
+AT_WHOLE_STEPS: Final = Kind("rows at whole steps", ("the last whole step",), _at_whole_steps)
