@@ -31,6 +31,7 @@ _TRIALS: Final = (
     (1e-2, 0.3),
     (0.1, 0.3),
 )
+_TRIALS_OF_ONE: Final = (((_SEEN, 1.0),), ((_SEEN, 0.3),))
 _LONGEST: Final = 3.0
 # A fit ends early if so much is left after three rounds, or if a round gains less than a twentieth.
 _HOPELESS: Final = 0.3
@@ -259,7 +260,7 @@ def _trial_steps(
     longest = _LONGEST * np.maximum(1.0, np.abs(numbers) / scale)
     U, singular, V = np.linalg.svd(slopes * scale, full_matrices=False)
     along = U.T @ -defects
-    for some in (_TRIALS,) if len(scale) > 1 else (_TRIALS[:1], _TRIALS[3:4]):
+    for some in (_TRIALS,) if len(scale) > 1 else _TRIALS_OF_ONE:
         steps = []
         for cut, length in some:
             is_seen = singular > cut * singular[0]

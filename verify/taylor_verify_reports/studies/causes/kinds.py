@@ -15,7 +15,7 @@ import numpy as np
 from taylor_verify_reports.studies.causes.bodies import Floats, Sample
 from taylor_verify_reports.studies.causes.kind import FLUID, RIGID, Kind, of, right, setting
 from taylor_verify_reports.studies.causes.kinds_of_loads import OF_LOADS
-from taylor_verify_reports.studies.causes.kinds_of_rows import LATER, OF_ROWS
+from taylor_verify_reports.studies.causes.kinds_of_rows import AT_WHOLE_STEPS, LATER, OF_ROWS
 from taylor_verify_reports.studies.causes.kinds_of_steps import DAMPING_STEP, OF_STEPS
 from taylor_verify_reports.studies.causes.simulated import (
     Law,
