@@ -102,6 +102,21 @@ def test_times_of_a_long_scene_are_no_clock(scene: Scene, tmp_path: Path) -> Non
     assert read(file, (), long).times == (10**9, 10**9 + 1)
 
 
+@pytest.mark.parametrize("start", [10**12, 10**15, 10**18])
+def test_times_that_fit_a_late_scene_as_they_stand_have_no_unit(
+    start: int, scene: Scene, tmp_path: Path
+) -> None:
+    """Times of 10^12 are milliseconds only where they do not reach the scene as they stand."""
+    file = tmp_path / "mine.csv"
+    late = replace(scene, clock=replace(scene.clock, start=start, instants=(start, start + 10)))
+    for first in (start, start + 5, start + 100):
+        file.write_text(f"t,w1,w2,w3\n{first},1,2,3\n{first + 1},1,2,3\n")
+        table = read(file, (), late)
+        assert table.times == (first, first + 1)
+        assert not table.notes
+    assert 0 < read(file, (), scene).times[1] < 1
+
+
 # Binary formats.
 
 
