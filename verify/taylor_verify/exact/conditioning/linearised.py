@@ -84,7 +84,7 @@ class Flow:
 
     @staticmethod
     def along(scene: Scene, momenta: Floats) -> Flow:
-        """Return the equations in units of a motion (n, d), where a block is far from its size at the start."""
+        """Return the equations in units of a motion (n, d), where it is far from the size of its start."""
         sizes = np.abs(momenta).max(axis=0).reshape(-1, 3).max(axis=1)
         units = block_units(scene)
         pairs = zip(units, np.repeat(sizes, 3).tolist(), strict=True)

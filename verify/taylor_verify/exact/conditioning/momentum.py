@@ -39,8 +39,8 @@ def moved(scene: Scene, j: int, share: Fraction) -> Scene:
 def block_units(scene: Scene) -> Vector:
     """Return powers of two near the size of the block of each component of a momentum.
 
-    A block that is nothing beside what constant loads give it has that size. One that is zero takes the size
-    that would hold the kinetic energy, 2T = z . energy z; 1 in a body at rest.
+    A block that is nothing beside what constant loads give it has that size. One that is zero takes the
+    size that would hold the kinetic energy, 2T = z . energy z; 1 in a body at rest.
     """
     body, kind, span = scene.body, kind_of(scene.body), scene.clock.elapsed[-1]
     given = tuple(span * load for load in kind.momentum_equations(body).constant)

@@ -52,6 +52,7 @@ from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
@@ -142,31 +143,32 @@ def judge_file(
     known, explained = Conventions((), World(scene), along_space), Explained()
     answer = FileRows.of(compared, rung, known)
     try:
-        judged = None if _is_far(answer) else _judged(answer, tolerances)
-        if judged is None or not _fits(judged):
-            compared, angles = with_angles(compared, scene, rung)
-            # Causes and conventions are of rows in body axes.
-            in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
-            searched = replace(compared, groups=in_body)
-            if in_body:
-                explained = causes_of_file(searched, rung, known, judged)
-            is_open = accept_conventions or not explained.is_motion
-            # Under loads a unit of time alone is looked for: without one such a file is too far.
-            if in_body and is_open and (scene.body.loads is None or judged is None):
-                known = conventions(searched, scene, rung)
-                known = replace(known, readings={**along_space, **known.readings})
-            if angles:
-                known = replace(known, findings=(angles, *known.findings))
-            if accept_conventions:
-                answer = FileRows.of(compared, rung, known)
-            if judged is None or (accept_conventions and known.findings):
-                judged = _judged_within_reach(answer, known, tolerances)
-        extent = Extent.of(answer.scene, answer.times, rung)
-        notes += tuple(span_notes(answer.scene, answer.times, extent))
-        lack = list(not_judged(extent, missing_groups(has, asked)))
-        if lack and judged.record is not None:
-            row = complete_verdict(scene, file.name, rung, lack, partial)
-            judged = replace(judged, verdicts=(*judged.verdicts, row))
+        with within_doubles(asked, Unsettled):
+            judged = None if _is_far(answer) else _judged(answer, tolerances)
+            if judged is None or not _fits(judged):
+                compared, angles = with_angles(compared, scene, rung)
+                # Causes and conventions are of rows in body axes.
+                in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
+                searched = replace(compared, groups=in_body)
+                if in_body:
+                    explained = causes_of_file(searched, rung, known, judged)
+                is_open = accept_conventions or not explained.is_motion
+                # Under loads a unit of time alone is looked for: without one such a file is too far.
+                if in_body and is_open and (scene.body.loads is None or judged is None):
+                    known = conventions(searched, scene, rung)
+                    known = replace(known, readings={**along_space, **known.readings})
+                if angles:
+                    known = replace(known, findings=(angles, *known.findings))
+                if accept_conventions:
+                    answer = FileRows.of(compared, rung, known)
+                if judged is None or (accept_conventions and known.findings):
+                    judged = _judged_within_reach(answer, known, tolerances)
+            extent = Extent.of(answer.scene, answer.times, rung)
+            notes += tuple(span_notes(answer.scene, answer.times, extent))
+            lack = list(not_judged(extent, missing_groups(has, asked)))
+            if lack and judged.record is not None:
+                row = complete_verdict(scene, file.name, rung, lack, partial)
+                judged = replace(judged, verdicts=(*judged.verdicts, row))
     except NotRepresentable as reason:
         judged = _alone(answer, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
