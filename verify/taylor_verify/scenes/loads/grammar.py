@@ -53,7 +53,7 @@ class Fault(NamedTuple):
 
 
 class Unread(Exception):
-    """A text, or a name that leads to one, that has faults; they are noted."""
+    """A text, or a name that leads to one, that has faults; they are noted, those of a text said."""
 
 
 class Grammar:
@@ -86,7 +86,9 @@ class Grammar:
         finally:
             self._source = outer
         if step is None or len(self.faults) > before:
-            raise Unread
+            raise Unread(
+                "; ".join(f"expected {f.expected}, got {f.got}" for f in self.faults[before:])
+            )
         return step
 
     def _tree(self, text: str) -> ast.expr:
