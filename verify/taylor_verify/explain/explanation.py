@@ -121,7 +121,7 @@ def _loaded_path(scene: Scene, rung: Rung) -> Path | None:
 def _loads(scene: Scene, path: Path | None) -> Mapping[str, Any] | None:
     """Return the loads along an orbit; None without one, or where their sizes are beyond the doubles."""
     with suppress(Unsettled), within_doubles(scene, Unsettled):
-        return path and loads_document(scene, path)
+        return None if path is None else loads_document(scene, path)
     return None
 
 

@@ -290,7 +290,7 @@ class Steps:
 def _check_length(value: Fraction, exponent: Fraction | int) -> None:
     """Raise NoStep for a power of too many bits."""
     bits = max(value.numerator.bit_length(), value.denominator.bit_length())
-    if bits * abs(exponent) > 2 * MOST_BITS:
+    if bits * abs(Fraction(exponent)) > 2 * MOST_BITS:
         raise too_long()
 
 
