@@ -117,6 +117,16 @@ def test_times_that_fit_a_late_scene_as_they_stand_have_no_unit(
     assert 0 < read(file, (), scene).times[1] < 1
 
 
+def test_lines_of_another_length_hide_no_bad_words(scene: Scene, tmp_path: Path) -> None:
+    """A line that is too short or too long, and each word that is no number, are reported together."""
+    file = tmp_path / "mine.csv"
+    file.write_text("t,w1,w2,w3\n0,1,x,3\n1,1,2\n2,y,2,3,4\n3,1,2,3\n")
+    with pytest.raises(Refused) as refused:
+        read(file, (), scene)
+    got = [line.partition(", got ")[2].split(" @ ")[0] for line in refused.value.faults]
+    assert got == ["3", "5", "'y'", "'x'"]
+
+
 # Binary formats.
 
 
