@@ -442,7 +442,7 @@ def test_the_model_must_be_known_before_its_body_is_read() -> None:
     ],
 )
 def test_a_number_that_is_none_hides_no_fault_beside_it(inertia: str, places: list[str]) -> None:
-    """Entries that are not positive or symmetric, or no numbers, are reported together, and the time too."""
+    """Entries that are not positive or symmetric, or no numbers, are reported at once, and the time too."""
     text = f"""
 title = "x"
 model = "euler"

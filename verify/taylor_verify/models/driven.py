@@ -13,7 +13,7 @@ import numpy as np
 from taylor_verify.models import own
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.evaluated import wheels
-from taylor_verify.models.units import Units, binary, largest, root, size, slowest
+from taylor_verify.models.units import Units, binary, largest, least_rate, root, size
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
@@ -77,14 +77,14 @@ def _pushed(units: Units, scene: Scene, span: Fraction, sizes: Any) -> Units:
     if moves:
         momentum, impulse = max(momentum, units.momentum), max(impulse, units.impulse)
     momentum, impulse = momentum or impulse, impulse or momentum
-    fastest = max(angular * momentum, slowest(moment, momentum))
+    fastest = max(angular * momentum, least_rate(moment, momentum))
     if is_rigid:
         unit = 1 / binary(fastest)
         return replace(units, time=min(units.time, unit) if moves else unit, momentum=momentum)
     linear = largest([row[:3] for row in matrix[:3]])
     coupling = largest([row[3:] for row in matrix[:3]])
     fastest = max(fastest, linear * impulse**2 / momentum, coupling * impulse)
-    fastest = max(fastest, slowest(force, impulse))
+    fastest = max(fastest, least_rate(force, impulse))
     speed = linear * impulse + coupling * momentum
     path = max(binary(speed * span * impulse / momentum), Fraction(1))
     return Units(time=1 / binary(fastest), momentum=momentum, impulse=impulse, path=path)

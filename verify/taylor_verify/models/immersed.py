@@ -23,11 +23,11 @@ from taylor_verify.models.units import (
     Units,
     binary,
     largest,
-    least,
-    pushed_for,
+    least_rate,
+    least_unit,
+    push_time,
     root,
     size,
-    slowest,
 )
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung
@@ -76,14 +76,14 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         # Without a force |x| is constant; y may start at zero and receive all the energy.
         impulse, spun_up = size(state[:3]), _spun_up(body.energy_matrix, state, angular)
         momentum = max(size(state[3:]), spun_up)
-        time = pushed_for(span, angular * couple, root(linear * angular) * force)
-        pushed = least(force, time)
-        turned = max(least(couple, time), root(linear / angular) * pushed)
+        time = push_time(span, angular * couple, root(linear * angular) * force)
+        pushed = least_unit(force, time)
+        turned = max(least_unit(couple, time), root(linear / angular) * pushed)
         impulse = max(impulse, pushed) if impulse else binary(force * span)
         momentum = max(momentum, turned) if momentum else binary(couple * span)
         impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
         rate = max(linear * impulse**2 / momentum, coupling * impulse, angular * momentum)
-        rate = max(rate, slowest(force, impulse), slowest(couple, momentum))
+        rate = max(rate, least_rate(force, impulse), least_rate(couple, momentum))
         # Each impulse is at most twice its unit, which bounds the path unless loads or damping act.
         speed = 6 * (linear * impulse + coupling * momentum)
         path = max(2 * binary(speed * span * impulse / momentum), Fraction(1))

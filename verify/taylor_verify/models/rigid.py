@@ -18,11 +18,11 @@ from taylor_verify.models.units import (
     Units,
     binary,
     largest,
-    least,
-    pushed_for,
+    least_rate,
+    least_unit,
+    push_time,
     root,
     size,
-    slowest,
 )
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung, floor_log2, power_of_two
@@ -68,15 +68,18 @@ class Rigid(Mechanics[RigidBody, Spin]):
     def units(self, body: RigidBody, start: Spin, span: Fraction) -> Units:
         """Return the units: H by its size or its growth by the moment, time by all its rates."""
         momentum = tensors.apply(body.inertia, start.omega)
-        fastest, held, moment = largest(body.inverse_inertia), size(momentum), size(body.moment)
+        at_start, moment = size(momentum), size(body.moment)
+        fastest = largest(body.inverse_inertia)
         # What is at rest may spin up about an axis for the whole span.
-        grown = least(moment, pushed_for(span, fastest * moment)) if held else binary(moment * span)
-        unit = max(held, grown) or Fraction(1)
-        rate = size(start.omega) if held >= grown and held else fastest * unit
+        growth = binary(moment * span)
+        if at_start:
+            growth = least_unit(moment, push_time(span, fastest * moment))
+        unit = max(at_start, growth) or Fraction(1)
+        rate = size(start.omega) if at_start >= growth and at_start else fastest * unit
         # If the moments differ by many orders of magnitude, H may turn much faster than the body.
         rate = max(rate, _nutation(body.inverse_inertia, momentum))
         rate = max(rate, size(tensors.apply(body.inverse_inertia, body.rotor)))
-        rate = max(rate, slowest(moment, unit))
+        rate = max(rate, least_rate(moment, unit))
         return Units(time=1 / binary(rate), momentum=unit)
 
     def derived(self, body: RigidBody, start: Spin) -> Mapping[str, Mapping[str, Value]]:

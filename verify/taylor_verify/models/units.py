@@ -96,17 +96,17 @@ def size(vector: Vector) -> Fraction:
     return root(tensors.dot(vector, vector))
 
 
-def slowest(load: Fraction, unit: Fraction) -> Fraction:
+def least_rate(load: Fraction, unit: Fraction) -> Fraction:
     """Return the least rate of a unit of time, within which a load gives few units to a momentum."""
     return load / unit / _MOST_UNITS
 
 
-def least(load: Fraction, time: Fraction) -> Fraction:
+def least_unit(load: Fraction, time: Fraction) -> Fraction:
     """Return the least unit of a momentum, of which a load gives few within a time; 0 without a load."""
     return binary(load * time / _MOST_UNITS)
 
 
-def pushed_for(span: Fraction, *squares: Fraction) -> Fraction:
+def push_time(span: Fraction, *squares: Fraction) -> Fraction:
     """Return about the time for which a load pushes in one direction, at most the span.
 
     ``squares`` are those of rates at which the body turns under it.

@@ -46,9 +46,9 @@ def block_units(scene: Scene) -> Vector:
     given = tuple(span * load for load in kind.momentum_equations(body).constant)
     z: Vector = ()
     for first in range(0, len(given), 3):
-        begun, pushed = (v[first : first + 3] for v in (momentum(body, scene.initial), given))
-        is_nothing = tensors.dot(begun, begun) <= _NOTHING * tensors.dot(pushed, pushed)
-        z += pushed if is_nothing else begun
+        start, pushed = (v[first : first + 3] for v in (momentum(body, scene.initial), given))
+        is_nothing = tensors.dot(start, start) <= _NOTHING * tensors.dot(pushed, pushed)
+        z += pushed if is_nothing else start
     energy = kind.momentum_energy(body)
     twice_energy = tensors.dot(z, tensors.apply(energy, z))
     units: Vector = ()

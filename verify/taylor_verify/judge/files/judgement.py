@@ -32,7 +32,7 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
-from taylor_verify.judge.files.file_rows import FileRows, first_flaw
+from taylor_verify.judge.files.file_rows import FileRows, first_flaw, first_zero_quaternion
 from taylor_verify.judge.files.stored import storing, with_file_kinds
 from taylor_verify.judge.first_row import initial_verdict
 from taylor_verify.judge.floor.counted_steps import Steps
@@ -262,10 +262,12 @@ def _verdict_of(sides: Sequence[Gate], file: TrajectoryFile) -> Verdict:
     """Return the worse verdict on a quantity over both directions of time, or that nearer to its bound."""
     verdict = min((gate.verdict for gate in sides), key=_gravity)
     is_finite = all(np.isfinite(gate.errors.values).all() for gate in sides)
-    flaw = "" if is_finite else first_flaw(file, verdict.quantity)
-    if not flaw:
+    if is_finite:
         return verdict
-    return replace(verdict, reason=verdict.reason.with_remark(Cause.NOT_FINITE, flaw))
+    cause, flaw = Cause.NOT_FINITE, first_flaw(file, verdict.quantity)
+    if not flaw:
+        cause, flaw = Cause.NO_ATTITUDE, first_zero_quaternion(file)
+    return replace(verdict, reason=verdict.reason.with_remark(cause, flaw)) if flaw else verdict
 
 
 def _gravity(verdict: Verdict) -> tuple[int, float]:

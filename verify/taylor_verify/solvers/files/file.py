@@ -119,12 +119,12 @@ def read(
     try:
         table = read_table(file)
     except Ragged as ragged:
-        found = [*ragged.faults]
+        lines = [*ragged.faults]
         try:
             from_columns(ragged.table.columns, place, columns, scene=scene)
         except Refused as others:
-            found += others.faults
-        raise Refused(found) from None
+            lines += others.faults
+        raise Refused(lines) from None
     trajectory = from_columns(table.columns, place, columns, table.notes, scene)
     return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 
