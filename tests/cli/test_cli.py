@@ -347,6 +347,29 @@ def test_a_name_that_means_nothing_is_a_wrong_call(capsys: Captured, arguments: 
     assert error.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("arguments", "faults"),
+    [
+        ("run nono --tolerance -1 --rung f99,g1 --solver x --jobs 0", 6),
+        ("check no.csv --scene nono --tolerance -1 --rung f99", 4),
+        ("exact nono --at x,1,y --digits 0", 4),
+        ("explain nono --rung f99", 2),
+        ("question nono --rung f99 --csv --json", 3),
+        ("certify no.json --scene nono --tolerance 5", 2),
+        ("sweep satellites --tolerance x --rung f99", 2),
+        ("tradeoff nono --repeats 0 --target -1 --rung f99", 4),
+        ("draw nono no.csv --rung f99 --out x.foo", 4),
+    ],
+)
+def test_all_wrong_arguments_of_a_call_are_reported_at_once(
+    capsys: Captured, arguments: str, faults: int
+) -> None:
+    """Each wrong option, scene and file has its line in the one message of a call."""
+    assert main(arguments.split()) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert sum(", got " in line for line in lines) == faults
+
+
 def test_an_error_nobody_foresaw_is_one_line_with_its_place(
     monkeypatch: pytest.MonkeyPatch, capsys: Captured, short: Path
 ) -> None:

@@ -138,6 +138,20 @@ FILES: dict[str, tuple[Callable[[], Columns], Callable[[float], str], ErrorKind,
 }  # fmt: skip
 
 
+def test_a_quaternion_of_length_zero_is_no_attitude(tmp_path: Path) -> None:
+    """A file with q0 q1 q2 q3 all 0 has finite numbers: its rows are named, and none is called lost."""
+    scene = load("euler/with-attitude")
+    columns = dict(columns_at(scene, scene.clock.instants[:4]))
+    columns |= {f"q{i}": [*columns[f"q{i}"][:2], 0.0, *columns[f"q{i}"][3:]] for i in range(4)}
+    file = write_csv(tmp_path / "mine.csv", columns, repr)
+    verdict = taylor_verify.check(scene, file)["attitude"]
+    where = f"t = {float(scene.clock.instants[2]):g}"
+    assert verdict.sentence.endswith(
+        f"no attitude, first at {where}; q0 q1 q2 q3 are 0 in row 3, {where}"
+    )
+    assert verdict.reason.remarks[0].cause is Cause.NO_ATTITUDE
+
+
 @cache
 def judged(name: str) -> dict[str, Verdict]:
     """The verdicts on a file, by quantity."""

@@ -335,7 +335,8 @@ def test_a_table_is_read_from_a_file_beside_the_scene(tmp_path: Path) -> None:
         (f'file = "none.csv", {COLUMNS}', "", "got no such file"),
         (f'file = "a\\u0000b.csv", {COLUMNS}', "", "a name that no file has"),
         (f'file = "large.csv", {COLUMNS}', "", "at most 4194304 bytes"),
-        (f'file = "data.csv", {COLUMNS}', "", "one of the columns"),
+        (f'file = "data.csv", {COLUMNS}', "s,T\n0,1\n", "one of the columns s, T, got t @ tables.p.time"),
+        (f'file = "data.csv", {COLUMNS}', "t,T,T\n0,1,2\n", "got `T` in 2 columns @ tables.p.column"),
         (f'file = "data.csv", {COLUMNS}', "t,T\n", "1 to 10000 rows, got 0"),
         (f'file = "data.csv", {COLUMNS}', "t,U\n0,1\n", "one of the columns t, U, got T @ tables.p.column"),
         (f'file = "data.csv", {COLUMNS}', "t,T\n0,one\n", 'a/b"), got one @ tables.p.file, line 2'),
@@ -365,6 +366,21 @@ def test_a_table_that_cannot_be_is_refused(
         of_file(tmp_path, keys, "t,T\n0,1\n1,2\n" if content is None else content)
     (line,) = refused.value.faults
     assert fault in line
+
+
+@pytest.mark.parametrize("count", [101, 150, 500])
+def test_brackets_are_at_most_a_hundred_deep(count: int) -> None:
+    """A deeper text is refused by that limit, at its 101st bracket; a hundred brackets are read."""
+    (fault,) = faults("(" * count + "t" + ")" * count)
+    assert "at most 100 deep, got a deeper one @ body.moment[0], column 101" in fault
+    assert of_texts("(" * 100 + "t" + ")" * 100).body.loads
+
+
+@pytest.mark.parametrize("text", ["exp(1e9)", "cosh(-1e6)", "7^(1e5 + 1/2)"])
+def test_numbers_of_too_many_bits_are_refused_before_they_are_made(text: str) -> None:
+    """A text whose number has more than a hundred thousand bits is refused at once, as a longer one is."""
+    (fault,) = faults(text)
+    assert "expected numbers of at most 100000 bits, got a longer one @ body.moment[0]" in fault
 
 
 def test_a_scene_in_no_folder_has_no_files() -> None:

@@ -429,5 +429,28 @@ def test_the_model_must_be_known_before_its_body_is_read() -> None:
     assert [line.split(" @ ")[1].split()[0] for line in caught.value.faults] == [
         "title",
         "model",
+        "time.end",
         "time.samples",
     ]
+
+
+@pytest.mark.parametrize(
+    ("inertia", "places"),
+    [
+        ("[-1, nan, 0]", ["[0]", "[1]", "[2]"]),
+        ("[[-1, nan, 2], [0, 1, 3], [4, 3, -2]]", ["[0][0]", "[0][1]", "[2][2]", ""]),
+    ],
+)
+def test_a_number_that_is_none_hides_no_fault_beside_it(inertia: str, places: list[str]) -> None:
+    """Entries that are not positive or symmetric, or no numbers, are reported at once, and the time too."""
+    text = f"""
+title = "x"
+model = "euler"
+body.inertia = {inertia}
+initial.omega = [1, 2, 3]
+time = {{ end = 0, samples = 1 }}
+"""
+    with pytest.raises(Refused) as caught:
+        read(text, "x")
+    at = [line.split(" @ ")[1].split()[0] for line in caught.value.faults]
+    assert at == [*(f"body.inertia{place}" for place in places), "time.end", "time.samples"]

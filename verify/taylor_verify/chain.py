@@ -21,6 +21,7 @@ from taylor_verify.numbers.working_precision import in_turn
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
+from taylor_verify.scenes.doubles import beyond_doubles
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
@@ -44,15 +45,12 @@ def judge_scene(
     asked = tolerances(tolerance, [scene])
     problem = posed(scene, solver, rung)
     if isinstance(problem, Trajectory):
-        outcome, detail = problem.outcome, problem.detail
-        is_refused = outcome is Outcome.NOT_REPRESENTABLE
-        status = Status.REFUSED if is_refused else Status.UNAVAILABLE
-        is_missing = outcome is Outcome.NO_PACKAGE
-        cause = Cause.MISSING_PACKAGE if is_missing else Cause.NOT_POSED
-        return unjudged(scene, solver, rung, status, detail, cause, outcome)
+        return _not_begun(scene, solver, rung, problem)
     began = perf_counter()
     trajectory = _answer(solver, problem)
     seconds = perf_counter() - began
+    if trajectory.outcome is Outcome.NOT_REPRESENTABLE:
+        return _not_begun(scene, solver, rung, trajectory)
     if trajectory.file is not None:
         try:
             return _judged_as_file(scene, solver, rung, trajectory.file, asked)
@@ -62,6 +60,15 @@ def judge_scene(
     if causes:
         judged = with_causes(judged, problem, trajectory)
     return with_note_of_answer(judged, rung, trajectory)
+
+
+def _not_begun(scene: Scene, solver: Solver, rung: Rung, trajectory: Trajectory) -> Judgement:
+    """Return the judgement of a run that could not begin, by the outcome that says why."""
+    outcome = trajectory.outcome
+    is_refused, is_missing = outcome is Outcome.NOT_REPRESENTABLE, outcome is Outcome.NO_PACKAGE
+    status = Status.REFUSED if is_refused else Status.UNAVAILABLE
+    cause = Cause.MISSING_PACKAGE if is_missing else Cause.NOT_POSED
+    return unjudged(scene, solver, rung, status, trajectory.detail, cause, outcome)
 
 
 def _judged_as_file(
@@ -111,3 +118,5 @@ def _answer(solver: Solver, problem: Problem) -> Trajectory:
         return solver.answered(problem) if isinstance(solver, Callback) else solver.solve(problem)
     except SystemExit as end:
         return raised(end)
+    except OverflowError:
+        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=beyond_doubles(problem.scene))

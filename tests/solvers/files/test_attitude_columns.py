@@ -94,6 +94,7 @@ def test_rodrigues_parameters_are_exact() -> None:
     [
         ("zyx=2:3", "expected 3 columns, got 2 from 2 to 3"),
         ("mrp_deg=2:4", "expected the name of one of our columns or groups, got `mrp_deg`"),
+        ("foo=2", r"got `foo` @ columns foo=2 "),
         ("zyx=2:9", "expected a column of the file, by its name or by a number up to 4, got `9`"),
     ],
 )

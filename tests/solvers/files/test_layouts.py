@@ -102,6 +102,31 @@ def test_times_of_a_long_scene_are_no_clock(scene: Scene, tmp_path: Path) -> Non
     assert read(file, (), long).times == (10**9, 10**9 + 1)
 
 
+@pytest.mark.parametrize("start", [10**12, 10**15, 10**18])
+def test_times_that_fit_a_late_scene_as_they_stand_have_no_unit(
+    start: int, scene: Scene, tmp_path: Path
+) -> None:
+    """Times of 10^12 are milliseconds only where they do not reach the scene as they stand."""
+    file = tmp_path / "mine.csv"
+    late = replace(scene, clock=replace(scene.clock, start=start, instants=(start, start + 10)))
+    for first in (start, start + 5, start + 100):
+        file.write_text(f"t,w1,w2,w3\n{first},1,2,3\n{first + 1},1,2,3\n")
+        table = read(file, (), late)
+        assert table.times == (first, first + 1)
+        assert not table.notes
+    assert 0 < read(file, (), scene).times[1] < 1
+
+
+def test_lines_of_another_length_hide_no_bad_words(scene: Scene, tmp_path: Path) -> None:
+    """A line that is too short or too long, and each word that is no number, are reported together."""
+    file = tmp_path / "mine.csv"
+    file.write_text("t,w1,w2,w3\n0,1,x,3\n1,1,2\n2,y,2,3,4\n3,1,2,3\n")
+    with pytest.raises(Refused) as refused:
+        read(file, (), scene)
+    got = [line.partition(", got ")[2].split(" @ ")[0] for line in refused.value.faults]
+    assert got == ["3", "5", "'y'", "'x'"]
+
+
 # Binary formats.
 
 

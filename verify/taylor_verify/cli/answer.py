@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
+from taylor_verify.records.faults import Refused
+
 PASS, FAIL, WRONG_CALL, UNDECIDED, INTERRUPTED = 0, 1, 2, 3, 130
 # The graver first: a call that went wrong has shown nothing at all.
 _GRAVITY = (WRONG_CALL, FAIL, UNDECIDED, PASS)
@@ -17,6 +19,25 @@ class WrongCall(Exception):  # noqa: N818 (it names what was done)
     def __init__(self, *faults: str) -> None:
         self.faults = faults
         super().__init__("\n".join(faults))
+
+
+class CallParts:
+    """Parts of a call that are read one after another before any work begins, and their ``faults``."""
+
+    def __init__(self) -> None:
+        self.faults: list[str] = []
+
+    def read(self, read: Callable[..., Any], *given: Any) -> Any:
+        """Return what is read; None after a wrong call or a refusal, whose lines are noted."""
+        try:
+            return read(*given)
+        except (WrongCall, Refused) as error:
+            self.faults += error.faults
+
+    def end(self) -> None:
+        """Raise WrongCall with the faults of all parts, if there are any."""
+        if self.faults:
+            raise WrongCall(*self.faults)
 
 
 @contextmanager

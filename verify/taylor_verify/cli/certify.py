@@ -8,9 +8,17 @@ from typing import Any
 
 from taylor_verify.certify import certify
 from taylor_verify.certify.certificate import Certificate
-from taylor_verify.cli.answer import FAIL, PASS, UNDECIDED, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import (
+    FAIL,
+    PASS,
+    UNDECIDED,
+    Answer,
+    CallParts,
+    WrongCall,
+    wrong_calls,
+)
 from taylor_verify.cli.console import titled
-from taylor_verify.cli.inputs import parse_tolerance, read_scene
+from taylor_verify.cli.inputs import parse_tolerance, read_scene, read_tolerances
 from taylor_verify.cli.progress import working
 from taylor_verify.records.json_text import complete
 from taylor_verify.words.certificate import certificate_lines, finding_sentence
@@ -18,7 +26,10 @@ from taylor_verify.words.certificate import certificate_lines, finding_sentence
 
 def answer(options: argparse.Namespace) -> Answer:
     """Print the certificate of a file."""
-    scene = read_scene(options.scene)
+    parts = CallParts()
+    scene = parts.read(read_scene, options.scene)
+    parts.read(read_tolerances, options.tolerance, None)
+    parts.end()
     with wrong_calls():
         tolerance = parse_tolerance(options.tolerance)
         if isinstance(tolerance, dict):

@@ -10,8 +10,8 @@ from typing import Final
 from rich.text import Text
 
 from taylor_verify.check import check
-from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
-from taylor_verify.cli.ci import concluded, outputs
+from taylor_verify.cli.answer import Answer, CallParts, WrongCall, wrong_calls
+from taylor_verify.cli.ci import Outputs, concluded, outputs
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.inputs import (
     known_rungs,
@@ -57,12 +57,17 @@ _NUMBERS: Final = (
 
 def answer(options: argparse.Namespace) -> Answer:
     """Judge somebody's trajectory; of several files also find the order of convergence."""
-    (options.rung,) = known_rungs([options.rung])
+    parts = CallParts()
+    rungs, asked = parts.read(known_rungs, [options.rung]), parts.read(outputs, options)
     if options.event is not None:
-        return _of_events(options)
+        return _of_events(options, parts, asked)
+    parts.faults += repeated(options.files)
+    steps = parts.read(_steps, options)
     with working(f"check {', '.join(options.files)}"):
-        scene, files, steps = _asked(options)
-    asked = outputs(options)
+        scene, files = scene_and_files(options, parts)
+    tolerances = parts.read(read_tolerances, options.tolerance, scene and [scene])
+    parts.end()
+    (options.rung,), options.tolerances = rungs, tolerances
     if len(files) == 1:
         one = _judged(options, scene, files[0])
         text = partial(_text_of_one, one, scene.name, options.rung, options.explain)
@@ -75,22 +80,9 @@ def answer(options: argparse.Namespace) -> Answer:
 
 def _judged(options: argparse.Namespace, scene: Scene, file: TrajectoryFile) -> FileJudgement:
     """Judge one file as the options say."""
-    tolerances = read_tolerances(options.tolerance, [scene])
-    as_asked = (options.accept_conventions, options.partial, tolerances)
+    as_asked = (options.accept_conventions, options.partial, options.tolerances)
     with working(f"check {file.name}"):
         return judge_file(file, scene, rung(options.rung), *as_asked)
-
-
-def _asked(
-    options: argparse.Namespace,
-) -> tuple[Scene, list[TrajectoryFile], Sequence[float] | None]:
-    """Read scene, files and steps; the faults of all are reported at once."""
-    faults, steps = repeated(options.files), None
-    try:
-        steps = _steps(options)
-    except WrongCall as error:
-        faults += error.faults
-    return (*scene_and_files(options, faults), steps)
 
 
 def _steps(options: argparse.Namespace) -> list[float] | None:
@@ -109,12 +101,14 @@ def _steps(options: argparse.Namespace) -> list[float] | None:
         return checked_steps(steps, len(options.files))
 
 
-def _of_events(options: argparse.Namespace) -> Answer:
+def _of_events(options: argparse.Namespace, parts: CallParts, asked: Outputs) -> Answer:
     """Judge the times of an event in one file."""
     if len(options.files) > 1:
-        raise WrongCall(f"expected one file with --event, got {len(options.files)}")
-    scene, (file,) = read_scene(options.scene), options.files
-    asked = outputs(options)
+        parts.faults.append(f"expected one file with --event, got {len(options.files)}")
+    scene = parts.read(read_scene, options.scene)
+    parts.read(read_tolerances, options.tolerance, None)
+    parts.end()
+    (file,) = options.files
     with working(f"check {file}"), wrong_calls():
         tolerance = parse_tolerance(options.tolerance)
         judged = check(scene, file, options.rung, tolerance=tolerance, event=options.event)

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import PASS, Answer, CallParts, WrongCall, wrong_calls
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.folders import unwritable, writable_file
 from taylor_verify.cli.inputs import known_rungs, require_matplotlib
@@ -37,13 +37,17 @@ _PAGE: Final = ".html"
 
 def answer(options: argparse.Namespace) -> Answer:
     """Draw the motion of a scene, and the errors of files, every picture to a file of its own."""
-    require_matplotlib("draw")
-    (options.rung,) = known_rungs([options.rung])
-    scene, files = scene_and_files(options)
-    place = _place(options, scene)
+    parts = CallParts()
+    parts.read(require_matplotlib, "draw")
+    rungs = parts.read(known_rungs, [options.rung])
+    scene, files = scene_and_files(options, parts)
+    place = parts.read(_place, options, options.scene if scene is None else scene.name)
     names = [name.strip() for name in options.only.split(",")] if options.only else []
     if options.animate and (names or files):
-        raise WrongCall("expected a scene alone with --animate, got --only or files @ --animate")
+        fault = "expected a scene alone with --animate, got --only or files @ --animate"
+        parts.faults.append(fault)
+    parts.end()
+    (options.rung,) = rungs
     with working(f"draw {scene.name}"), wrong_calls(kinds=NotDrawn):
         with wrong_calls(f" @ {scene.name}", Unsettled):
             document = motion(scene)
@@ -125,9 +129,9 @@ def _write(drawings: Mapping[str, Picture], place: Path, is_alone: bool) -> list
     ]
 
 
-def _place(options: argparse.Namespace, scene: Scene) -> Path:
+def _place(options: argparse.Namespace, scene: str) -> Path:
     """Return the file that --out names, from which each picture has its name. Raises WrongCall."""
-    stem = Path(scene.name).with_suffix("").as_posix().replace("/", "-").strip("-.")
+    stem = Path(scene).with_suffix("").as_posix().replace("/", "-").strip("-.")
     place = writable_file(stem if options.out is None else options.out, "--out")
     endings, others = ((_PAGE,), STILLS) if options.animate else (STILLS, (_PAGE,))
     if options.out is None or not place.suffix:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from functools import partial
 from typing import Any, Final
 
-from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, WrongCall
+from taylor_verify.cli.answer import PASS, UNDECIDED, Answer, CallParts, WrongCall
 from taylor_verify.cli.console import Page, bold, titled
 from taylor_verify.cli.inputs import read_number, read_scene
 from taylor_verify.cli.progress import working
@@ -21,6 +22,7 @@ from taylor_verify.exact.printed_events import (
 from taylor_verify.exact.request import MOST_DIGITS
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import NO_CLOSED_FORM, NoClosedForm, Unsettled
+from taylor_verify.scenes.scene import Scene
 
 # Characters of a line of 80 beside the name of a quantity. Entries of a wider matrix get a line each.
 _ROOM: Final = 62
@@ -30,20 +32,25 @@ _MOST_IN_ALL: Final = 10_000_000
 
 def answer(options: argparse.Namespace) -> Answer:
     """Print the exact motion at the times asked for, or the times of an event."""
+    parts = CallParts()
     if not 1 <= options.digits <= MOST_DIGITS:
-        raise WrongCall(
-            f"expected a number from 1 to {MOST_DIGITS}, got {options.digits} @ --digits"
-        )
+        got = f"got {options.digits} @ --digits"
+        parts.faults.append(f"expected a number from 1 to {MOST_DIGITS}, {got}")
     if (options.event is None) is (options.at is None):
         got = "none" if options.event is None else "both"
-        raise WrongCall(f"expected one of --at T,T,... and --event TEXT --until T, got {got}")
+        fault = f"expected one of --at T,T,... and --event TEXT --until T, got {got}"
+        parts.faults.append(fault)
     if (options.event is None) is not (options.until is None):
-        raise WrongCall("expected --event TEXT and --until T together")
-    return _of_times(options) if options.event is None else _of_events(options)
+        parts.faults.append("expected --event TEXT and --until T together")
+    scene = parts.read(read_scene, options.scene)
+    until = None if options.until is None else parts.read(read_number, options.until, "--until")
+    texts = [text for times in options.at or () for text in times.split(",")]
+    times = [(text.strip(), parts.read(read_number, text, "--at")) for text in texts]
+    parts.end()
+    return _of_times(options, scene, times) if until is None else _of_events(options, scene, until)
 
 
-def _of_events(options: argparse.Namespace) -> Answer:
-    until, scene = read_number(options.until, "--until"), read_scene(options.scene)
+def _of_events(options: argparse.Namespace, scene: Scene, until: Fraction) -> Answer:
     content: dict[str, Any] = {"events": [], "undecided": []}
     try:
         with working(f"exact {scene.name}"):
@@ -61,15 +68,14 @@ def _of_events(options: argparse.Namespace) -> Answer:
     return Answer(status, document, partial(titled, scene.name, f": {first}", rest), doubts)
 
 
-def _of_times(options: argparse.Namespace) -> Answer:
-    words = [text for times in options.at for text in times.split(",")]
-    if len(words) * options.digits > _MOST_IN_ALL:
-        asked = f"{len(words)} times of {options.digits} digits"
+def _of_times(
+    options: argparse.Namespace, scene: Scene, times: Sequence[tuple[str, Fraction]]
+) -> Answer:
+    if len(times) * options.digits > _MOST_IN_ALL:
+        asked = f"{len(times)} times of {options.digits} digits"
         raise WrongCall(
             f"expected at most {_MOST_IN_ALL} digits in all times, got {asked} @ --digits"
         )
-    times = [(text.strip(), read_number(text, "--at")) for text in words]
-    scene = read_scene(options.scene)
     try:
         with working(f"exact {scene.name}"):
             motion = solution(scene, options.route)

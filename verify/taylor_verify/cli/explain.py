@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import PASS, Answer
+from taylor_verify.cli.answer import PASS, Answer, CallParts
 from taylor_verify.cli.console import Page, bold
 from taylor_verify.cli.inputs import known_rungs, read_scene
 from taylor_verify.cli.progress import working
@@ -17,6 +17,7 @@ from taylor_verify.cli.sentences import figure, status_text
 from taylor_verify.explain.explanation import explanation
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.reason import Reason
+from taylor_verify.scenes.scene import Scene
 
 # The unit of time is the scene's, whatever that is.
 _UNITS = {
@@ -29,11 +30,18 @@ _UNITS = {
 
 def answer(options: argparse.Namespace) -> Answer:
     """Explain one run."""
-    (rung,) = known_rungs([options.rung])
-    scene = read_scene(options.scene, warn=False)
+    parts = CallParts()
+    rungs, scene = parts.read(known_rungs, [options.rung]), parts.read(_read, options.scene)
+    parts.end()
+    (rung,) = rungs
     with working(f"explain {options.scene}"):
         content = explanation(scene, rung)
     return Answer(PASS, content, partial(_text, content))
+
+
+def _read(name: str) -> Scene:
+    # The explanation itself has the warnings.
+    return read_scene(name, warn=False)
 
 
 def _text(content: Mapping[str, Any]) -> str:

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from typing import Any, Final
 
 from taylor_verify.batch.chosen_scenes import read_all
-from taylor_verify.cli.answer import WrongCall, wrong_calls
+from taylor_verify.cli.answer import CallParts, WrongCall, wrong_calls
 from taylor_verify.cli.streams import say
 from taylor_verify.judge.tolerances import Tolerances, tolerances
 from taylor_verify.numbers.precision import rung
@@ -21,9 +21,16 @@ _SHOWN: Final = 3
 
 
 def known_rungs(rungs: Iterable[str]) -> list[str]:
-    """Return each rung once. Raises WrongCall for a name that is none."""
+    """Return each rung once. Raises WrongCall with every name that is none."""
+    parts = CallParts()
+    known = [parts.read(_known_rung, name) for name in dict.fromkeys(rungs)]
+    parts.end()
+    return known
+
+
+def _known_rung(name: str) -> str:
     with wrong_calls(" @ --rung"):
-        return [rung(name).name for name in dict.fromkeys(rungs)]
+        return rung(name).name
 
 
 def read_scene(name: str, warn: bool = True) -> Scene:
@@ -58,6 +65,12 @@ def read_number(text: str, option: str) -> Fraction:
         raise WrongCall(f"expected {error}, got {text!r} @ {option}") from error
 
 
+def known_count(number: int | None, option: str) -> None:
+    """Raise WrongCall for a number of things that is below 1."""
+    if number is not None and not number >= 1:
+        raise WrongCall(f"expected a number of at least 1, got {number} @ {option}")
+
+
 def require_matplotlib(option: str) -> None:
     """Raise WrongCall without the package that draws."""
     if find_spec("matplotlib") is None:
@@ -66,8 +79,8 @@ def require_matplotlib(option: str) -> None:
         )
 
 
-def read_tolerances(text: str | None, scenes: Iterable[Scene]) -> Tolerances:
-    """Return the tolerances that --tolerance asks for, checked against some scenes.
+def read_tolerances(text: str | None, scenes: Iterable[Scene] | None) -> Tolerances:
+    """Return the tolerances that --tolerance asks for, checked against some scenes; None: not known.
 
     Raises WrongCall for what is none.
     """

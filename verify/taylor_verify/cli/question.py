@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from functools import partial
 
-from taylor_verify.cli.answer import PASS, Answer, WrongCall
+from taylor_verify.cli.answer import PASS, Answer, CallParts, WrongCall
 from taylor_verify.cli.inputs import known_rungs, read_scene
 from taylor_verify.cli.streams import as_json_text
 from taylor_verify.models.problem import NotRepresentable, Problem, pose
@@ -15,10 +15,12 @@ from taylor_verify.solvers.process.protocol import column_names, question
 
 def answer(options: argparse.Namespace) -> Answer:
     """Print the question as JSON, or the header and the times of a trajectory file as CSV."""
+    parts = CallParts()
     if options.csv and options.json:
-        raise WrongCall("expected one of --csv and --json, got both @ question")
-    (name,) = known_rungs([options.rung])
-    scene = read_scene(options.scene)
+        parts.faults.append("expected one of --csv and --json, got both @ question")
+    rungs, scene = parts.read(known_rungs, [options.rung]), parts.read(read_scene, options.scene)
+    parts.end()
+    (name,) = rungs
     try:
         problem = pose(scene, rung(name))
     except NotRepresentable as reason:

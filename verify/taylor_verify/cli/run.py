@@ -15,11 +15,19 @@ from taylor_verify.batch.expectations import Agreement
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.lock import Occupied
 from taylor_verify.batch.report import ReportNotWritten
-from taylor_verify.cli.answer import PASS, WRONG_CALL, Answer, WrongCall, graver, wrong_calls
+from taylor_verify.cli.answer import (
+    PASS,
+    WRONG_CALL,
+    Answer,
+    CallParts,
+    WrongCall,
+    graver,
+    wrong_calls,
+)
 from taylor_verify.cli.ci import Outputs, concluded, outputs
 from taylor_verify.cli.console import PIPED_WIDTH, Cell, Page, bold, print_table
 from taylor_verify.cli.folders import IN_A_CHECKOUT, writable
-from taylor_verify.cli.inputs import known_rungs, read_tolerances
+from taylor_verify.cli.inputs import known_count, known_rungs, read_tolerances
 from taylor_verify.cli.progress import advancing
 from taylor_verify.cli.sentences import (
     print_arithmetic,
@@ -60,19 +68,20 @@ _OVERVIEW: Final = (
 
 def answer(options: argparse.Namespace) -> Answer:
     """Solve, compare and judge."""
-    rungs = known_rungs(options.rung) if options.rung else None
-    with wrong_calls(" @ --solver"):
-        solver_named(options.solver)
-    selection = select(options.scenes or None, rungs)
-    for warning in selection.warnings:
+    parts = CallParts()
+    rungs = parts.read(known_rungs, options.rung) if options.rung else None
+    parts.read(_check_solver, options.solver)
+    selection = parts.read(select, options.scenes or None, rungs)
+    for warning in selection.warnings if selection else ():
         say(f"warning: {warning}")
-    if options.jobs is not None and not options.jobs >= 1:
-        raise WrongCall(f"expected a number of at least 1, got {options.jobs} @ --jobs")
-    names = [scene.name for scene in selection.scenes]
-    folder = writable(options.out, names=names) if options.out is not None else None
-    published = _published(options.against) if options.against is not None else None
-    asked = outputs(options)
-    tolerances = read_tolerances(options.tolerance, selection.scenes)
+    parts.read(known_count, options.jobs, "--jobs")
+    names = [scene.name for scene in selection.scenes] if selection else []
+    folder = parts.read(writable, options.out, "--out", names) if options.out is not None else None
+    published = parts.read(_published, options.against) if options.against is not None else None
+    asked = parts.read(outputs, options)
+    scenes = selection.scenes if selection else None
+    tolerances = parts.read(read_tolerances, options.tolerance, scenes)
+    parts.end()
     written = [f"wrote {folder / 'tables'} and {folder / 'data'}"] if folder is not None else []
     status = PASS
     try:
@@ -90,6 +99,12 @@ def answer(options: argparse.Namespace) -> Answer:
         # A run that took hours is shown in any case.
         results, status, written = error.results, WRONG_CALL, [f"{error} (--out)"]
     return _answer(results, asked, published, written, status, options.explain)
+
+
+def _check_solver(name: str) -> None:
+    """Raise WrongCall for a name that is no solver."""
+    with wrong_calls(" @ --solver"):
+        solver_named(name)
 
 
 def _published(folder: str) -> Earlier:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import sys
 import tempfile
 from argparse import Namespace
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from taylor_verify.cli.answer import WrongCall
+from taylor_verify.cli.answer import CallParts, WrongCall
 from taylor_verify.cli.inputs import read_scene
-from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.columns.assigned import Request, request
 from taylor_verify.solvers.files.file import TrajectoryFile, read
@@ -30,30 +29,20 @@ _ENDINGS: Final[Mapping[bytes, str]] = {
 }
 
 
-def scene_and_files(
-    options: Namespace, faults: Sequence[str] = ()
-) -> tuple[Scene, list[TrajectoryFile]]:
-    """Read the scene and the files of a call, each file once.
+def scene_and_files(options: Namespace, parts: CallParts) -> tuple[Any, list[TrajectoryFile]]:
+    """Read the scene and the files of a call, each file once; their faults are noted.
 
-    Raises WrongCall with the faults of all, behind the ``faults`` that are known.
+    The scene is None after a fault.
     """
-    known = list(faults)
-
-    def attempt(reading: Callable[..., Any], *given: Any) -> Any:
-        try:
-            return reading(*given)
-        except (WrongCall, Refused) as error:
-            known.extend(error.faults)
-
-    scene = attempt(read_scene, options.scene)
-    columns = request(options.columns or ())
-    files = [attempt(_read_named, name, columns, scene) for name in dict.fromkeys(options.files)]
-    if known:
-        raise WrongCall(*known)
-    return scene, files
+    scene, columns = (
+        parts.read(read_scene, options.scene),
+        parts.read(request, options.columns or ()),
+    )
+    names = dict.fromkeys(options.files)
+    return scene, [parts.read(_read_named, name, columns or (), scene) for name in names]
 
 
-def _read_named(name: str, columns: Request, scene: Scene) -> TrajectoryFile:
+def _read_named(name: str, columns: Request, scene: Scene | None) -> TrajectoryFile:
     """Return the trajectory in a file, or on standard input for `-`. Raises Refused and WrongCall."""
     if name != NAME:
         return read(name, columns, scene)

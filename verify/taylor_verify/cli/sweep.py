@@ -11,10 +11,10 @@ from typing import Final
 from taylor_verify.batch.cluster import Unreachable, executor_named
 from taylor_verify.batch.lock import Occupied
 from taylor_verify.batch.sweeps.sweep import sweep
-from taylor_verify.cli.answer import Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import Answer, CallParts, wrong_calls
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import writable
-from taylor_verify.cli.inputs import known_rungs, parse_tolerance
+from taylor_verify.cli.inputs import known_rungs, parse_tolerance, read_tolerances
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.sentences import figure, print_end, status_text
 from taylor_verify.cli.streams import say
@@ -40,15 +40,15 @@ _SHOWN: Final = 5
 
 def answer(options: argparse.Namespace) -> Answer:
     """Judge all bodies of a sweep, and show how the errors are spread."""
-    (rung,) = known_rungs([options.rung])
-    folder = writable(options.out) if options.out is not None else None
+    parts = CallParts()
+    rungs = parts.read(known_rungs, [options.rung])
+    folder = parts.read(writable, options.out) if options.out is not None else None
     if options.jobs is not None and options.executor != "local":
-        raise WrongCall(
-            "expected --jobs or --executor, which has its own number, got both @ --jobs"
-        )
-    began = monotonic()
-    with wrong_calls():
-        tolerance = parse_tolerance(options.tolerance)
+        fault = "expected --jobs or --executor, which has its own number, got both @ --jobs"
+        parts.faults.append(fault)
+    parts.read(read_tolerances, options.tolerance, None)
+    parts.end()
+    (rung,), tolerance, began = rungs, parse_tolerance(options.tolerance), monotonic()
     with (
         wrong_calls(" @ --executor", Unreachable),
         wrong_calls(" (--out)", Occupied),

@@ -12,10 +12,24 @@ from typing import Any, Final
 
 from rich.text import Text
 
-from taylor_verify.cli.answer import PASS, UNDECIDED, WRONG_CALL, Answer, WrongCall, wrong_calls
+from taylor_verify.cli.answer import (
+    PASS,
+    UNDECIDED,
+    WRONG_CALL,
+    Answer,
+    CallParts,
+    WrongCall,
+    wrong_calls,
+)
 from taylor_verify.cli.console import Page, bold, print_table
 from taylor_verify.cli.folders import alone_in, not_written, writable
-from taylor_verify.cli.inputs import known_rungs, read_number, read_scenes, require_matplotlib
+from taylor_verify.cli.inputs import (
+    known_count,
+    known_rungs,
+    read_number,
+    read_scenes,
+    require_matplotlib,
+)
 from taylor_verify.cli.progress import working
 from taylor_verify.cli.streams import say
 from taylor_verify.records.replacement import replace_files
@@ -36,17 +50,18 @@ _TIMES: Final = ("seconds", "spread", "first_seconds", "compile_seconds")
 
 def answer(options: argparse.Namespace) -> Answer:
     """Measure each scene, and with a target find the cheapest setting that reaches it."""
+    parts = CallParts()
     if not options.scenes:
-        raise WrongCall("expected a scene, such as euler/generic, got none @ tradeoff")
-    if not options.repeats >= 1:
-        raise WrongCall(f"expected a number of at least 1, got {options.repeats} @ --repeats")
-    target = _target(options.target)
-    place = None
+        parts.faults.append("expected a scene, such as euler/generic, got none @ tradeoff")
+    parts.read(known_count, options.repeats, "--repeats")
+    target, place = parts.read(_target, options.target), None
     if options.out is not None:
-        require_matplotlib("--out")
-        place = writable(options.out)
-    rungs = known_rungs(options.rung or RUNGS)
-    asked = _asked(options, rungs)
+        parts.read(require_matplotlib, "--out")
+        place = parts.read(writable, options.out)
+    rungs = parts.read(known_rungs, options.rung or RUNGS)
+    asked = parts.read(_asked, options, rungs or RUNGS)
+    scenes = parts.read(read_scenes, options.scenes)
+    parts.end()
     if options.outside:
         # Before anything is timed: a download is no part of a solve, which says so where there is none.
         for name in toleranced():
@@ -55,7 +70,7 @@ def answer(options: argparse.Namespace) -> Answer:
     documents: list[dict[str, Any]] = []
     missed: list[str] = []
     with alone_in(place), cold_caches():
-        for scene in read_scenes(options.scenes):
+        for scene in scenes:
             with working(f"tradeoff {scene.name}"):
                 trade = trade_off(scene, asked(scene), options.repeats, options.seed)
                 document = trade.document()

@@ -47,14 +47,15 @@ def exact(
     Raises
     ------
     records.faults.Refused
-        For a scene that cannot be read.
+        For a scene that cannot be read, for what is no finite time, and no number of digits up to ten
+        thousand.
     exact.solution.NoClosedForm
         Where the route asks for a closed form that is missing.
     exact.solution.Unsettled
         Where the digits cannot be had at every time. Its ``motion`` has the other rows; row k is that
         of ``times[places[k]]``.
     ValueError
-        For what is no finite time, no number of digits up to ten thousand, no route.
+        For what is no route.
 
     Notes
     -----
@@ -105,12 +106,11 @@ def enclose(
     Raises
     ------
     records.faults.Refused
-        For texts, names and numbers with faults: all of them at once.
+        For texts, names and numbers with faults: all of them at once. For what is no finite time, and no
+        number of digits up to ten thousand.
     exact.solution.Unsettled
         Where a time is not reached: the text says how far the motion is followed and why it ends there.
         Its ``motion`` has the rows before; row k is that of ``times[places[k]]``.
-    ValueError
-        For what is no finite time, and no number of digits up to ten thousand.
 
     Notes
     -----
@@ -154,14 +154,13 @@ def events(
     Raises
     ------
     records.faults.Refused
-        For a scene or a text that cannot be read, and for an expression that jumps.
+        For a scene or a text that cannot be read, and for an expression that jumps. For what is no finite
+        time, and no number of digits up to ten thousand.
     exact.event_times.Incomplete
         Where the motion is not followed to the end of the span, or the expression has no value on the way:
         an Unsettled whose ``events`` are all up to ``events.until``.
     exact.solution.Unsettled
         Where the times cannot be had to so many digits.
-    ValueError
-        For what is no finite time, and no number of digits up to ten thousand.
     """
     from taylor_verify.exact.event_times import events_of
     from taylor_verify.exact.request import check_digits, exact_times

@@ -38,6 +38,8 @@ from taylor_verify.scenes.scene import Scene
 
 # If the phase has more digits than this before its point, an instant takes seconds.
 _MOST_DIGITS: Final = 2000
+# A motion that has decayed further has no digits that anybody reads.
+_MOST_DECAY: Final = 1_000_000
 NOT_QUADRATIC: Final = "damping together with a constant load or with wheels"
 
 
@@ -124,6 +126,8 @@ class Damped(Solution):
             "in the time of the motion without damping, instants lie at e^(|c| t)/|c|, which has more than "
             f"{_MOST_DIGITS} digits before its point"
         )
+        if self._damping * elapsed[-1] > 0:
+            because = f"less than e^-{_MOST_DECAY} of the momenta is left"
         if not near:
             raise Unsettled(because)
         raise Unsettled(because, self._motion.motion([elapsed[k] for k in near], digits), near)
@@ -134,4 +138,4 @@ class Damped(Solution):
         return self._motion.evaluate(elapsed, digits)
 
     def _is_within_reach(self, t: Fraction) -> bool:
-        return -self._damping * t <= Fraction(_MOST_DIGITS * log(10))
+        return -Fraction(_MOST_DIGITS * log(10)) <= self._damping * t <= _MOST_DECAY

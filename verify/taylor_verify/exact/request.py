@@ -9,7 +9,7 @@ from numbers import Rational
 from operator import index
 from typing import Any, Final
 
-from taylor_verify.records.faults import brief
+from taylor_verify.records.faults import Faults, Refused, brief, refusal
 from taylor_verify.scenes.reading.table import exact_number
 
 MOST_DIGITS: Final = 10_000
@@ -18,36 +18,41 @@ MOST_DIGITS: Final = 10_000
 def exact_times(times: Iterable[Any]) -> list[Fraction]:
     """Return each time as the rational that it is; a binary number of any width exactly.
 
-    Raises ValueError for what is no sequence of finite numbers: text in its place, a table, a number
-    that is masked.
+    Raises Refused for what is no sequence of finite numbers, with every fault: text in its place, a table,
+    a number that is masked.
     """
     expected = "a sequence of times"
     if isinstance(times, str | bytes | set | frozenset) or hasattr(times, "columns"):
         kind = "text" if isinstance(times, str) else type(times).__name__
-        raise ValueError(f"expected {expected}, got the {kind} {brief(times)}")
+        raise refusal(expected, f"the {kind} {brief(times)}", "times")
     try:
         listed = list(times)
     except TypeError:
-        raise ValueError(f"expected {expected}, got {brief(times)}") from None
-    return [_exact_time(time, f"times[{i}]") for i, time in enumerate(listed)]
+        raise refusal(expected, brief(times), "times") from None
+    faults = Faults()
+    exact = [_exact_time(time, f"times[{i}]", faults) for i, time in enumerate(listed)]
+    if faults.lines:
+        raise Refused(faults.lines)
+    return exact
 
 
 def check_digits(digits: Any) -> int:
-    """Return the number of digits. Raises ValueError unless it is a whole number from 1 to ten thousand."""
+    """Return the number of digits. Raises Refused unless it is a whole number from 1 to ten thousand."""
     try:
         number = None if isinstance(digits, bool) else index(digits)
     except TypeError:
         number = None
     if number is None or not 1 <= number <= MOST_DIGITS:
-        raise ValueError(f"expected digits from 1 to {MOST_DIGITS}, got {brief(digits)} @ digits")
+        raise refusal(f"digits from 1 to {MOST_DIGITS}", brief(digits), "digits")
     return number
 
 
-def _exact_time(time: Any, place: str) -> Fraction:
+def _exact_time(time: Any, place: str, faults: Faults) -> Fraction:
     try:
         return _exact(time)
     except (ValueError, OverflowError) as error:
-        raise ValueError(f"expected {error}, got {brief(time)} @ {place}") from None
+        faults.add(str(error), brief(time), place)
+        return Fraction(0)
 
 
 def _exact(time: Any) -> Fraction:

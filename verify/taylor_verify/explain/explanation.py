@@ -35,6 +35,7 @@ from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
 from taylor_verify.scenes.bodies import ImmersedBody
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded
@@ -64,7 +65,7 @@ def explanation(scene: Scene | str | PathLike[str], rung: Rung | str) -> dict[st
     shape = ellipsoid.sentences(body) if isinstance(body, ImmersedBody) else []
     orbit = patience.made(partial(_orbit, scene), _NO_ORBIT)
     path = patience.made(partial(_loaded_path, scene, rung), None)
-    loads = patience.made(lambda: path and loads_document(scene, path), None)
+    loads = patience.made(partial(_loads, scene, path), None)
     too_long = _unjudged(scene, rung)
     judged, lacking = patience.made(partial(_judged, scene, rung), too_long)
     record = judged.record.document() if judged.record is not None else {}
@@ -138,9 +139,17 @@ def _loaded_path(scene: Scene, rung: Rung) -> Path | None:
     if scene.body.loads is None:
         return None
     try:
-        return orbit_of_run(pose(scene, rung).given, scene, rung.bits)
+        with within_doubles(scene, Unsettled):
+            return orbit_of_run(pose(scene, rung).given, scene, rung.bits)
     except (NotRepresentable, Unsettled):
         return None
+
+
+def _loads(scene: Scene, path: Path | None) -> Mapping[str, Any] | None:
+    """Return the loads along an orbit; None without one, or where their sizes are beyond the doubles."""
+    with suppress(Unsettled), within_doubles(scene, Unsettled):
+        return None if path is None else loads_document(scene, path)
+    return None
 
 
 def _judged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
@@ -186,7 +195,8 @@ def _orbit(scene: Scene) -> Mapping[str, Any]:
     change them. All are empty if the digits cannot be computed.
     """
     try:
-        orbit = elements(scene, _DIGITS)
+        with within_doubles(scene, Unsettled):
+            orbit = elements(scene, _DIGITS)
     except Unsettled as doubt:
         orbit = Elements("", (), (str(doubt),))
     numbers = [_element(element) for element in orbit.numbers]
@@ -207,7 +217,7 @@ def _condition(
 ) -> dict[str, Any] | None:
     """Return the growth of an error at the first sample along the orbit; None if it is not known."""
     carried = None
-    with suppress(Unsettled):
+    with suppress(Unsettled), within_doubles(scene, Unsettled):
         carried = carrying(scene, path)
     if carried is None:
         return None

@@ -149,6 +149,8 @@ def gates_of(run: Run, steps: Steps, inputs: InputRounding | None = None) -> lis
         gates = _Gates(run, base, steps, measured)
         every = [*gates.states(), *gates.conserved(), *gates.sound_attitude()]
         every += [*gates.velocities(), *gates.laws(exact, digits, bits)]
+    if any(np.isnan(gate.attainable).any() for gate in every):
+        raise OverflowError("a floor is beyond the doubles")
     return [gate.with_input(inputs, float(roundoff)) if inputs else gate for gate in every]
 
 

@@ -23,6 +23,7 @@ from taylor_verify.records.record import Record
 from taylor_verify.records.showing import counts, dataframe, html_table, picture
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
@@ -136,11 +137,12 @@ def judgement(
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, text)
     else:
         try:
-            steps = count_steps(problem, solver, trajectory.steps, seconds)
-            gates = gates_of(run, steps)
-            verdicts = (*initial_verdict(gates, Carried.START), *(gate.verdict for gate in gates))
-            record = run_record(run, [gate.record for gate in gates])
-            return Judgement(verdicts, record)
+            with within_doubles(problem.scene, Unsettled):
+                steps = count_steps(problem, solver, trajectory.steps, seconds)
+                gates = gates_of(run, steps)
+                verdicts = [*initial_verdict(gates, Carried.START), *(g.verdict for g in gates)]
+                record = run_record(run, [gate.record for gate in gates])
+            return Judgement(tuple(verdicts), record)
         except Unsettled as doubt:
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, str(doubt))
     return Judgement((run.verdict(main, status, reason=reason),), None)

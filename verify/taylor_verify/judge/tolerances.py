@@ -53,12 +53,13 @@ NO_TOLERANCES: Final = Tolerances()
 
 
 def tolerances(
-    asked: Tolerances | Tolerance, scenes: Iterable[Scene], place: str = "tolerance"
+    asked: Tolerances | Tolerance, scenes: Iterable[Scene] | None, place: str = "tolerance"
 ) -> Tolerances:
     """Return the tolerances that a caller ``asked`` for, checked against some scenes.
 
     Tolerances are returned unchanged. Raises ValueError, with every fault and its ``place``, for a name
-    that is not a quantity of these scenes and for a tolerance that is not a positive number below 1.
+    that is not a quantity of these scenes and for a tolerance that is not a positive number below 1. Of
+    scenes that are not known, None, any name is a quantity.
     """
     if isinstance(asked, Tolerances):
         return asked
@@ -66,7 +67,7 @@ def tolerances(
         return NO_TOLERANCES
     if not isinstance(asked, Mapping):
         return Tolerances(every=_tolerance(asked, place))
-    known, faults = _quantities(scenes), []
+    known, faults = [*asked] if scenes is None else _quantities(scenes), []
     unknown = [str(name) for name in asked if name not in known]
     if unknown or not asked:
         received = ", ".join(unknown) or "nothing"

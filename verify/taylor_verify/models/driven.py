@@ -13,7 +13,7 @@ import numpy as np
 from taylor_verify.models import own
 from taylor_verify.models.acting import Acting
 from taylor_verify.models.evaluated import wheels
-from taylor_verify.models.units import Units, binary, largest, size
+from taylor_verify.models.units import Units, binary, largest, least_rate, root, size
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import ZERO_VECTOR
 from taylor_verify.scenes.loads.loads import Loads
@@ -41,7 +41,7 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
         sizes = _largest(acting.loads(t, state, held) for t in times)
         rates = _largest(acting.rates(t, state, held) for t in times)
     if sizes is not None and sizes.any():
-        units = _pushed(units, scene, float(span), sizes)
+        units = _pushed(units, scene, span, sizes)
     if loads.rotor:
         units = _wheeled(units, scene, loads)
     given = [0.0] * len(loads.continuous) if rates is None else rates.tolist()
@@ -66,25 +66,25 @@ def _wheeled(units: Units, scene: Scene, loads: Loads) -> Units:
     return replace(units, momentum=momentum, time=min(units.time, 1 / binary(rate)))
 
 
-def _pushed(units: Units, scene: Scene, span: float, sizes: Any) -> Units:
+def _pushed(units: Units, scene: Scene, span: Fraction, sizes: Any) -> Units:
     matrix = scene.body.energy_matrix
     is_rigid, moves = len(matrix) == 3, any(scene.initial.moving)
     block = [row[-3:] for row in matrix[-3:]]
-    angular = 1 / min(float(block[i][i]) for i in range(3)) if is_rigid else float(largest(block))
-    rate = (angular * float(sizes[-3:].max())) ** 0.5
-    time = min(span, 1 / rate) if rate else span
-    momentum = binary(Fraction(float(sizes[-3:].max()) * time))
-    force = binary(Fraction(float(sizes[:3].max()) * time))
+    angular = 1 / min(block[i][i] for i in range(3)) if is_rigid else largest(block)
+    force, moment = (Fraction(float(part.max())) for part in (sizes[:3], sizes[-3:]))
+    square = min(span**2, 1 / (angular * moment)) if moment else span**2
+    momentum, impulse = root(moment**2 * square), root(force**2 * square)
     if moves:
-        momentum, force = max(momentum, units.momentum), max(force, units.impulse)
-    momentum, impulse = momentum or force, force or momentum
-    fastest = Fraction(angular) * momentum
+        momentum, impulse = max(momentum, units.momentum), max(impulse, units.impulse)
+    momentum, impulse = momentum or impulse, impulse or momentum
+    fastest = max(angular * momentum, least_rate(moment, momentum))
     if is_rigid:
         unit = 1 / binary(fastest)
         return replace(units, time=min(units.time, unit) if moves else unit, momentum=momentum)
     linear = largest([row[:3] for row in matrix[:3]])
     coupling = largest([row[3:] for row in matrix[:3]])
     fastest = max(fastest, linear * impulse**2 / momentum, coupling * impulse)
+    fastest = max(fastest, least_rate(force, impulse))
     speed = linear * impulse + coupling * momentum
-    path = max(binary(speed * Fraction(span) * impulse / momentum), Fraction(1))
+    path = max(binary(speed * span * impulse / momentum), Fraction(1))
     return Units(time=1 / binary(fastest), momentum=momentum, impulse=impulse, path=path)

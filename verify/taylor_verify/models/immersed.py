@@ -19,7 +19,16 @@ from taylor_verify.models.kirchhoff import (
     kirchhoff_equations,
 )
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, largest, root, size
+from taylor_verify.models.units import (
+    Units,
+    binary,
+    largest,
+    least_rate,
+    least_unit,
+    push_time,
+    root,
+    size,
+)
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -62,14 +71,19 @@ class Immersed(Mechanics[ImmersedBody, Impulse]):
         return chosen_equations(numbers, rung)
 
     def units(self, body: ImmersedBody, start: Impulse, span: Fraction) -> Units:
-        # Without a force |x| is constant; y may start at zero and receive all the energy.
-        state = start.moving
+        state, force, couple = start.moving, size(body.force), size(body.couple)
         linear, coupling, angular = map(largest, (body.linear, body.coupling, body.angular))
-        spun_up = _spun_up(body.energy_matrix, state, angular)
-        impulse = size(state[:3]) or binary(size(body.force) * span)
-        momentum = max(size(state[3:]), spun_up) or binary(size(body.couple) * span)
+        # Without a force |x| is constant; y may start at zero and receive all the energy.
+        impulse, spun_up = size(state[:3]), _spun_up(body.energy_matrix, state, angular)
+        momentum = max(size(state[3:]), spun_up)
+        time = push_time(span, angular * couple, root(linear * angular) * force)
+        pushed = least_unit(force, time)
+        turned = max(least_unit(couple, time), root(linear / angular) * pushed)
+        impulse = max(impulse, pushed) if impulse else binary(force * span)
+        momentum = max(momentum, turned) if momentum else binary(couple * span)
         impulse, momentum = impulse or momentum or Fraction(1), momentum or impulse or Fraction(1)
         rate = max(linear * impulse**2 / momentum, coupling * impulse, angular * momentum)
+        rate = max(rate, least_rate(force, impulse), least_rate(couple, momentum))
         # Each impulse is at most twice its unit, which bounds the path unless loads or damping act.
         speed = 6 * (linear * impulse + coupling * momentum)
         path = max(2 * binary(speed * span * impulse / momentum), Fraction(1))

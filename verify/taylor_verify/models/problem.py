@@ -30,6 +30,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.instants import Instants
 from taylor_verify.scenes.loads.loads import Loads, Piece
 from taylor_verify.scenes.loads.states import Instant
@@ -159,6 +160,11 @@ def pose(scene: Scene, rung: Rung) -> Problem:
 
     Raises NotRepresentable if the rounded data are no valid body or sample times coincide.
     """
+    with within_doubles(scene, NotRepresentable):
+        return _posed(scene, rung)
+
+
+def _posed(scene: Scene, rung: Rung) -> Problem:
     units = natural_units(scene)
     times = distinct_times(scene.clock, units, rung)
     start, unit = scene.clock.start, units.time

@@ -14,7 +14,16 @@ from taylor_verify.models.euler import PrincipalEuler, TensorEuler, euler_equati
 from taylor_verify.models.fewest_operations import Choice, Numbers
 from taylor_verify.models.form import Equations
 from taylor_verify.models.mechanics import Change, Mechanics
-from taylor_verify.models.units import Units, binary, largest, root, size
+from taylor_verify.models.units import (
+    Units,
+    binary,
+    largest,
+    least_rate,
+    least_unit,
+    push_time,
+    root,
+    size,
+)
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import Rung, floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Matrix, Vector
@@ -57,13 +66,20 @@ class Rigid(Mechanics[RigidBody, Spin]):
         return chosen_equations(numbers, rung)
 
     def units(self, body: RigidBody, start: Spin, span: Fraction) -> Units:
-        """Return the units: H by its size or its growth by the moment, time by omega or by the wheels."""
+        """Return the units: H by its size or its growth by the moment, time by all its rates."""
         momentum = tensors.apply(body.inertia, start.omega)
-        unit = size(momentum) or binary(size(body.moment) * span) or Fraction(1)
-        rate = size(start.omega) or largest(body.inverse_inertia) * unit
+        at_start, moment = size(momentum), size(body.moment)
+        fastest = largest(body.inverse_inertia)
+        # What is at rest may spin up about an axis for the whole span.
+        growth = binary(moment * span)
+        if at_start:
+            growth = least_unit(moment, push_time(span, fastest * moment))
+        unit = max(at_start, growth) or Fraction(1)
+        rate = size(start.omega) if at_start >= growth and at_start else fastest * unit
         # If the moments differ by many orders of magnitude, H may turn much faster than the body.
         rate = max(rate, _nutation(body.inverse_inertia, momentum))
         rate = max(rate, size(tensors.apply(body.inverse_inertia, body.rotor)))
+        rate = max(rate, least_rate(moment, unit))
         return Units(time=1 / binary(rate), momentum=unit)
 
     def derived(self, body: RigidBody, start: Spin) -> Mapping[str, Mapping[str, Value]]:

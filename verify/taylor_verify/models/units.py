@@ -10,11 +10,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.named_numbers import Dimension, Part, Value, entrywise
+
+# So many units a load may give to a momentum, and within a unit of time: powers of that stay numbers.
+_MOST_UNITS: Final = 16
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,24 @@ def largest(matrix: Iterable[Vector]) -> Fraction:
 def size(vector: Vector) -> Fraction:
     """Return a power of two within a factor of two of the norm; 0 for the zero vector."""
     return root(tensors.dot(vector, vector))
+
+
+def least_rate(load: Fraction, unit: Fraction) -> Fraction:
+    """Return the least rate of a unit of time, within which a load gives few units to a momentum."""
+    return load / unit / _MOST_UNITS
+
+
+def least_unit(load: Fraction, time: Fraction) -> Fraction:
+    """Return the least unit of a momentum, of which a load gives few within a time; 0 without a load."""
+    return binary(load * time / _MOST_UNITS)
+
+
+def push_time(span: Fraction, *squares: Fraction) -> Fraction:
+    """Return about the time for which a load pushes in one direction, at most the span.
+
+    ``squares`` are those of rates at which the body turns under it.
+    """
+    return min((span, *(1 / root(square) for square in squares if square)))
 
 
 def root(squared: Fraction) -> Fraction:

@@ -25,6 +25,7 @@ class Cause(StrEnum):
     """The kind of a conclusion: the word that a program reads in place of the sentence."""
 
     NOT_FINITE = "not finite"
+    NO_ATTITUDE = "no attitude"
     VACUOUS = "vacuous bound"
     WIDE_TRUTH = "wide truth"
     FINE_TOLERANCE = "fine tolerance"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 from taylor_verify.records.error_kind import ErrorKind
 from taylor_verify.records.quantities import COMPLETE, CONSERVED_QUANTITIES, GATE_FACTOR, INITIAL
-from taylor_verify.records.reason import late, pace
+from taylor_verify.records.reason import Cause, late, pace
 from taylor_verify.records.status import Status
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def _digits(verdict: Verdict) -> str:
     digits = verdict.digits
     if digits is None or verdict.max is None:
         first = "" if verdict.since is None else f", first at t = {verdict.since:g}"
-        return f"not a finite number{first}"
+        lacks = any(remark.cause is Cause.NO_ATTITUDE for remark in verdict.reason.remarks)
+        return f"{'no attitude' if lacks else 'not a finite number'}{first}"
     size = f"{verdict.max:.2g}{' rad' if verdict.unit == 'rad' else ''}"
     if not digits:
         return f"no digit is right at t = {verdict.at:g} (error {size})"

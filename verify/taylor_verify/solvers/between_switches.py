@@ -43,13 +43,15 @@ def piece_by_piece(problem: Problem, solve: Solve) -> Trajectory:
     ``solve`` takes a problem that begins at ``begin`` and returns states that are still to be formed.
     """
     loads = problem.given.body.loads
-    if loads is None or not (loads.switches or problem.takings):
+    if loads is None or not (loads.switches or problem.held_names):
         return solve(problem)
     way = _Way(problem)
     try:
         for leg in legs(problem, loads):
             if not way.goes(leg, solve):
                 break
+    except OverflowError:
+        raise
     except (ArithmeticError, ValueError) as error:  # a held value that there is not
         return raised(error)
     return way.trajectory()

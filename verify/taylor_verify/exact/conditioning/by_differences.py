@@ -142,7 +142,7 @@ def derivatives(
     with mp.workdps(digits):
         unmoved = solution(scene).evaluate(elapsed, digits)
         columns = []
-        units = real((block_units(scene.body, scene.initial),))
+        units = real((block_units(scene),))
         for j in range(units.size):
             beside = solution(moved(scene, j, step)).evaluate(elapsed, digits)
             columns.append(difference(unmoved, beside, mp.convert(step)))

@@ -75,7 +75,7 @@ class Path:
 
     @cached_property
     def flow(self) -> Flow:
-        return Flow.of(self.scene)
+        return self.carried.flow or Flow.of(self.scene)
 
     @cached_property
     def durations(self) -> Floats:
@@ -198,8 +198,7 @@ class Path:
         names = {name: factors[:, self.span(name)] for name in self.blocks}
         if "momentum" in names:
             names["omega"] = self.flow.equations.spin @ names["momentum"]
-        sizes = {name: np.linalg.norm(rows, axis=(1, 2)) for name, rows in names.items()}
-        return {name: np.where(np.isnan(size), inf, size) for name, size in sizes.items()}
+        return {name: _norms(rows) for name, rows in names.items()}
 
 
 def _narrowed(factor: Floats) -> Floats:
@@ -213,10 +212,15 @@ def _narrowed(factor: Floats) -> Floats:
 
 def _spectral_norms(matrices: Floats) -> Floats:
     """The largest singular value over the last two axes; inf where an entry is not finite."""
+    return _norms(matrices, 2)
+
+
+def _norms(matrices: Floats, order: int | None = None) -> Floats:
+    """A norm over the last two axes, Frobenius's unless given; inf where an entry is not finite."""
     size = np.abs(matrices).max(axis=(-2, -1), keepdims=True)
-    # Divided by their size, because entries up to 1e308 would overflow when squared.
+    # Divided by their size, because squares of entries may be beyond the doubles.
     moderate = np.where(np.isfinite(size), matrices, 0.0) / np.where(size > 0, size, 1.0)
-    norms = np.linalg.norm(moderate, 2, axis=(-2, -1))
+    norms = np.linalg.norm(moderate, order, axis=(-2, -1))
     sizes: Floats = np.where(np.isfinite(size[..., 0, 0]), norms * size[..., 0, 0], inf)
     return sizes
 

@@ -15,8 +15,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from math import inf
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -26,8 +27,10 @@ from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers.precision import floor_log2, power_of_two
 from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Body
-from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
+
+# Powers of two between a unit and the size of a motion.
+_FAR: Final = 40
 
 
 class Steps(NamedTuple):
@@ -39,7 +42,8 @@ class Steps(NamedTuple):
     for bodies under written loads that depend on it or whose scene tracks it.
 
     States of a scene's own stand behind (z, theta, c), and are ``own`` by name (n, components), in the
-    scene's units; they are counted in ``own_units``.
+    scene's units; they are counted in ``own_units``. ``flow`` is there where its units are not those of the
+    start.
     """
 
     steps: Floats
@@ -49,6 +53,7 @@ class Steps(NamedTuple):
     attitude: Floats | None = None
     own: Mapping[str, Floats] = MappingProxyType({})
     own_units: Mapping[str, Fraction] = MappingProxyType({})
+    flow: Flow | None = None
 
 
 def products(steps: Floats) -> Floats:
@@ -75,7 +80,17 @@ class Flow:
     @staticmethod
     def of(scene: Scene) -> Flow:
         """Return the equations of a scene's body, in units of its start."""
-        return _flow(scene.body, scene.initial)
+        return _flow(scene.body, block_units(scene))
+
+    @staticmethod
+    def along(scene: Scene, momenta: Floats) -> Flow:
+        """Return the equations in units of a motion (n, d), where it is far from the size of its start."""
+        sizes = np.abs(momenta).max(axis=0).reshape(-1, 3).max(axis=1)
+        units = block_units(scene)
+        pairs = zip(units, np.repeat(sizes, 3).tolist(), strict=True)
+        nearer = tuple(_nearer(unit, size) for unit, size in pairs)
+        # Loads change it within the span, though it may turn more slowly.
+        return _flow(scene.body, nearer, 0 if nearer == units else abs(scene.clock.elapsed[-1]))
 
     @property
     def units(self) -> dict[str, Fraction]:
@@ -122,15 +137,21 @@ class Flow:
         return rate
 
 
+def _nearer(unit: Fraction, size: float) -> Fraction:
+    """Return a unit, or the power of two near a size that is far from it."""
+    is_far = 0 < size < inf and abs(floor_log2(Fraction(size)) - floor_log2(unit)) > _FAR
+    return power_of_two(floor_log2(Fraction(size))) if is_far else unit
+
+
 @lru_cache(maxsize=16)
-def _flow(body: Body, initial: State) -> Flow:
-    kind, units = kind_of(body), block_units(body, initial)
+def _flow(body: Body, units: Vector, span: Fraction | int = 0) -> Flow:
+    kind = kind_of(body)
     equations = kind.momentum_equations(body)
     unit = exact(units)
     scaled = in_units(equations.hessian, 1 / unit, unit, unit)
     linear = in_units(equations.linear, 1 / unit, unit)
     every = (*scaled.flat, *linear.flat, *(equations.constant / unit))
-    rates = [abs(rate) for rate in every if rate]
+    rates = [abs(rate) for rate in every if rate] + ([1 / span] if span else [])
     time = 1 / power_of_two(floor_log2(max(rates))) if rates else Fraction(1)
     fastest = max((abs(s) for s in (equations.velocity * unit).flat), default=Fraction(0))
     length = power_of_two(floor_log2(fastest * time)) if fastest else Fraction(1)

@@ -136,7 +136,8 @@ class _Run(Enclosing):
             for (begin, _), (end, derivative) in pairwise(self.visited)
         ]
         steps = np.array(matrices).reshape(len(matrices), frame.size, frame.size)
-        return Steps(steps, products(steps), *frame.path(states), frame.own, frame.own_units)
+        own = frame.own, frame.own_units
+        return Steps(steps, products(steps), *frame.path(states), *own, frame.flow)
 
     def rows(self, times: Times, bits: int, most_bits: int) -> Iterator[tuple[int, Row]]:
         """The row for the place of each time; the course meets all times, whichever are asked for.
@@ -194,8 +195,10 @@ class _Frame:
     """The states of the enclosure as momenta, turns, centres and own states, in the units of the flow."""
 
     def __init__(self, scene: Scene, own: Mapping[str, range], states: Floats) -> None:
-        body, kind, flow = scene.body, kind_of(scene.body), Flow.of(scene)
-        moved = frame(scene)
+        body, kind, moved = scene.body, kind_of(scene.body), frame(scene)
+        self._momentum = kind.momentum_matrix(body).astype(float)
+        momenta = states[:, : len(self._momentum)] @ self._momentum.T
+        flow = self.flow = Flow.along(scene, momenta)
         self._turns, self._travels = bool(moved), "centre" in moved
         self._units = np.array([float(unit) for unit in flow.components])
         self._length = float(flow.length)
@@ -206,7 +209,8 @@ class _Frame:
         counts = [float(self.own_units[name]) for name, places in own.items() for _ in places]
         self._own_counts = np.diag(np.array(counts))
         self.size = d + 6 + len(self._own)
-        self._momentum = kind.momentum_matrix(body).astype(float)
+        self._reads_frame = body.loads is not None and body.loads.reads_attitude
+        self._others = np.r_[0:d, d + 6 : self.size]
         self._into_state, self._from_state = kind.state_matrix(body).astype(float), self._momentum
         if body.loads is not None and body.loads.rotor:
             # The enclosure follows H = I omega + h, though omega stands in the state.
@@ -216,6 +220,9 @@ class _Frame:
     def counted(self, begin: _Point, end: _Point, derivative: Floats) -> Floats:
         """Return a derivative of the state at ``end`` by that at ``begin``."""
         step: Floats = self._out(end) @ derivative @ self._into(begin)
+        if not self._reads_frame:
+            # The balls hold zero there, and their midpoints are noise beside a small momentum.
+            step[self._others, self._d : self._d + 6] = 0
         for first in (self._d,) * (not self._turns) + (self._d + 3,) * (not self._travels):
             step[first : first + 3, first : first + 3] = np.eye(3)
         return step

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Final
 
 from taylor_verify.exact.registry import kind_of
 from taylor_verify.numbers import tensors
@@ -12,6 +13,9 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.scenes.bodies import Body
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.scene import Scene
+
+# The square of a momentum that is nothing beside another one, over the square of that.
+_NOTHING: Final = Fraction(1, 2**80)
 
 
 def momentum(body: Body, initial: State) -> Vector:
@@ -26,19 +30,26 @@ def moved(scene: Scene, j: int, share: Fraction) -> Scene:
     Units are powers of two near the size of each component, so that it stays a short rational.
     """
     kind, body, initial = kind_of(scene.body), scene.body, scene.initial
-    amount = share * block_units(body, initial)[j]
+    amount = share * block_units(scene)[j]
     greater = tuple(entry + amount * (i == j) for i, entry in enumerate(momentum(body, initial)))
     state = kind.of_momentum(body, greater)
     return replace(scene, initial=kind.with_state(initial, state))
 
 
-def block_units(body: Body, initial: State) -> Vector:
+def block_units(scene: Scene) -> Vector:
     """Return powers of two near the size of the block of each component of a momentum.
 
-    A block that is zero takes the size that would hold the kinetic energy, 2T = z . energy z; 1 in a body
-    at rest.
+    A block that is nothing beside what constant loads give it has that size. One that is zero takes the
+    size that would hold the kinetic energy, 2T = z . energy z; 1 in a body at rest.
     """
-    z, energy = momentum(body, initial), kind_of(body).momentum_energy(body)
+    body, kind, span = scene.body, kind_of(scene.body), scene.clock.elapsed[-1]
+    given = tuple(span * load for load in kind.momentum_equations(body).constant)
+    z: Vector = ()
+    for first in range(0, len(given), 3):
+        start, pushed = (v[first : first + 3] for v in (momentum(body, scene.initial), given))
+        is_nothing = tensors.dot(start, start) <= _NOTHING * tensors.dot(pushed, pushed)
+        z += pushed if is_nothing else start
+    energy = kind.momentum_energy(body)
     twice_energy = tensors.dot(z, tensors.apply(energy, z))
     units: Vector = ()
     for first in range(0, len(z), 3):

@@ -35,6 +35,8 @@ _LEAST_ORDER: Final = 6
 SPARE_BITS: Final = 12
 # A step that nearly reaches the end is extended to the end.
 _NEARLY: Final = Fraction(63, 64)
+# Powers of two by which one step may be longer or shorter than a guess.
+_MOST_POWERS: Final = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -290,8 +292,13 @@ def _power(exponent: float) -> arb:
 
 
 def _cut(length: Fraction, log2_factor: float) -> Fraction:
-    """The length times 2^log2_factor, cut to so few bits that sums of lengths stay short."""
+    """The length times 2^log2_factor, cut to so few bits that sums of lengths stay short.
+
+    Raises StepTooLong for a length beside which the motion stands still.
+    """
     whole = int(log2_factor // 1)
+    if abs(whole) > _MOST_POWERS:
+        raise StepTooLong
     wide = length * power_of_two(whole) * Fraction(2.0 ** (log2_factor - whole))
     unit = power_of_two(floor_log2(abs(wide)) - _STEP_BITS + 1)
     return int(wide / unit) * unit

@@ -88,14 +88,14 @@ class Laws:
         places, count = _places(loads, state), len(self._elapsed)
         errors, floor = np.full(count, mpf(0), dtype=object), np.zeros(count)
         peaks = [or_one(peak) for peak in self.truth.peaks[state.name]]
-        sizes = np.linalg.norm(self._rounded[:, :, places], axis=2).sum(axis=0)
+        sizes = np.hypot.reduce(self._rounded[:, :, places], axis=2).sum(axis=0)
         for k in rows:
             piece = loads.piece(self._elapsed[k])
             inputs = {name: column[k] for name, column in self._columns.items()}
             values = evaluated(piece, [piece.values[place] for place in places], inputs)
             apart = self._numbers[state.name][k] - np.array(values, dtype=object)
             errors[k] = norms(apart[None, :])[0] / peaks[k]
-            floor[k] = 2 * self.roundoff * sizes[k] / float(peaks[k])
+            floor[k] = 2 * self.roundoff * (sizes[k] / float(peaks[k]))
         unit, widths = f"max|{state.name}|", np.zeros(count)
         return Errors(_named_law(state), unit, in_doubles(errors), widths, {}), floor
 

@@ -145,3 +145,13 @@ def first_flaw(file: TrajectoryFile, quantity: str) -> str:
         if not isinstance(value, Fraction)
     )
     return f"{name} is {value} in row {row + 1}, t = {float(file.times[row]):g}"
+
+
+def first_zero_quaternion(file: TrajectoryFile) -> str:
+    """Return the place of the first quaternion of length zero, which is no attitude; empty without one."""
+    rows = file.groups.get("quaternion", ())
+    row = next((k for k in range(len(rows)) if not any(rows[k])), None)
+    if row is None:
+        return ""
+    names = " ".join(file.columns["quaternion"])
+    return f"{names} are 0 in row {row + 1}, t = {float(file.times[row]):g}"

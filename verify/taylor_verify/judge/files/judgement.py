@@ -32,7 +32,7 @@ from taylor_verify.judge.files.coverage import (
     not_judged,
     span_notes,
 )
-from taylor_verify.judge.files.file_rows import FileRows, first_flaw
+from taylor_verify.judge.files.file_rows import FileRows, first_flaw, first_zero_quaternion
 from taylor_verify.judge.files.stored import storing, with_file_kinds
 from taylor_verify.judge.first_row import initial_verdict
 from taylor_verify.judge.floor.counted_steps import Steps
@@ -52,6 +52,7 @@ from taylor_verify.records.reason import Carried, Cause
 from taylor_verify.records.record import Record
 from taylor_verify.records.status import GRAVITY, Status
 from taylor_verify.records.verdict import Verdict, summary
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
@@ -142,31 +143,32 @@ def judge_file(
     known, explained = Conventions((), World(scene), along_space), Explained()
     answer = FileRows.of(compared, rung, known)
     try:
-        judged = None if _is_far(answer) else _judged(answer, tolerances)
-        if judged is None or not _fits(judged):
-            compared, angles = with_angles(compared, scene, rung)
-            # Causes and conventions are of rows in body axes.
-            in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
-            searched = replace(compared, groups=in_body)
-            if in_body:
-                explained = causes_of_file(searched, rung, known, judged)
-            is_open = accept_conventions or not explained.is_motion
-            # Under loads a unit of time alone is looked for: without one such a file is too far.
-            if in_body and is_open and (scene.body.loads is None or judged is None):
-                known = conventions(searched, scene, rung)
-                known = replace(known, readings={**along_space, **known.readings})
-            if angles:
-                known = replace(known, findings=(angles, *known.findings))
-            if accept_conventions:
-                answer = FileRows.of(compared, rung, known)
-            if judged is None or (accept_conventions and known.findings):
-                judged = _judged_within_reach(answer, known, tolerances)
-        extent = Extent.of(answer.scene, answer.times, rung)
-        notes += tuple(span_notes(answer.scene, answer.times, extent))
-        lack = list(not_judged(extent, missing_groups(has, asked)))
-        if lack and judged.record is not None:
-            row = complete_verdict(scene, file.name, rung, lack, partial)
-            judged = replace(judged, verdicts=(*judged.verdicts, row))
+        with within_doubles(asked, Unsettled):
+            judged = None if _is_far(answer) else _judged(answer, tolerances)
+            if judged is None or not _fits(judged):
+                compared, angles = with_angles(compared, scene, rung)
+                # Causes and conventions are of rows in body axes.
+                in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
+                searched = replace(compared, groups=in_body)
+                if in_body:
+                    explained = causes_of_file(searched, rung, known, judged)
+                is_open = accept_conventions or not explained.is_motion
+                # Under loads a unit of time alone is looked for: without one such a file is too far.
+                if in_body and is_open and (scene.body.loads is None or judged is None):
+                    known = conventions(searched, scene, rung)
+                    known = replace(known, readings={**along_space, **known.readings})
+                if angles:
+                    known = replace(known, findings=(angles, *known.findings))
+                if accept_conventions:
+                    answer = FileRows.of(compared, rung, known)
+                if judged is None or (accept_conventions and known.findings):
+                    judged = _judged_within_reach(answer, known, tolerances)
+            extent = Extent.of(answer.scene, answer.times, rung)
+            notes += tuple(span_notes(answer.scene, answer.times, extent))
+            lack = list(not_judged(extent, missing_groups(has, asked)))
+            if lack and judged.record is not None:
+                row = complete_verdict(scene, file.name, rung, lack, partial)
+                judged = replace(judged, verdicts=(*judged.verdicts, row))
     except NotRepresentable as reason:
         judged = _alone(answer, Status.REFUSED, str(reason), Cause.NOT_POSED)
     except Unsettled as doubt:
@@ -260,10 +262,12 @@ def _verdict_of(sides: Sequence[Gate], file: TrajectoryFile) -> Verdict:
     """Return the worse verdict on a quantity over both directions of time, or that nearer to its bound."""
     verdict = min((gate.verdict for gate in sides), key=_gravity)
     is_finite = all(np.isfinite(gate.errors.values).all() for gate in sides)
-    flaw = "" if is_finite else first_flaw(file, verdict.quantity)
-    if not flaw:
+    if is_finite:
         return verdict
-    return replace(verdict, reason=verdict.reason.with_remark(Cause.NOT_FINITE, flaw))
+    cause, flaw = Cause.NOT_FINITE, first_flaw(file, verdict.quantity)
+    if not flaw:
+        cause, flaw = Cause.NO_ATTITUDE, first_zero_quaternion(file)
+    return replace(verdict, reason=verdict.reason.with_remark(cause, flaw)) if flaw else verdict
 
 
 def _gravity(verdict: Verdict) -> tuple[int, float]:

@@ -125,8 +125,9 @@ class Floor:
         for block, relative in self._relative(invariant, at_nodes, scale):
             has_arcs = self._has_arcs(block, invariant)
             squares = self._squares(block, has_arcs)
-            rounded = np.diff(squares[ends - 1], axis=0, prepend=0.0)
-            injected += np.sum(np.broadcast_to(relative**2, rounded.shape) * rounded, axis=1)
+            rounded = np.sqrt(np.diff(squares[ends - 1], axis=0, prepend=0.0))
+            # The square of a gradient alone may be beyond the doubles.
+            injected += np.sum((np.broadcast_to(relative, rounded.shape) * rounded) ** 2, axis=1)
             if has_arcs:
                 sums = np.cumsum(self._arcs.lengths[:, self.orbit.span(block)], axis=0)
                 moved = np.diff(sums[ends - 1], axis=0, prepend=0.0)

@@ -71,11 +71,12 @@ def carrying(scene: Scene, along: Path | None = None) -> Carrying | None:
     momentum = kind.momentum_rows(scene.body, {n: rows[:1] for n, rows in states.items()})
     factors = []
     for out, rows in states.items():
-        at_most = float(largest(norms(rows)))
+        at_most = largest(norms(rows))
         for k, into in enumerate(kind.momenta):
             (at_first,) = norms(momentum[:, 3 * k : 3 * k + 3])
             if at_first and at_most:
-                factors.append(path.norms(out, into) * float(at_first) / at_most)
+                # Each alone may be beyond the doubles.
+                factors.append(path.norms(out, into) * float(at_first / at_most))
     if not factors:
         return None
     instants = [float(scene.clock.start + elapsed) for elapsed in path.elapsed]

@@ -53,7 +53,7 @@ class Fault(NamedTuple):
 
 
 class Unread(Exception):
-    """A text, or a name that leads to one, that has faults; they are noted."""
+    """A text, or a name that leads to one, that has faults; they are noted, those of a text said."""
 
 
 class Grammar:
@@ -86,7 +86,9 @@ class Grammar:
         finally:
             self._source = outer
         if step is None or len(self.faults) > before:
-            raise Unread
+            raise Unread(
+                "; ".join(f"expected {f.expected}, got {f.got}" for f in self.faults[before:])
+            )
         return step
 
     def _tree(self, text: str) -> ast.expr:
@@ -98,6 +100,8 @@ class Grammar:
                 Fault(self._source.place, strange.start() + 1, expected, ascii(strange[0]))
             )
             raise Unread
+        if (column := _too_deep(text)) is not None:
+            raise self._refusal(column, _NOT_SO_DEEP, "a deeper one")
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -294,6 +298,16 @@ class Grammar:
     def _shown(self, node: ast.expr) -> str:
         segment = self._source.python[node.col_offset : node.end_col_offset]
         return f"`{segment.replace('**', '^')[:20]}`"
+
+
+def _too_deep(text: str) -> int | None:
+    """Return the place of the bracket that is one too many within others; None without one."""
+    depth = 0
+    for place, character in enumerate(text):
+        depth += (character == "(") - (character == ")")
+        if depth > MOST_DEPTH:
+            return place
+    return None
 
 
 def _arguments(count: int) -> str:

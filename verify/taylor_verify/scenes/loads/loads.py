@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.scenes.loads.grammar import Fault
+from taylor_verify.scenes.loads.grammar import Fault, Unread
 from taylor_verify.scenes.loads.piece import Piece, PieceReader
 from taylor_verify.scenes.loads.rounded_steps import finished
 from taylor_verify.scenes.loads.states import Continuous, Held, Instant, State, instants
@@ -90,7 +90,7 @@ class Loads:
         )
         try:
             _ = rounded.switches
-        except NoStep as fault:
+        except (NoStep, Unread) as fault:
             raise ValueError(str(fault)) from None
         return rounded
 

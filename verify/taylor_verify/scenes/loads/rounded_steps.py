@@ -10,7 +10,7 @@ from flint import arb, ctx
 
 from taylor_verify.numbers.irrational import ball
 from taylor_verify.numbers.precision import Rung, power_of_two
-from taylor_verify.scenes.loads.steps import NoStep, Step, needed
+from taylor_verify.scenes.loads.steps import MOST_BITS, NoStep, Step, needed, too_long
 
 # A constant such as sqrt(2) is rounded to a rung from so many bits more than the rung has.
 _SPARE_BITS: Final = 64
@@ -66,6 +66,8 @@ def _value(steps: Sequence[Step], place: int, bits: int) -> Fraction:
             value = _ball(steps, place)
             if value.rel_accuracy_bits() >= bits:
                 mantissa, exponent = value.mid().man_exp()
+                if abs(exponent) > MOST_BITS:
+                    raise too_long()
                 return int(mantissa) * power_of_two(int(exponent))
             if value.is_zero():
                 return Fraction(0)

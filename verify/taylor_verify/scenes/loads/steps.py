@@ -24,6 +24,8 @@ FUNCTIONS: Final[Mapping[str, int | None]] = {
     "sqrt": 0, "exp": 1, "log": None, "sin": 0, "cos": 1, "tan": 0, "asin": 0, "acos": None,
     "atan": 0, "sinh": 0, "cosh": 1, "tanh": 0, "abs": 0,
 }  # fmt: skip
+# What these make of a number has more bits than half of it.
+_GROWING: Final = ("exp", "sinh", "cosh")
 # Operations that jump with their one operand, at rational numbers.
 JUMPS: Final[Mapping[str, Callable[[Fraction], Fraction]]] = {
     "step": lambda a: Fraction(int(a >= 0)),
@@ -48,6 +50,11 @@ class NoStep(ValueError):
     def __init__(self, expected: str, got: str) -> None:
         super().__init__(f"expected {expected}, got {got}")
         self.expected, self.got = expected, got
+
+
+def too_long() -> NoStep:
+    """Return the error for a number of more bits than a scene may have."""
+    return NoStep(f"numbers of at most {MOST_BITS} bits", "a longer one")
 
 
 @dataclass(frozen=True)
@@ -129,7 +136,7 @@ class Steps:
     def number(self, value: Fraction) -> int:
         """The place of an exact number. Raises NoStep for a number of too many digits."""
         if max(value.numerator.bit_length(), value.denominator.bit_length()) > MOST_BITS:
-            raise NoStep(f"numbers of at most {MOST_BITS} bits", "a longer one")
+            raise too_long()
         return self._place(Step("number", number=value), (Fraction(0), value))
 
     def input(self, name: str) -> int:
@@ -221,6 +228,8 @@ class Steps:
         value = self.value(a)
         if value is not None:
             self._count_bits(value)
+            if name in _GROWING and 3 * abs(value) > 2 * MOST_BITS:
+                raise too_long()
             if name == "abs":
                 return self.number(abs(value))
             if name == "log" and value == 1:
@@ -276,13 +285,19 @@ class Steps:
                 return self._whole_power(value, int(exponent))
             if value < 0:
                 raise NoStep("a base that is not negative", str(value))
+            _check_length(value, exponent)
         return self._place(Step("power", (a,), exponent)) if exponent else self.number(Fraction(1))
 
     def _whole_power(self, value: Fraction, exponent: int) -> int:
-        bits = max(value.numerator.bit_length(), value.denominator.bit_length())
-        if bits * abs(exponent) > 2 * MOST_BITS:
-            raise NoStep(f"numbers of at most {MOST_BITS} bits", "a longer one")
+        _check_length(value, exponent)
         return self.number(value**exponent)
+
+
+def _check_length(value: Fraction, exponent: Fraction | int) -> None:
+    """Raise NoStep for a power of too many bits."""
+    bits = max(value.numerator.bit_length(), value.denominator.bit_length())
+    if bits * abs(Fraction(exponent)) > 2 * MOST_BITS:
+        raise too_long()
 
 
 _TIME_ITSELF: Final = (Fraction(1), Fraction(0))

@@ -74,6 +74,9 @@ def _rotation_vector(table: Table) -> Vector | None:
     vector = table.vector("rotation_vector")
     if vector is None or not any(vector):
         return None if vector is None else IDENTITY
+    if tensors.dot(vector, vector) > _MOST_ANGLE**2:
+        table.fault(f"an angle of at most {_MOST_ANGLE}", shown(list(vector)), "rotation_vector")
+        return None
     return _formed(table, "rotation_vector", [Turn(vector, length(vector))])
 
 

@@ -8,7 +8,7 @@ Legend: ``inertia`` I, ``moment`` M; ``clebsch`` has p, p', q, q', r, r' (``p_pr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Final
@@ -16,11 +16,13 @@ from typing import Final
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import float_text
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Matrix, Vector
-from taylor_verify.records.faults import shown
 from taylor_verify.scenes.bodies import DAMPING, Body, Clebsch, Ellipsoid, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Entries, Loads
-from taylor_verify.scenes.reading.table import Table, complete
+from taylor_verify.scenes.reading.table import Table, complete, right
 
+_MOMENT: Final = right("a positive moment of inertia", lambda number: number > 0)
+_SEMI_AXIS: Final = right("a positive semi-axis", lambda number: number > 0)
+_DENSITY: Final = right("a density that is not negative", lambda number: number >= 0)
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
@@ -46,30 +48,13 @@ def _numbers(entries: Entries) -> Vector:
 def _inertia(table: Table) -> Matrix | None:
     """Return I from three principal moments or from a symmetric tensor; positive definite."""
     if any(isinstance(row, list) for row in table.peek("inertia")):
-        tensor, cell = table.symmetric("inertia"), "inertia[{0}][{0}]"
+        tensor = table.symmetric("inertia", diagonal=_MOMENT)
     else:
-        moments, cell = table.vector("inertia"), "inertia[{0}]"
+        moments = table.vector("inertia", reader=_MOMENT)
         tensor = None if moments is None else tensors.diagonal(moments)
-    if tensor is None:
+    if tensor is None or not _is_positive(table, "a positive definite tensor", tensor, "inertia"):
         return None
-    principal = {cell.format(i): tensor[i][i] for i in range(3)}
-    are_positive = _are_right(table, "a positive moment of inertia", principal)
-    if are_positive and _is_positive(table, "a positive definite tensor", tensor, "inertia"):
-        return tensor
-    return None
-
-
-def _are_right(
-    table: Table,
-    expected: str,
-    numbers: Mapping[str, Fraction | None],
-    is_right: Callable[[Fraction], bool] = lambda number: number > 0,
-) -> bool:
-    """Return True if every number is right or missing; each other number is a fault at its key."""
-    wrong = {key: n for key, n in numbers.items() if n is not None and not is_right(n)}
-    for key, number in wrong.items():
-        table.fault(expected, shown(number), key)
-    return not wrong
+    return tensor
 
 
 def _is_positive(
@@ -194,16 +179,12 @@ def _ellipsoid(table: Table) -> ImmersedBody | None:
     form = table.table("ellipsoid")
     if form is None:
         return None
-    semi_axes = form.vector("semi_axes")
-    density, fluid_density = form.number("density"), form.number("fluid_density")
+    semi_axes = form.vector("semi_axes", reader=_SEMI_AXIS)
+    density, fluid_density = (
+        form.number(key, reader=_DENSITY) for key in ("density", "fluid_density")
+    )
     form.close()
-    axes = {f"semi_axes[{i}]": axis for i, axis in enumerate(semi_axes or ())}
-    densities = {"density": density, "fluid_density": fluid_density}
-    are_sound = [
-        _are_right(form, "a positive semi-axis", axes),
-        _are_right(form, "a density that is not negative", densities, lambda number: number >= 0),
-    ]
-    if semi_axes is None or density is None or fluid_density is None or not all(are_sound):
+    if semi_axes is None or density is None or fluid_density is None:
         return None
     # Every motion has an impulse: without a mass of the body, it is that of the fluid alone.
     if density == fluid_density == 0:

@@ -33,10 +33,15 @@ def columns(
         table.fault("a CSV file in UTF-8", str(error), "file")
         return None
     head = [cell.strip() for cell in rows[0]] if rows else []
+    known = True
     for key, column in (("time", time), ("column", value)):
-        if column not in head:
-            table.fault(f"one of the columns {', '.join(head)[:200]}", column[:40], key)
-            return None
+        if head.count(column) != 1:
+            twice = f"`{column[:40]}` in {head.count(column)} columns"
+            got = twice if column in head else column[:40]
+            table.fault(f"one of the columns {', '.join(head)[:200]}", got, key)
+            known = False
+    if not known:
+        return None
     if not 2 <= len(rows) <= most_rows + 1:
         table.fault(f"1 to {most_rows} rows", str(len(rows) - 1), "file")
         return None

@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from itertools import combinations
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeGuard, TypeVar
 
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.records.faults import Faults, cut, near, shown
 
@@ -182,26 +181,22 @@ class Table:
 
     def matrix(self, key: str, size: int = 3) -> Matrix | None:
         """Return a square matrix of exact numbers."""
-        value = self.take(key, f"a {size}x{size} matrix")
-        if value is None:
-            return None
-        if not isinstance(value, list) or len(value) != size:
-            form = ", ".join(["[..]"] * size)
-            self.fault(f"a {size}x{size} matrix [{form}]", shown(value), key)
-            return None
-        return complete([self._row(row, f"{key}[{i}]", size) for i, row in enumerate(value)])
+        return complete(map(complete, self._cells(key, size, None)))
 
-    def symmetric(self, key: str, size: int = 3) -> Matrix | None:
-        """Return a square matrix equal to its transpose; every pair that differs is a fault."""
-        matrix = self.matrix(key, size)
-        if matrix is None or tensors.is_symmetric(matrix):
-            return matrix
-        for i, j in combinations(range(size), 2):
-            if matrix[i][j] != matrix[j][i]:
-                upper, lower = shown(matrix[i][j]), shown(matrix[j][i])
-                got = f"[{i}][{j}] = {upper} but [{j}][{i}] = {lower}"
+    def symmetric(self, key: str, size: int = 3, diagonal: Number | None = None) -> Matrix | None:
+        """Return a square matrix equal to its transpose; every pair that differs is a fault.
+
+        ``diagonal`` reads the entries of the diagonal, if it is given.
+        """
+        cells = self._cells(key, size, diagonal)
+        apart = False
+        for i, j in combinations(range(len(cells)), 2):
+            upper, lower = cells[i][j], cells[j][i]
+            if upper is not None and lower is not None and upper != lower:
+                got = f"[{i}][{j}] = {shown(upper)} but [{j}][{i}] = {shown(lower)}"
                 self.fault("a symmetric matrix", got, key, "write both entries alike")
-        return None
+                apart = True
+        return None if apart else complete(map(complete, cells))
 
     def peek(self, key: str) -> list[object]:
         """Return the entries of an array without taking it; none for any other value."""
@@ -218,13 +213,38 @@ class Table:
         self.fault("a table", shown(value), key, mend)
         return None
 
+    def _cells(self, key: str, size: int, diagonal: Number | None) -> list[list[Fraction | None]]:
+        """Return the entries of a square matrix, None for each that is a fault."""
+        value = self.take(key, f"a {size}x{size} matrix")
+        lost: list[list[Fraction | None]] = [[None] * size for _ in range(size)]
+        if value is None:
+            return lost
+        if not isinstance(value, list) or len(value) != size:
+            form = ", ".join(["[..]"] * size)
+            self.fault(f"a {size}x{size} matrix [{form}]", shown(value), key)
+            return lost
+        for i, row in enumerate(value):
+            if self._is_row(row, f"{key}[{i}]", size):
+                readers = [diagonal or EXACT if i == j else EXACT for j in range(size)]
+                lost[i] = [
+                    self._exact(entry, f"{key}[{i}][{j}]", reader)
+                    for j, (entry, reader) in enumerate(zip(row, readers, strict=True))
+                ]
+        return lost
+
+    def _is_row(self, value: object, key: str, length: int) -> TypeGuard[list[object]]:
+        """Return True for an array of that length; another value is a fault."""
+        if isinstance(value, list) and len(value) == length:
+            return True
+        self.fault(f"{length} numbers", shown(value), key)
+        return False
+
     def _row(
         self, value: object, key: str, length: int, reader: Number | None = None
     ) -> Vector | None:
-        if not isinstance(value, list) or len(value) != length:
-            self.fault(f"{length} numbers", shown(value), key)
-            return None
-        return self._entries(value, key, reader or EXACT)
+        return (
+            self._entries(value, key, reader or EXACT) if self._is_row(value, key, length) else None
+        )
 
     def _entries(self, values: list[object], key: str, reader: Number) -> Vector | None:
         return complete([self._exact(v, f"{key}[{i}]", reader) for i, v in enumerate(values)])
@@ -259,6 +279,18 @@ def exact_number(value: object) -> Fraction:
 
 
 EXACT: Final = Number(exact_number)
+
+
+def right(expected: str, is_right: Callable[[Fraction], bool]) -> Number:
+    """Return a reader of exact numbers of which some are wrong; ``expected`` says what is right."""
+
+    def read(value: object) -> Fraction:
+        number = exact_number(value)
+        if not is_right(number):
+            raise ValueError(expected)
+        return number
+
+    return Number(read)
 
 
 def _from_decimal(value: Decimal) -> Fraction:

@@ -57,12 +57,12 @@ def _moves_away(table: Table, instants: Vector, start: Fraction) -> bool:
 def _equally_spaced(table: Table, start: Fraction | None) -> Clock | None:
     """Return start + k (end - start)/(samples - 1), both ends included."""
     end, samples = table.number("end"), table.number("samples")
+    if end is not None and end == start:
+        table.fault("an end other than the start", shown(end), "end", "the time span is empty")
+        end = None
     if samples is not None and (samples.denominator != 1 or not 2 <= samples <= MOST_SAMPLES):
         table.fault(f"an integer from 2 to {MOST_SAMPLES}", shown(samples), "samples")
         samples = None
     if start is None or end is None or samples is None:
-        return None
-    if end == start:
-        table.fault("an end other than the start", shown(end), "end", "the time span is empty")
         return None
     return Clock(start, EquallySpaced(start, (end - start) / (samples - 1), int(samples)))

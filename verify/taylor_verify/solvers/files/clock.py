@@ -175,7 +175,16 @@ class _Clock:
         if self._is_calendar or (stated and stated.words) or self._first.denominator != 1:
             return ""
         fitting = (u for u, n in _PARTS.items() if _CLOCK[0] <= self._first / n < _CLOCK[1])
-        return next(fitting, "")
+        unit = next(fitting, "")
+        return "" if unit and self._is_as_written(Fraction(1, _PARTS[unit])) else unit
+
+    def _is_as_written(self, factor: Fraction) -> bool:
+        """Return True if the numbers reach the scene as they stand, or are all before it times a factor."""
+        if self._scene is None:
+            return False
+        ends = self._ends
+        first, last = sorted((self._numbers[0], self._numbers[-1]))
+        return bool(first <= ends[1] and last >= ends[0]) or bool(last * factor < ends[0])
 
     @cached_property
     def _unit(self) -> Unit:
@@ -233,14 +242,18 @@ class _Clock:
             lag = _ROWS_OF_A_LAG * abs(last - first) / (len(self._numbers) - 1)
             beyond = last > self._last + _NEAR * abs(clock.elapsed[-1])
             return bool(beyond and abs(first - clock.start) > lag)
-        ends = sorted((clock.start, clock.instants[-1]))
-        return bool(min(first, last) >= ends[1] or max(first, last) <= ends[0])
+        return bool(min(first, last) >= self._last or max(first, last) <= self._ends[0])
 
     @cached_property
-    def _last(self) -> Fraction:
-        """The last instant of the scene."""
+    def _ends(self) -> tuple[Fraction, Fraction]:
+        """The first and the last instant of the scene; zeros without one."""
         clock = self._scene.clock if self._scene else None
-        return max(clock.start, clock.instants[-1]) if clock else Fraction(0)
+        first, last = sorted((clock.start, clock.instants[-1])) if clock else (Fraction(0),) * 2
+        return first, last
+
+    @property
+    def _last(self) -> Fraction:
+        return self._ends[1]
 
     @cached_property
     def times(self) -> list[Any]:

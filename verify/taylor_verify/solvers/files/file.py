@@ -27,7 +27,7 @@ from taylor_verify.solvers.files.columns.assigned import Request
 from taylor_verify.solvers.files.columns.attitudes import one_attitude
 from taylor_verify.solvers.files.columns.selection import select
 from taylor_verify.solvers.files.compact_rows import Rows
-from taylor_verify.solvers.files.formats.column import Column
+from taylor_verify.solvers.files.formats.column import Column, Ragged
 from taylor_verify.solvers.files.formats.reading import parted, read_table
 from taylor_verify.solvers.files.numbered import usual_names
 from taylor_verify.solvers.files.own_states import apart, own_columns, whole
@@ -115,7 +115,16 @@ def read(
     scene's own by their names. Usual other names are taken, and ``columns`` names what has any other name,
     by pairs of our name and the file's. Raises Refused with every fault of it.
     """
-    table, place = read_table(file), one_line(os.fspath(file))
+    place = one_line(os.fspath(file))
+    try:
+        table = read_table(file)
+    except Ragged as ragged:
+        lines = [*ragged.faults]
+        try:
+            from_columns(ragged.table.columns, place, columns, scene=scene)
+        except Refused as others:
+            lines += others.faults
+        raise Refused(lines) from None
     trajectory = from_columns(table.columns, place, columns, table.notes, scene)
     return replace(trajectory, step=step_inside(parted(os.fspath(file))[0], table.columns))
 

@@ -36,19 +36,31 @@ def usual_names(
             mend += f"; of a TUM trajectory --columns {_asked(_TUM, names)}"
         got = f"numbers alone, in {len(names)} column{'s' * (len(names) > 1)}"
         raise refusal("a header line that names the columns", got, place, mend)
+
+    def known(ours: str) -> bool:
+        # A name that means nothing is refused with what was written beside it.
+        return is_ours(ours) or _is_own(ours, scene) or _is_usual(ours, scene)
+
     by_text = dict(zip(numbers, names, strict=True)) | {name: name for name in names}
     # Where fractions of a second are asked for, the time beside them is in seconds.
     clock = "sec" if any(is_fraction(ours) for ours, _ in wanted) else "t"
-    asked = [(clock if o == "t" else o, by_text.get(theirs, theirs)) for o, theirs in wanted]
+    asked = [
+        (clock if ours == "t" else ours, by_text.get(theirs, theirs) if known(ours) else theirs)
+        for ours, theirs in wanted
+    ]
     usual = {theirs: ours for ours, theirs in asked if theirs in names and _is_usual(ours, scene)}
     return usual, [(ours, theirs) for ours, theirs in asked if usual.get(theirs) != ours]
 
 
 def _is_usual(name: str, scene: Scene | None) -> bool:
     """Return True for a name that is read where it stands in a header, and is none of ours."""
-    own = {column for state in scene.own_states for column in state.components} if scene else set()
     is_known = bool(Name.of(name).readings) or is_fraction(name)
-    return is_known and not is_ours(name) and name not in own
+    return is_known and not is_ours(name) and not _is_own(name, scene)
+
+
+def _is_own(name: str, scene: Scene | None) -> bool:
+    """Return True for a component of a state of the scene's own."""
+    return scene is not None and any(name in state.components for state in scene.own_states)
 
 
 def _elements(names: Sequence[str]) -> list[str]:

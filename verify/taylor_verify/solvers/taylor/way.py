@@ -116,7 +116,10 @@ class Way:
         )
         self._rate = self._linearised.fastest(self._start)
         # In these units the motion is of size one, also one that is at rest when it begins.
-        self._radians = max(self._rate, 1.0) * abs(float(self._times[-1]) - float(problem.begin))
+        span = abs(float(self._times[-1]) - float(problem.begin))
+        if not span:
+            raise OverflowError("the span is beyond the doubles")
+        self._radians = max(self._rate, 1.0) * span
         self._calls = _calls(self._radians, problem.rung)
         self._grid = self._instants(self._calls)
         self._course: _Course | None = None
@@ -305,8 +308,9 @@ def _is_finite(rows: Rows) -> bool:
     if rows.dtype == float:
         # A finite sum of squares has no other terms, and a sum that is not may have overflowed.
         numbers = rows.ravel()
-        if isfinite(numbers.dot(numbers)):
-            return True
+        with np.errstate(over="ignore"):
+            if isfinite(numbers.dot(numbers)):
+                return True
     return bool(np.isfinite(rows).all())
 
 

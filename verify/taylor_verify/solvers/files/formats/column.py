@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final, NamedTuple
 
-from taylor_verify.records.faults import Faults, cut
+from taylor_verify.records.faults import Faults, Refused, cut
 from taylor_verify.records.limit import Limit
 from taylor_verify.scenes.reading.time_table import MOST_SAMPLES
 
@@ -50,6 +50,14 @@ class Table(NamedTuple):
 
     columns: list[Column]
     notes: tuple[str, ...] = ()
+
+
+class Ragged(Refused):
+    """The refusal of rows that are longer or shorter than the others: in ``table`` they are as long."""
+
+    def __init__(self, faults: Sequence[str], table: Table) -> None:
+        super().__init__(faults)
+        self.table = table
 
 
 def check_size(columns: int, rows: int, place: object) -> None:

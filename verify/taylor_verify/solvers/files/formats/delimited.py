@@ -12,10 +12,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.records.faults import Faults, Refused, refusal
+from taylor_verify.records.faults import Faults, refusal
 from taylor_verify.solvers.files.formats.column import (
     ROWS,
     Column,
+    Ragged,
     Table,
     alike,
     check_size,
@@ -43,11 +44,14 @@ def read(file: Content, path: Path, first: int = 1, marks: Sequence[str] = MARKS
         top = head(_first_lines(file, first), marks)
         if top is None:
             raise refusal("a header line and rows", "an empty file", path)
-        names, columns = _columns(file, top, path)
+        names, columns, faults = _columns(file, top, path)
     except csv.Error as error:
         raise refusal("a CSV file", f"a fault in it: {error}", path) from None
     columns, notes = _with_points(names, columns, top)
-    return Table(list(map(Column, names, columns)), (*top.notes, *notes))
+    table = Table(list(map(Column, names, columns)), (*top.notes, *notes))
+    if faults:
+        raise Ragged(faults, table)
+    return table
 
 
 def _lines(file: Content, first: int = 1, with_comments: bool = False) -> Iterator[Line]:
@@ -86,26 +90,28 @@ def _numbered_rows(file: Content, top: Head) -> Iterator[tuple[int, list[str]]]:
         yield number, cells
 
 
-def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]]:
-    """Return the names of the columns, a number where there is none, and the texts of each."""
+def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any], list[str]]:
+    """Return the names of the columns, a number where there is none, the texts of each, and faults.
+
+    A row that is too long is cut, and one that is too short has NaN at its end.
+    """
     width = len(top.names) or len(next(_numbered_rows(file, top))[1])
     faults, count, parts = Faults(), 0, list[Any]()
     with alike(faults, f"{path}, more lines") as ragged:
 
-        def sound() -> Iterator[list[str]]:
+        def of_one_length() -> Iterator[list[str]]:
             for number, row in _numbered_rows(file, top):
                 if not any(row) or not any(map(str.strip, row)):
                     # Spreadsheets end in rows of nothing.
                     continue
                 if len(row) == width + 1 and not row[-1].strip():
                     row.pop()
-                if len(row) == width:
-                    yield row
-                else:
+                if len(row) != width:
                     of = "in the header" if top.names else "in the first row"
                     ragged(f"{width} values as {of}", str(len(row)), f"{path}, line {number}")
+                yield row[:width] + ["nan"] * (width - len(row))
 
-        whole = sound()
+        whole = of_one_length()
         while batch := list(islice(whole, _ROWS_AT_ONCE)):
             count += len(batch)
             if count > ROWS.most:
@@ -113,11 +119,9 @@ def _columns(file: Content, top: Head, path: Path) -> tuple[list[str], list[Any]
             check_size(width, count, path)
             # As a string of Python each text takes 50 bytes more.
             parts.append(np.array(batch, dtype=np.dtypes.StringDType()).T)
-    if faults.lines:
-        raise Refused(faults.lines)
     empty = np.empty((width, 0), dtype=np.dtypes.StringDType())
     columns = [*map(np.concatenate, zip(empty, *parts, strict=True))]
-    return _numbered(top.names, width), columns
+    return _numbered(top.names, width), columns, faults.lines
 
 
 def _numbered(names: Sequence[str], width: int) -> list[str]:

@@ -1,0 +1,60 @@
+"""Scenes whose sizes are beyond the doubles, by which steps, roundings and errors are estimated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.numbers.precision import float_text, floor_log2
+from taylor_verify.scenes.named_numbers import numbers
+from taylor_verify.scenes.scene import Scene
+
+# A number within these powers of two makes no size that a double does not hold.
+_MODERATE: Final = 64
+
+
+@contextmanager
+def within_doubles(scene: Scene, kind: Callable[[str], Exception]) -> Iterator[None]:
+    """Raise an error of a kind, which names a number of the scene, where a size is beyond the doubles."""
+    try:
+        with np.errstate(over="raise"):
+            yield
+    except (OverflowError, FloatingPointError) as error:
+        raise kind(beyond_doubles(scene)) from error
+
+
+def beyond_doubles(scene: Scene) -> str:
+    """Return what was expected of a scene: the number that is farthest from one is named."""
+    place, number = max(_numbers(scene), key=lambda pair: _powers(pair[1]))
+    is_text = scene.body.loads is not None and _powers(number) <= _MODERATE
+    got = (
+        "larger or smaller ones by its texts @ body"
+        if is_text
+        else f"{float_text(number)} @ {place}"
+    )
+    return (
+        f"expected a scene whose sizes are doubles, which estimate steps and roundings, got {got}"
+    )
+
+
+def _numbers(scene: Scene) -> Iterator[tuple[str, Fraction]]:
+    """Yield the numbers of a scene that are not zero, each with its place."""
+    body, clock = scene.body, scene.clock
+    parts = [(f"initial.{name}", value) for name, value in scene.initial.parts().items()]
+    # The coefficients of a solid in a fluid are made of what its scene writes.
+    names = {part.name for part in body.PARTS if part.is_energy and scene.model != "euler"}
+    for name, value in body.parts().items():
+        parts.append(("body" if name in names else f"body.{name}", value))
+    if body.loads is not None:
+        parts.append(("body.current", body.loads.current))
+    parts += [("time.start", clock.start), ("time", clock.elapsed[-1])]
+    yield from ((place, n) for place, value in parts for n in numbers(value) if n)
+
+
+def _powers(number: Fraction) -> int:
+    """Return the powers of two between a number and one."""
+    return abs(floor_log2(number))
