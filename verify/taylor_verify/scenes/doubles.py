@@ -21,7 +21,7 @@ _MODERATE: Final = 64
 def within_doubles(scene: Scene, kind: Callable[[str], Exception]) -> Iterator[None]:
     """Raise an error of a kind, which names a number of the scene, where a size is beyond the doubles."""
     try:
-        with np.errstate(over="raise"):
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
             yield
     except (OverflowError, FloatingPointError) as error:
         raise kind(beyond_doubles(scene)) from error
