@@ -92,8 +92,8 @@ def test_all_faults_of_an_ellipsoid_are_told_at_once() -> None:
     with pytest.raises(Refused) as caught:
         read(text.replace(right, wrong), "wrong")
     assert [fault.rpartition(" @ ")[2].partition(" ")[0] for fault in caught.value.faults] == [
-        "body.ellipsoid.mass",
         "body.ellipsoid.semi_axes[0]",
         "body.ellipsoid.semi_axes[2]",
         "body.ellipsoid.density",
+        "body.ellipsoid.mass",
     ]

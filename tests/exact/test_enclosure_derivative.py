@@ -107,7 +107,7 @@ def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> 
     differences = derivatives(scene, times, 30, 110)
     for by_steps, sharp in zip(enclosed(scene, times), differences.momentum, strict=True):
         with ctx.workprec(BITS):
-            counted = in_units(block_units(scene.body, scene.initial), by_steps)
+            counted = in_units(block_units(scene), by_steps)
             size = max(abs(exact_value(entry)) for entry in sharp.flat)
             slack = ball(size * OF_DIFFERENCES).upper()
             for i, row in enumerate(sharp):

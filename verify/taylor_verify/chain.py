@@ -21,7 +21,7 @@ from taylor_verify.numbers.working_precision import in_turn
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.reason import Cause
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.doubles import beyond_doubles
+from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.reading.reader import as_scene
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
@@ -47,10 +47,12 @@ def judge_scene(
     if isinstance(problem, Trajectory):
         return _not_begun(scene, solver, rung, problem)
     began = perf_counter()
-    trajectory = _answer(solver, problem)
-    seconds = perf_counter() - began
-    if trajectory.outcome is Outcome.NOT_REPRESENTABLE:
+    try:
+        trajectory = _answer(solver, problem)
+    except NotRepresentable as reason:
+        trajectory = Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
         return _not_begun(scene, solver, rung, trajectory)
+    seconds = perf_counter() - began
     if trajectory.file is not None:
         try:
             return _judged_as_file(scene, solver, rung, trajectory.file, asked)
@@ -92,7 +94,10 @@ def solve_scene(
     problem = posed(as_scene(scene), solver, rung)
     if isinstance(problem, Trajectory):
         return problem
-    answered = _answer(solver, problem)
+    try:
+        answered = _answer(solver, problem)
+    except NotRepresentable as reason:
+        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
     times = problem.given.clock.instants if answered.file is None else answered.file.times
     quantities = native(answered.quantities, rung)
     return replace(answered, quantities=quantities, times=tuple(times) if quantities else ())
@@ -113,10 +118,14 @@ def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
 
 
 def _answer(solver: Solver, problem: Problem) -> Trajectory:
-    """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on."""
+    """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on.
+
+    Raises NotRepresentable where sizes of the scene are beyond the doubles that its steps are chosen by.
+    """
     try:
-        return solver.answered(problem) if isinstance(solver, Callback) else solver.solve(problem)
+        if isinstance(solver, Callback):
+            return solver.answered(problem)
+        with within_doubles(problem.scene, NotRepresentable, has_warnings=False):
+            return solver.solve(problem)
     except SystemExit as end:
         return raised(end)
-    except OverflowError:
-        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=beyond_doubles(problem.scene))

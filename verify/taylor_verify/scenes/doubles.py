@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -18,27 +18,27 @@ _MODERATE: Final = 64
 
 
 @contextmanager
-def within_doubles(scene: Scene, kind: Callable[[str], Exception]) -> Iterator[None]:
-    """Raise an error of a kind, which names a number of the scene, where a size is beyond the doubles."""
+def within_doubles(
+    scene: Scene, kind: Callable[[str], Exception], has_warnings: bool = True
+) -> Iterator[None]:
+    """Raise an error of a kind where a size is beyond the doubles: it names a number of the scene.
+
+    With ``has_warnings`` what NumPy warns of is such a size too. Where neither a number nor a text of the
+    scene leads beyond, that is no fault of the scene, and the error stays as it is.
+    """
+    answer: Literal["raise"] | None = "raise" if has_warnings else None
     try:
-        with np.errstate(over="raise", divide="raise", invalid="raise"):
+        with np.errstate(over=answer, divide=answer, invalid=answer):
             yield
     except (OverflowError, FloatingPointError) as error:
-        raise kind(beyond_doubles(scene)) from error
-
-
-def beyond_doubles(scene: Scene) -> str:
-    """Return what was expected of a scene: the number that is farthest from one is named."""
-    place, number = max(_numbers(scene), key=lambda pair: _powers(pair[1]))
-    is_text = scene.body.loads is not None and _powers(number) <= _MODERATE
-    got = (
-        "larger or smaller ones by its texts @ body"
-        if is_text
-        else f"{float_text(number)} @ {place}"
-    )
-    return (
-        f"expected a scene whose sizes are doubles, which estimate steps and roundings, got {got}"
-    )
+        place, number = max(_numbers(scene), key=lambda pair: _powers(pair[1]))
+        got = f"{float_text(number)} @ {place}"
+        if _powers(number) <= _MODERATE:
+            if scene.body.loads is None:
+                raise
+            got = "larger or smaller ones by its texts @ body"
+        expected = "a scene whose sizes are doubles, which estimate steps and roundings"
+        raise kind(f"expected {expected}, got {got}") from error
 
 
 def _numbers(scene: Scene) -> Iterator[tuple[str, Fraction]]:
