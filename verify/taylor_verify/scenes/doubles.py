@@ -15,6 +15,7 @@ from taylor_verify.scenes.scene import Scene
 
 # A number within these powers of two makes no size that a double does not hold.
 _MODERATE: Final = 64
+_Answer = Literal["raise"] | None
 
 
 @contextmanager
@@ -23,20 +24,20 @@ def within_doubles(
 ) -> Iterator[None]:
     """Raise an error of a kind where a size is beyond the doubles: it names a number of the scene.
 
-    With ``has_warnings`` what NumPy warns of is such a size too. Where neither a number nor a text of the
-    scene leads beyond, that is no fault of the scene, and the error stays as it is.
+    With ``has_warnings`` what NumPy warns of is such a size too, in scenes that have far numbers, and an
+    overflow by texts of loads. Of any other scene it is no fault, and the error stays as it is.
     """
-    answer: Literal["raise"] | None = "raise" if has_warnings else None
+    place, number = max(_numbers(scene), key=lambda pair: _powers(pair[1]))
+    is_far, has_texts = _powers(number) > _MODERATE, scene.body.loads is not None
+    over: _Answer = "raise" if has_warnings and (is_far or has_texts) else None
+    others: _Answer = "raise" if has_warnings and is_far else None
     try:
-        with np.errstate(over=answer, divide=answer, invalid=answer):
+        with np.errstate(over=over, divide=others, invalid=others):
             yield
     except (OverflowError, FloatingPointError) as error:
-        place, number = max(_numbers(scene), key=lambda pair: _powers(pair[1]))
-        got = f"{float_text(number)} @ {place}"
-        if _powers(number) <= _MODERATE:
-            if scene.body.loads is None:
-                raise
-            got = "larger or smaller ones by its texts @ body"
+        if not (is_far or has_texts):
+            raise
+        got = f"{float_text(number)} @ {place}" if is_far else "others by its texts @ body"
         expected = "a scene whose sizes are doubles, which estimate steps and roundings"
         raise kind(f"expected {expected}, got {got}") from error
 
@@ -51,6 +52,7 @@ def _numbers(scene: Scene) -> Iterator[tuple[str, Fraction]]:
         parts.append(("body" if name in names else f"body.{name}", value))
     if body.loads is not None:
         parts.append(("body.current", body.loads.current))
+        parts += [(f"states.{s.name}", (s.every, s.offset)) for s in body.loads.held_states]
     parts += [("time.start", clock.start), ("time", clock.elapsed[-1])]
     yield from ((place, n) for place, value in parts for n in numbers(value) if n)
 
