@@ -191,6 +191,19 @@ def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
         assert not sentences
 
 
+def test_a_centre_of_mass_that_the_terms_lack_is_no_factor_of_one(tmp_path: Path) -> None:
+    """Where the rest of the matrix is right, its factor is 1, and the numbers beside it are the fault."""
+    arm, without = crossed(np.array([0.05, 0, 0.02])), np.diag([31.9, 31.9, 31.9, 0.12, 4.2, 4.2])
+    own = without - 31.9 * np.block([[np.zeros((3, 3)), arm], [-arm, arm @ arm]])
+
+    def law(t: float, nu: Array, q: Array) -> Array:
+        return np.linalg.solve(own + FULL, -coriolis(without + FULL, nu) @ nu)
+
+    scene = WHOLE.replace(str((body()[0] + FULL).tolist()), str((own + FULL).tolist()))
+    (title,) = titles(tmp_path, scene, answer(law))
+    assert title.startswith("Coriolis terms of a rigid body, and a factor of the rest: m r_1 = ")
+
+
 def test_the_factor_of_a_free_body_leaves_the_entries_that_agree_best_unchanged() -> None:
     """Entries that agree to the last digit weigh more than as many that agree to a thousandth."""
     right = equations_of(read(WHOLE, "vehicle"), has_momenta=False)

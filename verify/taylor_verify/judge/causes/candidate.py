@@ -82,7 +82,8 @@ class Candidate:
         if self.kind == "damping step":
             return not self.numbers[0] > _SLIGHT * self.family.scale[0]
         is_factor = self.kind == "clock" or "factor" in self.family.name
-        return is_factor and f"{self.numbers[0]:.6g}" == "1"
+        is_alone = self.count == 1 or self.kind == "pair"
+        return is_factor and is_alone and f"{self.numbers[0]:.6g}" == "1"
 
 
 def has_few_digits(candidate: Candidate, floor: float) -> bool:
