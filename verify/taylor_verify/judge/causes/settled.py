@@ -34,8 +34,9 @@ PAIR: Final = 1e-4
 # A near family with more numbers fits all that is not nothing.
 NOTHING: Final = 1e-9
 # Defects that noise may make, and how many candidates are tried that leave no more.
-_NOISY: Final = 0.3
+_NOISY: Final = 0.1
 _TRIED: Final = 3
+_SHARE_OF_NOISE: Final = 0.1
 # Of noise this part is left in the next row, by chance in some tens of rows.
 _MEMORY: Final = 0.4
 # Numbers are fitted once more on so many rows, of so many candidates, in so many rounds.
@@ -90,8 +91,9 @@ class Choice:
                     continue
             if proven and self._is_far_behind(proven[0], candidate):
                 continue
-            proof = self._proof(candidate, leaves)
-            if proof is None or not (self._is_near(candidate) or self._leaves_noise(proof)):
+            is_near = self._is_near(candidate)
+            proof = self._proof(candidate, leaves) if is_near else self._in_noise(candidate, leaves)
+            if proof is None:
                 continue
             if proven and candidate.count > max(1, proven[0].candidate.count):
                 if not proven[0].worst > max(BETTER * proof.worst, self._least):
@@ -114,6 +116,14 @@ class Choice:
     def _is_near(self, candidate: Candidate) -> bool:
         """Return True if the defects that are left allow a proof."""
         return candidate.defects < max(candidate.near, _DEFECT_ROUNDINGS * self.floor)
+
+    def _in_noise(self, candidate: Candidate, most: float) -> _Proven | None:
+        """Return the proof of a candidate that leaves noise; it may cost little, as there are others."""
+        budget = self.answer.budget
+        with suppress(Spent), budget.at_most(_SHARE_OF_NOISE * budget.left):
+            proof = self._proof(candidate, most)
+            return proof if proof is not None and self._leaves_noise(proof) else None
+        return None
 
     def _leaves_noise(self, proven: _Proven) -> bool:
         """Return True if what is left has no memory from row to row, as the error of a method has."""
