@@ -1,4 +1,4 @@
-"""With -q an answer is its last line, below the lines on what is no pass."""
+"""Short answers, by -q: the last line, below the lines on what is no pass."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def shown(
 
 
 def test_a_pass_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
-    """Nothing else is said."""
+    """The last line is all that a pass prints."""
     assert shown(["run", "euler/rest"], 0, capsys) == (["4 pass: passed (exit status 0)"], "")
 
 
@@ -56,7 +56,7 @@ def test_a_failing_file_names_its_cause(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_what_is_undecided_is_said(capsys: pytest.CaptureFixture[str]) -> None:
-    """Where there is no row, the reason is the message on stderr."""
+    """The message on stderr is the reason where there is no row."""
     asked = ["exact", "euler/generic", "--event", "sqrt(w2) = 2", "--until", "6", "--digits", "12"]
     _, error = shown(asked, 3, capsys)
     assert "undecided: the expression may have no value" in error

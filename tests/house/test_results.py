@@ -95,7 +95,7 @@ def test_a_sweep_is_read_by_quantity() -> None:
 
 
 def test_a_trajectory_passed_if_its_outcome_is_success() -> None:
-    """One that did not reach the last sample is false, and its error says why."""
+    """A trajectory that did not reach the last sample is false, and its error says why."""
 
     def broken(problem: Any) -> Any:
         raise FloatingPointError("too hard")

@@ -91,7 +91,7 @@ def euler_after_a_jump(jump: float, noise: float) -> Columns:
 def test_a_jump_before_the_steps_of_a_method_is_said_with_them(
     jump: float, noise: float, count: int, tmp_path: Path
 ) -> None:
-    """What stands out in the first row is said with the cause of the rest, and not without it."""
+    """A jump of the first row is said with the cause of the rest, and not without it."""
     scene = RIGID.format(load="").replace(', "attitude"', "")
     sentences = titles(tmp_path, scene, euler_after_a_jump(jump, noise))
     expected = ["a jump between the first two rows, from t = 0 to 0.1", "explicit Euler, h = 0.01"]

@@ -171,7 +171,7 @@ MISSING = "the added mass is missing"
 def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
     factors: Array, noise: float, words: str, tmp_path: Path
 ) -> None:
-    """What is left of the terms is a rigid body: as few numbers as it has are said, or none.
+    """A rigid body is left of the terms: as few numbers as it has are said, or none.
 
     Beside the errors of a method a run as steady as this fixes no entry of a matrix, and what is left is
     measured in the motion of the file where the scene's is unstable.
@@ -192,7 +192,7 @@ def test_a_missing_added_mass_is_named_where_the_scene_has_masses_alone(
 
 
 def test_a_centre_of_mass_that_the_terms_lack_is_no_factor_of_one(tmp_path: Path) -> None:
-    """Where the rest of the matrix is right, its factor is 1, and the numbers beside it are the fault."""
+    """A factor of 1 says that the rest of the matrix is right: the numbers beside it are the fault."""
     arm, without = crossed(np.array([0.05, 0, 0.02])), np.diag([31.9, 31.9, 31.9, 0.12, 4.2, 4.2])
     own = without - 31.9 * np.block([[np.zeros((3, 3)), arm], [-arm, arm @ arm]])
 

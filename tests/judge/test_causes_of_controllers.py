@@ -242,7 +242,7 @@ TRACKED = HELD.replace("[body]", 'track = ["m"]\n[body]')
     ids=["contradicted", "explained"],
 )
 def test_a_cause_says_what_it_leaves_of_own_states(changed: str, words: str) -> None:
-    """Where the file's own held values are others than those of the cause, the sentence says so."""
+    """Held values of the file that are not those of the cause stand in the sentence."""
     (cause,) = check(scene(TRACKED), of_scene(changed)).causes
     assert words in cause.sentence
     assert ("does not explain" in cause.sentence) is words.startswith("does not")
@@ -305,7 +305,7 @@ def test_a_moment_beside_own_states_is_listed_from_row_to_row(text: str, key: st
 
 
 def test_where_no_moment_leads_to_the_second_row_nothing_is_said() -> None:
-    """Where limits hold, another moment changes nothing at first: the file fails, and that is all."""
+    """Another moment changes nothing at first where limits hold: the file fails, and that is all."""
     text = Path("cases/loads/sampled-controller.toml").read_text(encoding="utf-8")
     text = text.replace('limit = "0.15"', 'limit = "0.45"').replace("end = 0.4", "end = 2")
     own = text.replace("samples = 3", "samples = 21")

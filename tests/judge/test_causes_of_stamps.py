@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, titles
+from builders.scenes import THREE_INSTANTS
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 
 from taylor_verify.exact.route import solution
@@ -16,17 +17,7 @@ from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.numbers.precision import exact_value
 from taylor_verify.scenes.reading.reader import read
 
-FREE = """
-title = "Free body"
-model = "euler"
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [0.3, 1, 0.2]
-[time]
-end = 8
-samples = 401
-"""
+FREE = THREE_INSTANTS.replace("end = 2\nsamples = 3", "end = 8\nsamples = 401")
 EVEN = np.round(np.arange(401) * 0.02, 6)
 FRAMES = np.arange(401) / 55
 # The step of a simulator whose rows are not at whole steps.
@@ -91,7 +82,7 @@ def test_other_times_without_such_a_rule_have_none(
 
 
 def test_a_clock_that_drifts_is_named_where_the_attitude_shows_it(tmp_path: Path) -> None:
-    """One time for each row explains omega and attitude, and the times have a law of two numbers."""
+    """Times of a law of two numbers explain omega and attitude, one for each row."""
     made = with_times(EVEN, EVEN - 1e-3 * EVEN + 1e-4 * EVEN**2, TRACKED)
     (title,) = titles(tmp_path, TRACKED, made)
     assert title.endswith("holds the motion at t -0.001 t +0.0001 t^2")

@@ -316,7 +316,7 @@ def test_json_numbers_are_read_as_text(document: str, tmp_path: Path) -> None:
 def test_what_means_nothing_in_a_scene_is_ignored_and_named(
     names: str, ignored: str, tmp_path: Path
 ) -> None:
-    """In a file of a rigid body a part of an impulse, or one that is not clear, is no fault."""
+    """A part of an impulse, or one that is not clear, is no fault in a file of a rigid body."""
     file = tmp_path / "mine.csv"
     others = names.split()
     numbers = ",".join(map(str, range(4 + len(others))))

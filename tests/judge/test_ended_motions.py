@@ -1,4 +1,4 @@
-"""Where the exact motion ends on the way, no solver is blamed, and what is before the end is known."""
+"""Motions that end on the way: no solver is blamed, and what is before the end is known."""
 
 from __future__ import annotations
 

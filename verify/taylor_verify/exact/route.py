@@ -21,6 +21,8 @@ from taylor_verify.scenes.scene import Scene
 
 # Some seconds of work.
 _FEW_STEPS: Final = 5_000
+# Enough to know whether a motion reaches a time.
+_FEW_DIGITS: Final = 3
 # The functions of a closed form by route, in ``closed`` of each kind's room.
 _FUNCTIONS: Final[Mapping[str, str]] = {"arb": "enclosed", "mpmath": "closed_form"}
 CLOSED_ROUTES: Final = tuple(_FUNCTIONS)
@@ -68,6 +70,16 @@ def solution(scene: Scene, route: str | None = None) -> Solution:
     if isinstance(closed, Enclosed) and closed.by_periods:
         return ElseSeries(closed, TaylorSolution(scene, _FEW_STEPS))
     return closed
+
+
+def end_of_motion(scene: Scene, elapsed: Sequence[Fraction]) -> Unsettled | None:
+    """Return the error for a motion under written loads that ends before one of these times; else None."""
+    if scene.body.loads is not None:
+        try:
+            solution(scene).motion(elapsed, _FEW_DIGITS)
+        except Unsettled as doubt:
+            return doubt if doubt.is_end else None
+    return None
 
 
 def _closed_form(scene: Scene, route: str) -> Solution:

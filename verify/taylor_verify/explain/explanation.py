@@ -15,7 +15,7 @@ from taylor_verify.chain import judge_scene
 from taylor_verify.exact import ellipsoid
 from taylor_verify.exact.conditioning.condition import Path
 from taylor_verify.exact.elements import Element, Elements, elements
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.route import end_of_motion, solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.explain.loads import loads_document
 from taylor_verify.judge.floor.arithmetic import truth_digits
@@ -42,8 +42,6 @@ from taylor_verify.solvers.files.file import Recorded
 from taylor_verify.solvers.trajectory import Outcome
 
 _DIGITS = 15
-# Enough to know whether a motion reaches a time.
-_FEW_DIGITS = 3
 # Whoever asks for an explanation reads it at once.
 _SECONDS = 8.0
 _NO_ORBIT: Mapping[str, Any] = {"orbit": {}, "elements": [], "sentences": []}
@@ -114,24 +112,13 @@ def _unjudged(scene: Scene, rung: Rung) -> tuple[Judgement, list[str]]:
 
 def _before_end(scene: Scene, patience: Patience) -> tuple[Scene, list[str]]:
     """Return the scene up to its last sample before the motion ends, and a warning that says so."""
-    whole: tuple[Scene, list[str]] = scene, []
-    if scene.body.loads is None:
-        return whole
     clock = scene.clock
-
-    def reached() -> tuple[Scene, list[str]]:
-        try:
-            solution(scene).motion(clock.elapsed, _FEW_DIGITS)
-        except Unsettled as doubt:
-            if doubt.is_end and len(doubt.places) > 1:
-                instants = tuple(clock.instants[k] for k in doubt.places)
-                sentence = (
-                    f"explained up to t = {shown(instants[-1])}, where its motion is known: {doubt}"
-                )
-                return replace(scene, clock=replace(clock, instants=instants)), [sentence]
-        return whole
-
-    return patience.made(reached, whole)
+    end = patience.made(partial(end_of_motion, scene, clock.elapsed), None)
+    if end is None or len(end.places) < 2:
+        return scene, []
+    instants = tuple(clock.instants[k] for k in end.places)
+    sentence = f"explained up to t = {shown(instants[-1])}, where its motion is known: {end}"
+    return replace(scene, clock=replace(clock, instants=instants)), [sentence]
 
 
 def _loaded_path(scene: Scene, rung: Rung) -> Path | None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
-from taylor_verify.exact.route import solution
+from taylor_verify.exact.route import end_of_motion
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.first_row import initial_verdict
 from taylor_verify.judge.floor.counted_steps import count_steps
@@ -32,9 +32,6 @@ from taylor_verify.words.cells import figure
 
 if TYPE_CHECKING:
     import pandas
-
-# Enough to know whether a motion reaches a time.
-_FEW_DIGITS: Final = 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,7 +129,7 @@ def judgement(
         detail = f" ({trajectory.detail})" if trajectory.detail else ""
         text = f"a run that did not finish is not scored: it {outcome.value}{detail}"
         status, reason = Status.FAIL, stated(Cause.UNFINISHED, text)
-        if end := _end_of_motion(problem):
+        if end := end_of_motion(problem.given, problem.given.clock.elapsed[-1:]):
             text = f"no exact motion is known at the last sample: {end}; the solver {outcome.value}{detail}"
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, text)
     else:
@@ -146,16 +143,6 @@ def judgement(
         except Unsettled as doubt:
             status, reason = Status.UNDECIDED, stated(Cause.NO_TRUTH, str(doubt))
     return Judgement((run.verdict(main, status, reason=reason),), None)
-
-
-def _end_of_motion(problem: Problem) -> str:
-    """Return why the exact motion ends before the last sample; empty where it does not."""
-    if problem.given.body.loads is not None:
-        try:
-            solution(problem.given).motion(problem.given.clock.elapsed[-1:], _FEW_DIGITS)
-        except Unsettled as doubt:
-            return str(doubt) if doubt.is_end else ""
-    return ""
 
 
 def unjudged(

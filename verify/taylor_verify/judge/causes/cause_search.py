@@ -17,7 +17,7 @@ from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.dynamics import Dynamics, dynamics
+from taylor_verify.judge.causes.dynamics import Dynamics
 from taylor_verify.judge.causes.float_answer import Answer, matrices
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
@@ -269,7 +269,7 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
         where = _times(answer, begin, end, is_right_before)
         return [_of_part(answer, part, cause, where) for cause in causes]
     half = part.at(np.s_[: part.count // 2])
-    cause = dynamics(half) if half.count >= _SHORTEST and half.moving else None
+    cause = Dynamics(half).cause() if half.count >= _SHORTEST and half.moving else None
     if cause is None or cause.method is not None:
         return []
     other = replace(part, right=part.right.changed(cause.changes))

@@ -125,10 +125,6 @@ class Dynamics:
         ]
 
 
-def dynamics(answer: Answer) -> Cause | None:
-    return Dynamics(answer).cause()
-
-
 def search_by(answer: Answer, arcs: Arcs) -> Search:
     right = answer.right
     return Search(
@@ -225,7 +221,7 @@ class Search:
         with suppress(Spent), budget.at_most(max(budget.left / 2, _BESIDE)):
             assert isinstance(self.evidence, Arcs)
             for steps in steps_beside(self.evidence, stride, few, faults):
-                cause = dynamics(stepped(self.answer, steps))
+                cause = Dynamics(stepped(self.answer, steps)).cause()
                 if cause is not None:
                     beside = f"beside steps of {steps.name}, {steps.words(self.answer)}"
                     text = f"{cause.text or cause.name}, {beside}"

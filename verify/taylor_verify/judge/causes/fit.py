@@ -17,13 +17,14 @@ from taylor_verify.judge.causes.proof import CAPS
 
 # Part of each number's scale for a central difference.
 DIFFERENCE: Final = 1e-4
-# A factor that is far from 1 is reached by doubling it.
 _ROUNDS: Final = 8
+# A factor that is far from 1 is reached by doubling it.
 _ROUNDS_OF_ONE: Final = 16
-# Trial steps: directions below this part of the largest singular value are left alone; length of the step.
+# What moves by less than this part of the largest singular value is not seen.
 _SEEN: Final = 1e-10
+# Trial steps: directions below this part of the largest singular value are left alone; length of the step.
 _TRIALS: Final = (
-    (1e-10, 1.0),
+    (_SEEN, 1.0),
     (1e-7, 1.0),
     (1e-4, 1.0),
     (1e-2, 1.0),

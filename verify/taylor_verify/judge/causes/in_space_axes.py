@@ -8,7 +8,6 @@ import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis_of
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.float_answer import Answer, Motion, matrices
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import may_leave, whole
@@ -21,12 +20,12 @@ def in_world(answer: Answer, omega: Floats) -> list[Cause]:
     name = (
         "the tensor is not turned with the body: its entries for body axes are used in space axes"
     )
-    cases: list[tuple[str, Changes]] = [(f"{name}: I omega' = I omega x omega + R M", {})]
-    if answer.right.has_loads:
-        # Without a moment no tensor has a part in it.
-        without = f"{name}, and there is no gyroscopic term: omega' = I^-1 R M"
-        cases.insert(0, (without, {"extra": none}))
-    for words, changes in cases:
+    without = f"{name}, and there is no gyroscopic term: omega' = I^-1 R M", {"extra": none}
+    # Without a moment no tensor has a part in it.
+    for words, changes in (
+        *[without] * answer.right.has_loads,
+        (f"{name}: I omega' = I omega x omega + R M", {}),
+    ):
         if not world.failed or not world.moving:
             return []
         motion = whole(world, world.right.changed(changes))

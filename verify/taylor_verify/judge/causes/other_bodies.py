@@ -200,23 +200,22 @@ def families_of_bodies(right: Equations, sizes: Sizes) -> Iterator[Family]:
         yield from _each(right, name, numbers)
     munk = [coriolis(0 * mass[:3], munk=number.along[:3]) for number in masses]
     yield _of_coriolis(right, "three masses in the Munk moment alone", masses, munk)
-    yield from _rigid_alone(right, arm, entries, float(scale[0, 0]))
+    yield from _rigid_alone(right, scale)
     yield _of_body(right, "mass matrix", entries[: len(entries) - lacks])
     yield _of_coriolis(right, "mass matrix of the Coriolis terms alone", entries)
     yield from _single_terms(right)
 
 
-def _rigid_alone(
-    right: Equations, arm: list[_Number], entries: list[_Number], scale: float
-) -> Iterator[Family]:
+def _rigid_alone(right: Equations, scale: Floats) -> Iterator[Family]:
     """Yield the terms of a rigid body, and a factor of all that is none in the mass matrix.
 
     They are all Coriolis terms, of which the moments of inertia are known up to a common number, or the
     Munk moment.
     """
     mass, masses = right.mass, np.diag([1.0, 1, 1, 0, 0, 0])
-    heavy = _Number("mass", float(np.trace(mass[:3, :3])) / 3, scale, masses)
-    inertia = [number for number in entries if number.label[2] > "3"]
+    heavy = _Number("mass", float(np.trace(mass[:3, :3])) / 3, scale[0, 0], masses)
+    lower = [(i, k) for i in (3, 4, 5) for k in range(i, 6)]
+    arm, inertia = _of_arm(mass, scale[0, 3]), _of_entries(mass, scale, lower)
     rest = mass - sum(number.value * number.along for number in (heavy, *arm, *inertia))
     factor = _Number(_REST, 1.0, 1.0, rest)
     yield _of_coriolis(right, f"Coriolis terms {AND_REST}", [factor, heavy, *arm, *inertia])

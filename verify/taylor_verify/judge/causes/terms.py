@@ -66,9 +66,7 @@ def _faults_of_loads(right: Equations) -> Iterator[Family]:
     turned = weighted(loads=-unit, turned_loads=unit)
     yield fault(f"{noun} in space axes", "load", {"extra": turned})
     if right.acting is None:
-        by_R = np.zeros((n, 9))
-        for i in range(n):
-            by_R[i, 3 * (i % 3) : 3 * (i % 3) + 3] = right.load[i - i % 3 : i - i % 3 + 3]
+        by_R = np.vstack([np.kron(np.eye(3), vector) for vector in right.load.reshape(-1, 3)])
         changes = {"extra": weighted(loads=-unit, frame=by_R)}
         yield fault(f"{noun} turned the wrong way, by R", "load", changes)
     some = [("force", np.r_[1, 1, 1, 0, 0, 0]), ("couple", np.r_[0, 0, 0, 1, 1, 1])] * (n == 6)
