@@ -437,23 +437,6 @@ def test_where_float64_does_not_follow_the_enclosure_is_asked(
     assert shift.time_shift == pytest.approx(0.1, rel=1e-14)
 
 
-@pytest.mark.parametrize("name", ["euler/backward", "kirchhoff/whole-motion"])
-@pytest.mark.parametrize("rows", [[0], [0, 3], [2, 5, 9]])
-def test_float64_follows_the_motion_from_few_rows(name: str, rows: list[int]) -> None:
-    """Between rows that are many turns apart, and beyond them, it is the exact motion to five digits."""
-    scene, exact = asked(name)
-    known = exact.motion(scene.clock.elapsed, DIGITS).at(rows)
-    since = np.array([float(scene.clock.elapsed[k]) for k in rows])
-    quick = QuickMotion(scene, known.quantities, since)
-    end = scene.clock.elapsed[-1]
-    for share in (Fraction(-1, 7), Fraction(3, 10), Fraction(9, 8)):
-        times = [end * share, end * share / 3]
-        truth, near = exact.motion(times, DIGITS), quick.at(np.array([float(t) for t in times]))
-        for quantity, exactly in truth.quantities.items():
-            off = near[quantity] - exactly.astype(float)
-            assert np.max(np.abs(off)) < 1e-5 * max(1.0, np.max(np.abs(exactly.astype(float))))
-
-
 @pytest.mark.parametrize("with_first", [True, False], ids=["first row given", "all rows shifted"])
 def test_a_clock_that_is_early_and_drifts_is_told_both(with_first: bool) -> None:
     """A constant and a rate together are no constant, whether or not the first row is the start."""

@@ -11,7 +11,7 @@ from typing import Any, Final, final
 
 import numpy as np
 
-from taylor_verify.judge.causes.float_answer import Places, steady_signs
+from taylor_verify.judge.causes.float_answer import Places
 from taylor_verify.judge.causes.many_flows import Floats, cubic, flow
 from taylor_verify.judge.causes.material import are_known, equations_of
 from taylor_verify.judge.conventions.axis_orders import quaternion_columns
@@ -136,9 +136,6 @@ class QuickMotion:
             self._is_lost = True
         self._begins, places = np.unique(np.concatenate(begins), return_index=True)
         self._states = np.concatenate(rows)[places]
-        if "attitude" in self._names:
-            q = np.split(self._states, self._edges, axis=1)[self._names.index("attitude")]
-            q[:] = steady_signs(q)
 
     def _through(self) -> Course | None:
         """Return the course through the known states, and through as many between them as it needs."""
@@ -147,8 +144,7 @@ class QuickMotion:
             return None
         if not len(gaps):
             return lambda times: np.repeat(states, len(times), axis=0)
-        parts = np.split(states, self._edges, axis=1)
-        size = np.concatenate([np.full(part.shape[1], np.max(np.abs(part))) for part in parts])
+        states, size = self._with_steady_signs(t, states), self._largest(states)
         while len(t) < _MOST_STATES:
             course = partial(cubic, t, states, self._rates(t, states))
             middles = (t[gaps] + t[gaps + 1]) / 2
@@ -158,6 +154,7 @@ class QuickMotion:
             if not np.all(np.isfinite(between)):
                 return None
             if not np.any(is_off):
+                self._begins, self._states = t, states
                 return course
             gaps, middles, between = gaps[is_off], middles[is_off], between[is_off]
             t, states = (
@@ -168,6 +165,23 @@ class QuickMotion:
             gaps = np.sort(np.concatenate([gaps, gaps + 1]))
         return None
 
+    def _with_steady_signs(self, t: Floats, states: Floats) -> Floats:
+        """Return states with the signs of quaternions to which the motion leads, one from the other."""
+        if "attitude" not in self._names:
+            return states
+        begin = int(self._edges[self._names.index("attitude") - 1])
+        q = np.s_[:, begin : begin + 4]
+        ends = self._moved(t[:-1], states[:-1], np.diff(t))
+        signs = np.where(np.sum(ends[q] * states[1:][q], axis=1) < 0, -1.0, 1.0)
+        steady = states.copy()
+        steady[1:][q] *= np.cumprod(signs)[:, None]
+        return steady
+
+    def _largest(self, states: Floats) -> Floats:
+        """Return the largest component of each vector, once for each of its components."""
+        parts = np.split(states, self._edges, axis=1)
+        return np.concatenate([np.full(part.shape[1], np.max(np.abs(part))) for part in parts])
+
     def _moved(self, begins: Floats, states: Floats, spans: Floats) -> Floats:
         """Return the states after arcs, in as many steps as some of them need; NaN where none suffice."""
         some = np.union1d(evenly(len(spans), _SAMPLED), np.argsort(np.abs(spans))[-_SAMPLED:])
@@ -175,7 +189,7 @@ class QuickMotion:
             steps, ends = _STEPS, self._ends(begins[some], states[some], spans[some], _STEPS)
             for _ in range(_DOUBLINGS):
                 finer = self._ends(begins[some], states[some], spans[some], 2 * steps)
-                if np.all(np.abs(finer - ends) <= _SETTLED * np.max(np.abs(finer), axis=0)):
+                if np.all(np.abs(finer - ends) <= _SETTLED * self._largest(finer)):
                     is_all = len(some) == len(spans)
                     return finer if is_all else self._ends(begins, states, spans, steps)
                 steps, ends = 2 * steps, finer
