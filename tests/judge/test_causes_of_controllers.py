@@ -156,27 +156,27 @@ REACTION = 'moment = ["d*w1", "d*w2", "d*w3"]\nrotor'
 
 @pytest.mark.parametrize(
     ("text", "changed", "name"),
-    [
-        (HELD, LATE, "m is used one sample late, by 0.1"),
-        (
-            HELD,
-            HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED),
-            "m continuous, where the scene samples",
-        ),
-        (HELD, LATE.replace("clip(-w1,", "clip(-1.3*w1,"), None),
-        (HELD, LATER, "time by which m is taken late"),
-        (HELD, LATER.replace("clip(-w1,", "clip(-1.3*w1,"), None),
-        (HELD, HELD.replace(VALUE, f"value = [{SHORT}]"), LENGTH),
-        (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]"), LENGTH),
-        (SMOOTH, SMOOTH.replace(LIMITED, '["-w1", "-w2", "-w3"]'), FREE),
-        (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]").replace("-w1*", "-1.3*w1*"), None),
-        (WHEELS, WHEELS.replace("rotor", REACTION), "no reaction of the wheels' motors"),
-        (WHEELS, WHEELS.replace('"1/2"', '"1/3"'), "d"),
-        pytest.param(
-            *(WHEELS, WHEELS.replace("rotor", REACTION).replace('"1/2"', '"9/20"'), None),
-            marks=pytest.mark.slow,
-        ),
-    ],
+    by_turns(
+        [
+            (HELD, LATE, "m is used one sample late, by 0.1"),
+            (
+                HELD,
+                HELD.replace(STATES, "").replace('["m1", "m2", "m3"]', LIMITED),
+                "m continuous, where the scene samples",
+            ),
+            (HELD, LATE.replace("clip(-w1,", "clip(-1.3*w1,"), None),
+            (HELD, LATER, "time by which m is taken late"),
+            (HELD, LATER.replace("clip(-w1,", "clip(-1.3*w1,"), None),
+            (HELD, HELD.replace(VALUE, f"value = [{SHORT}]"), LENGTH),
+            (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]"), LENGTH),
+            (SMOOTH, SMOOTH.replace(LIMITED, '["-w1", "-w2", "-w3"]'), FREE),
+            (SMOOTH, SMOOTH.replace(LIMITED, f"[{SHORT}]").replace("-w1*", "-1.3*w1*"), None),
+            (WHEELS, WHEELS.replace("rotor", REACTION), "no reaction of the wheels' motors"),
+            (WHEELS, WHEELS.replace('"1/2"', '"1/3"'), "d"),
+            (WHEELS, WHEELS.replace("rotor", REACTION).replace('"1/2"', '"9/20"'), None),
+        ],
+        3,
+    ),
     ids=[
         *("late", "continuous", "late and more", "another phase", "another phase and more"),
         *("by length", "by length, smooth", "no limits, smooth", "by length and more"),
@@ -288,7 +288,7 @@ def test_what_a_cause_leaves_is_computed_through_the_kinks_of_limits() -> None:
 
 @pytest.mark.parametrize(
     ("text", "key"),
-    [(BODY, 'moment = ["a1", "a2", "a3"]'), (WHEELS, "rotor")],
+    by_turns([(BODY, 'moment = ["a1", "a2", "a3"]'), (WHEELS, "rotor")]),
     ids=["sampled", "wheels"],
 )
 def test_a_moment_beside_own_states_is_listed_from_row_to_row(text: str, key: str) -> None:

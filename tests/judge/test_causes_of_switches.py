@@ -66,8 +66,8 @@ def test_a_load_that_begins_or_ends_at_another_time_is_named(
     "changes",
     by_turns(
         [
-            [("t-1", "t-1.4"), ("t-3", "t-3.3")],
             [("t-3", "t-2.25"), ("0.15*", "0.2*")],
+            [("t-1", "t-1.4"), ("t-3", "t-3.3")],
             [("-0.1*(step(t-1)-step(t-3))", "-0.1*(step(t-1)-step(t-2))"), ("0.25", "0.3")],
         ]
     ),

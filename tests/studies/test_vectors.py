@@ -170,7 +170,7 @@ def ran(reader: Path, folder: Path, few: Path | None = None) -> tuple[int, str]:
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=pytest.mark.slow if n == "reader.m" else ()) for n in TOLERANCES],
+    [pytest.param(n, marks=() if n == "reader.mjs" else pytest.mark.slow) for n in TOLERANCES],
 )
 def test_a_reader_compares_its_solver_with_the_truth(name: str, tmp_path: Path) -> None:
     """The solver of each reader is right on all free bodies, with wheels and constant moments too."""
