@@ -18,6 +18,7 @@ from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
 from taylor_verify.judge.causes.replays import Steps, moved_by, replay
+from taylor_verify.judge.causes.terms import faults_of_terms
 from taylor_verify.scenes.instants import evenly
 
 _ARCS: Final = 16
@@ -33,8 +34,14 @@ _LARGEST: Final = 2.0
 # A number of damping within this part of one of three digits is that one.
 _SHORT: Final = 1e-6
 _DIGITS: Final = 3
-# The motion of a step: the classical method where it is right, and the first-order one of engines.
+# How near, where no step shows but by the number of its damping.
+_SURELY: Final = 1e-9
+# The motion of a step: the classical method where it is right, and the first-order ones of engines.
 _MOTIONS: Final = {"": "RK4", ", beside steps of explicit Euler": "explicit Euler"}
+_MOTIONS_OF_ENGINES: Final = {
+    ", without the gyroscopic term": "explicit Euler",
+    ", beside one Newton step of backward Euler": "one Newton step of backward Euler",
+}
 
 # The factor of a step, of c and h, and c by that factor and h.
 _Of = Callable[[float, float], float]
@@ -67,16 +74,25 @@ def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield damping by a factor once in each step, after the motion of the step or before it."""
     rows = np.array(evenly(answer.count - stride, _ARCS))
     arcs = Arcs(answer, rows, rows + stride)
-    for words, name in _MOTIONS.items():
+    motions = _MOTIONS | (_MOTIONS_OF_ENGINES if answer.n == 3 else {})
+    for words, name in motions.items():
         for place in ("after", "before"):
-            of_motion = METHODS[name]
+            of_motion, terms = METHODS[name], _terms(answer.right, words)
             step = partial(_damped, of_motion.step, place == "before")
             method = replace(of_motion, step=step, has_frame=not words)
-            fit = _fit(arcs, stride, method)
+            fit = _fit(arcs, stride, method, terms)
             if fit is not None:
-                yield _candidate(arcs, *fit, place, words)
+                yield _candidate(arcs, *fit, place, words, terms)
                 if fit[0].left < max(_EXACT, ROUNDINGS * arcs.floor):
                     return
+
+
+def _terms(right: Equations, words: str) -> Changes:
+    """Return the changes of a motion that has no gyroscopic term; none of others."""
+    if "without" not in words:
+        return {}
+    none = next(faults_of_terms(right))
+    return none.changes(none.right)
 
 
 def _damped(
@@ -90,14 +106,14 @@ def _damped(
     return step(equations, time, v, h) if is_first else v
 
 
-def _family(law: _Of, h: float, pace: float, title: str = "") -> Family:
+def _family(law: _Of, h: float, pace: float, terms: Changes, title: str = "") -> Family:
     def changes(p: Floats) -> Changes:
-        return {"damping": 0.0, "loss": (1 - law(float(p[0]), h)) / h}
+        return {**terms, "damping": 0.0, "loss": (1 - law(float(p[0]), h)) / h}
 
     return Family(title, "damping step", np.zeros(1), np.array([pace]), changes)
 
 
-def _fit(arcs: Arcs, stride: int, method: Method) -> tuple[Steps, Fitted] | None:
+def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps, Fitted] | None:
     """Return the steps from row to row that leave the least, with their damping; None if that is much.
 
     What is left is linear in h.
@@ -109,7 +125,7 @@ def _fit(arcs: Arcs, stride: int, method: Method) -> tuple[Steps, Fitted] | None
     def fitted(count: int) -> tuple[Fitted, Floats]:
         own = replace(answer, stepping=partial(replay, answer, method, count * stride))
         evidence = replace(arcs, answer=own, steps_given=1)
-        family = _family(_FIRST[2], spacing / count, pace)
+        family = _family(_FIRST[2], spacing / count, pace, terms)
         fit = gauss_newton(evidence, family)
         return fit, evidence.defects([family.changes(fit.numbers)]).ravel()
 
@@ -117,18 +133,45 @@ def _fit(arcs: Arcs, stride: int, method: Method) -> tuple[Steps, Fitted] | None
     first, second = fitted(few)[1], fitted(more)[1]
     if not np.linalg.norm(second) < _NEAR * arcs.size:
         return None
-    along = float(second @ (first - second)) / float((first - second) @ (first - second))
-    inverse = 1 / more - along * (1 / few - 1 / more)
-    if not 1 / _MOST < inverse < _LARGEST:
-        return None
-    near = max(1, round(1 / inverse))
-    count = min(range(max(1, near - 1), near + 2), key=lambda count: fitted(count)[0].size)
+    change = first - second
+    if np.linalg.norm(change) > _SURELY * arcs.size:
+        along = float(second @ change) / float(change @ change)
+        inverse = 1 / more - along * (1 / few - 1 / more)
+        if not 1 / _MOST < inverse < _LARGEST:
+            return None
+        near = max(1, round(1 / inverse))
+        around = (
+            range(max(1, near - 1), near + 2)
+            if fitted(near)[0].size > _LEAVES * arcs.size
+            else [near]
+        )
+        count = min(around, key=lambda count: fitted(count)[0].size)
+    else:
+        counts = _counts_of_short_numbers(float(fitted(1)[0].numbers[0]), spacing)
+        if len(counts) != 1:
+            return None
+        (count,) = counts
     best = fitted(count)[0]
     left = best.size / arcs.size
     return (Steps("", method, count, left), best) if left < _LEAVES else None
 
 
-def _candidate(arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str) -> Candidate:
+def _counts_of_short_numbers(number: float, spacing: float) -> list[int]:
+    """Return the numbers of steps in which the damping of a whole row has a number of a few digits.
+
+    An exponential law has one number for all.
+    """
+    of_row, counts = _FIRST[2](number, spacing), list[int]()
+    for count in range(1, _MOST + 1) if of_row > 0 else ():
+        factor, h = of_row ** (1 / count), spacing / count
+        if any(_length(law[3](factor, h)) < _SURELY for law in _LAWS):
+            counts.append(count)
+    return counts
+
+
+def _candidate(
+    arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str, terms: Changes
+) -> Candidate:
     """Return the candidate by the law whose number is short; the laws are alike but for that number."""
     answer, h = arcs.answer, steps.step(arcs.answer)
     factor = _FIRST[2](float(fit.numbers[0]), h)
@@ -138,7 +181,7 @@ def _candidate(arcs: Arcs, steps: Steps, fit: Fitted, place: str, beside: str) -
     long = steps.words(answer)
     each = f"each step of {long}" if long.startswith("h = ") else f"each of {long}"
     title = f"{name}: {what} times {words} {place} the motion of {each}{beside}, with c"
-    family = _family(law, h, 0.1 * Sizes.of(answer).pace, title)
+    family = _family(law, h, 0.1 * Sizes.of(answer).pace, terms, title)
     numbers, motion = np.array([number(factor, h)]), partial(_motion, steps, h)
     return Candidate(family, numbers, steps.left, motion, LEAVES, steps)
 

@@ -25,11 +25,14 @@ _ITERATIONS: Final = 30
 _NEWTON: Final = 4
 _SHIFT: Final = 1e-7
 _SETTLED: Final = 1e-15
+# Evaluations of a step of Newton's method, with its slopes, and of an iterated step, about.
+_EVALUATIONS_OF_NEWTON: Final = 5
+_EVALUATIONS: Final = 12
 
 
 @dataclass(frozen=True)
 class Method:
-    """A step (equations, time, v, h) of some order; one ``is_dear`` that is solved or goes in stages.
+    """A step (equations, time, v, h) of some order, by so many ``evaluations`` where that is not the order.
 
     One that ``has_frame`` leads the attitude and the centre as well. One with a ``run`` (answer, equations,
     h, components) needs more than the state: its step is nearly right, and the run is the motion.
@@ -37,9 +40,14 @@ class Method:
 
     order: int
     step: _Step
-    is_dear: bool = False
+    evaluations: int = 0
     has_frame: bool = False
     run: Any = None
+
+    @property
+    def is_dear(self) -> bool:
+        """True for a step that is solved, or goes in stages."""
+        return self.evaluations > self.order
 
 
 def _explicit(weights: Sequence[float], *rows: Sequence[float]) -> _Step:
@@ -149,14 +157,14 @@ def _runge_kutta(order: int, weights: Sequence[float], *rows: Sequence[float]) -
 
 METHODS: Final[Mapping[str, Method]] = {
     "explicit Euler": Method(1, _explicit([1])),
-    "backward Euler": Method(1, _backward(_NEWTON), is_dear=True),
-    "one Newton step of backward Euler": Method(1, _backward(1), is_dear=True),
+    "backward Euler": Method(1, _backward(_NEWTON), _NEWTON * _EVALUATIONS_OF_NEWTON),
+    "one Newton step of backward Euler": Method(1, _backward(1), _EVALUATIONS_OF_NEWTON),
     "components updated in place": Method(1, _in_place),
     "midpoint": _runge_kutta(2, [0, 1], [1 / 2]),
     "Heun": _runge_kutta(2, [1 / 2, 1 / 2], [1]),
     "Ralston": _runge_kutta(2, [1 / 4, 3 / 4], [2 / 3]),
-    "implicit midpoint": Method(2, _iterated(_midpoint), is_dear=True, has_frame=True),
-    "trapezoid": Method(2, _iterated(_trapezoid), is_dear=True, has_frame=True),
+    "implicit midpoint": Method(2, _iterated(_midpoint), _EVALUATIONS, has_frame=True),
+    "trapezoid": Method(2, _iterated(_trapezoid), _EVALUATIONS, has_frame=True),
     "RK3 (Kutta)": _runge_kutta(3, [1 / 6, 2 / 3, 1 / 6], [1 / 2], [-1, 2]),
     "RK3 (SSP)": _runge_kutta(3, [1 / 6, 1 / 6, 2 / 3], [1], [1 / 4, 1 / 4]),
     "RK4": _runge_kutta(4, [1 / 6, 1 / 3, 1 / 3, 1 / 6], [1 / 2], [0, 1 / 2], [0, 0, 1]),
@@ -166,7 +174,7 @@ METHODS: Final[Mapping[str, Method]] = {
     "RK4 (3/8)": _runge_kutta(4, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1]),
 }
 # The loads of a scene, taken once in a step.
-HELD: Final = Method(1, _held_loads, is_dear=True, has_frame=True)
+HELD: Final = Method(1, _held_loads, _EVALUATIONS, has_frame=True)
 # Methods of the momentum of a rigid body.
 OF_MOMENTUM: Final[Mapping[str, Method]] = {
     "momentum turned by the rate at the begin of the step": Method(1, _turned_by_the_rate),

@@ -50,8 +50,6 @@ _FINE_OF_DEAR: Final = 4
 _MUCH_FINER: Final = 2
 _MOST: Final = 200
 _MOST_OF_DEAR: Final = 128
-# Evaluations of an implicit step, about.
-_EVALUATIONS: Final = 12
 # What a method leaves of the defects to first order, alone and beside a fault, and how small its part is.
 _ALONE: Final = 0.6
 _BESIDE: Final = 0.2
@@ -95,10 +93,9 @@ def replay(
 ) -> Floats:
     """Return v after the spans, each in so many steps."""
     h = spans / steps
-    evaluations = _EVALUATIONS if method.is_dear else method.order
     v = np.broadcast_to(v, (max(len(v), equations.sets), *v.shape[1:]))
     price = equations.price(v.shape[1], len(v) * v.shape[2])
-    answer.budget.spend(steps * evaluations * price)
+    answer.budget.spend(steps * (method.evaluations or method.order) * price)
     for k in range(steps):
         v = method.step(equations, since + k * h, v, h)
         if v.shape[1] > answer.n:

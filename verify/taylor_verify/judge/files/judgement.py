@@ -7,7 +7,8 @@ are two runs that begin at the start.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Final
@@ -134,57 +135,18 @@ def judge_file(
         options = (rung, accept_conventions, partial, tolerances, every)
         return _of_parts(file, [judge_file(part, scene, *options) for part in parts])
     groups = comparable(file, scene)
-    asked, has = scene, [*groups, *elsewhere]
-    notes = (*file.notes, *coverage_notes(file, has, scene))
-    compared = replace(file, groups={name: file.groups[name] for name in groups})
-    tracked = with_needs({scene.known_groups[name].quantity for name in groups})
-    scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
-    along_space = {name: space_axes() for name in file.in_space if name in groups}
-    known, explained = Conventions((), World(scene), along_space), Explained()
-    answer = FileRows.of(compared, rung, known)
-    try:
-        with within_doubles(asked, Unsettled):
-            judged = None if _is_far(answer) else _judged(answer, tolerances)
-            if judged is None or not _fits(judged):
-                compared, angles = with_angles(compared, scene, rung)
-                # Causes and conventions are of rows in body axes.
-                in_body = {n: rows for n, rows in compared.groups.items() if n not in along_space}
-                searched = replace(compared, groups=in_body)
-                if in_body:
-                    explained = causes_of_file(searched, rung, known, judged)
-                is_open = accept_conventions or not explained.is_motion
-                # Under loads a unit of time alone is looked for: without one such a file is too far.
-                if in_body and is_open and (scene.body.loads is None or judged is None):
-                    known = conventions(searched, scene, rung)
-                    known = replace(known, readings={**along_space, **known.readings})
-                if angles:
-                    known = replace(known, findings=(angles, *known.findings))
-                if accept_conventions:
-                    answer = FileRows.of(compared, rung, known)
-                if judged is None or (accept_conventions and known.findings):
-                    judged = _judged_within_reach(answer, known, tolerances)
-            extent = Extent.of(answer.scene, answer.times, rung)
-            notes += tuple(span_notes(answer.scene, answer.times, extent))
-            lack = list(not_judged(extent, missing_groups(has, asked)))
-            if lack and judged.record is not None:
-                row = complete_verdict(scene, file.name, rung, lack, partial)
-                judged = replace(judged, verdicts=(*judged.verdicts, row))
-    except NotRepresentable as reason:
-        judged = _alone(answer, Status.REFUSED, str(reason), Cause.NOT_POSED)
-    except Unsettled as doubt:
-        judged = _alone(answer, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
+    has = (*groups, *elsewhere)
+    plain = _Examined.of(file, scene, groups, rung)
+    judged, examined = _examined(plain, scene, tolerances, accept_conventions)
+    judged, notes = _with_coverage(judged, examined, scene, has, partial)
+    known, explained = examined.known, Explained()
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+        explained = examined.explained
         if known.findings:
-            explained = causes_of_file(searched, rung, known, judged)
-        notes += explained.notes
-        notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
-        notes += () if scene.body.loads is None or known.findings else (NO_CONVENTIONS,)
-        stored = storing(file, rung)
-        notes += () if stored is None else (stored.note,)
-    else:
-        explained = Explained()
+            explained = causes_of_file(examined.in_body_axes, rung, known, judged)
+        notes += _notes_of_failure(file, plain.scene, rung, known, explained)
     if judged.record is not None:
-        notes += tuple(load_notes(scene))
+        notes += tuple(load_notes(plain.scene))
     left = () if accept_conventions else known.findings
     return FileJudgement(
         with_file_kinds(judged.verdicts, file, rung, left),
@@ -192,11 +154,113 @@ def judge_file(
         file,
         conventions=known.findings,
         accepted=accept_conventions,
-        breaks=breaks_of(scene),
+        breaks=breaks_of(plain.scene),
         missing_load=explained.missing_load,
         causes=explained.causes,
-        notes=notes,
+        notes=(*file.notes, *coverage_notes(file, has, scene), *notes),
     )
+
+
+@dataclass(frozen=True)
+class _Examined:
+    """A file under examination: its rows as they are judged, and what is known of them.
+
+    ``scene`` asks for no more than the file has, and ``file`` has the groups that are compared.
+    """
+
+    file: TrajectoryFile
+    scene: Scene
+    rows: FileRows
+    known: Conventions
+    explained: Explained
+
+    @classmethod
+    def of(cls, file: TrajectoryFile, scene: Scene, groups: Sequence[str], rung: Rung) -> _Examined:
+        """Return a file as it stands."""
+        compared = replace(file, groups={name: file.groups[name] for name in groups})
+        tracked = with_needs({scene.known_groups[name].quantity for name in groups})
+        scene = replace(scene, track=scene.track & tracked, states=scene.states & tracked)
+        along_space = {name: space_axes() for name in file.in_space if name in groups}
+        known = Conventions((), World(scene), along_space)
+        return cls(compared, scene, FileRows.of(compared, rung, known), known, Explained())
+
+    @property
+    def in_body_axes(self) -> TrajectoryFile:
+        """The file without what it says is in space axes, for which nothing is searched."""
+        groups = {n: rows for n, rows in self.file.groups.items() if n not in self.file.in_space}
+        return replace(self.file, groups=groups)
+
+    def searched(self, judged: Judgement | None, is_accepted: bool) -> _Examined:
+        """Return what explains the rows, and their conventions; they are read by them if accepted."""
+        rung, scene = self.rows.rung, self.scene
+        file, angles = with_angles(self.file, scene, rung)
+        examined = replace(self, file=file)
+        rows, known, explained = examined.in_body_axes, self.known, self.explained
+        if rows.groups:
+            explained = causes_of_file(rows, rung, known, judged)
+            is_open = is_accepted or not explained.is_motion
+            # Under loads a unit of time alone is looked for: without one such a file is too far.
+            if is_open and (scene.body.loads is None or judged is None):
+                read = conventions(rows, scene, rung)
+                known = replace(read, readings={**known.readings, **read.readings})
+        if angles:
+            known = replace(known, findings=(angles, *known.findings))
+        as_read = FileRows.of(file, rung, known) if is_accepted else self.rows
+        return replace(examined, rows=as_read, known=known, explained=explained)
+
+
+def _examined(
+    plain: _Examined, asked: Scene, tolerances: Tolerances, is_accepted: bool
+) -> tuple[Judgement, _Examined]:
+    """Return the judgement of a file, and the file with what explains it; one that fits is not searched."""
+    judged = None
+    if not _is_far(plain.rows):
+        judged = _certain(plain.rows, asked, lambda: _judged(plain.rows, tolerances))
+        if judged.record is None or _fits(judged):
+            return judged, plain
+    examined = plain
+    # What the search cannot tell is no matter of the verdict.
+    with suppress(Unsettled, NotRepresentable), within_doubles(asked, Unsettled):
+        examined = plain.searched(judged, is_accepted)
+    if judged is None or (is_accepted and examined.known.findings):
+        judged = _certain(examined.rows, asked, lambda: _judged_within_reach(examined, tolerances))
+    return judged, examined
+
+
+def _certain(rows: FileRows, asked: Scene, judge: Callable[[], Judgement]) -> Judgement:
+    """Return a judgement; one row that says why there is none, where sizes or the truth do not allow it."""
+    try:
+        with within_doubles(asked, Unsettled):
+            return judge()
+    except NotRepresentable as reason:
+        return _alone(rows, Status.REFUSED, str(reason), Cause.NOT_POSED)
+    except Unsettled as doubt:
+        return _alone(rows, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
+
+
+def _with_coverage(
+    judged: Judgement, examined: _Examined, asked: Scene, has: Sequence[str], partial: bool
+) -> tuple[Judgement, tuple[str, ...]]:
+    """Return the judgement with a row on what the compared rows lack, and notes on their span."""
+    rows = examined.rows
+    if judged.record is None:
+        return judged, ()
+    extent = Extent.of(rows.scene, rows.times, rows.rung)
+    lack = list(not_judged(extent, missing_groups(has, asked)))
+    if lack:
+        row = complete_verdict(examined.scene, examined.file.name, rows.rung, lack, partial)
+        judged = replace(judged, verdicts=(*judged.verdicts, row))
+    return judged, tuple(span_notes(rows.scene, rows.times, extent))
+
+
+def _notes_of_failure(
+    file: TrajectoryFile, scene: Scene, rung: Rung, known: Conventions, explained: Explained
+) -> tuple[str, ...]:
+    """Return the sentences on a file that fails: facts, and what was not looked for."""
+    notes, stored = explained.notes, storing(file, rung)
+    notes += () if are_known(scene.body) else (NOT_LOOKED_FOR,)
+    notes += () if scene.body.loads is None or known.findings else (NO_CONVENTIONS,)
+    return notes if stored is None else (*notes, stored.note)
 
 
 def _of_parts(file: TrajectoryFile, judged: Sequence[FileJudgement]) -> FileJudgement:
@@ -275,11 +339,12 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
     return GRAVITY.index(verdict.verdict), -inf if ratio is None or ratio != ratio else -ratio
 
 
-def _judged_within_reach(answer: FileRows, known: Conventions, tolerances: Tolerances) -> Judgement:
+def _judged_within_reach(examined: _Examined, tolerances: Tolerances) -> Judgement:
     """Judge the rows, unless their times are too far away for a scene without a closed form."""
-    if known.world.scale != 1 and _is_far(answer):
+    answer, world = examined.rows, examined.known.world
+    if world.scale != 1 and _is_far(answer):
         why = (
-            f"{known.world.words}; as it stands the file asks for times far beyond the scene, "
+            f"{world.words}; as it stands the file asks for times far beyond the scene, "
             "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
         return _alone(answer, Status.FAIL, why, Cause.TOO_FAR)
