@@ -7,7 +7,7 @@ are two runs that begin at the start.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
@@ -61,6 +61,7 @@ NO_CONVENTIONS: Final = (
     "no convention and no shift of time is corrected under the loads of this scene, which may read the "
     "time and the axes; causes are looked for"
 )
+_NO_JUDGEMENT: Final = (NotRepresentable, Unsettled)
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
 
@@ -138,8 +139,10 @@ def judge_file(
     has = (*groups, *elsewhere)
     plain = _Examined.of(file, scene, groups, rung)
     judged, examined = _examined(plain, scene, tolerances, accept_conventions)
-    judged, notes = _with_coverage(judged, examined, scene, has, partial)
-    known, explained = examined.known, Explained()
+    known, explained, notes = examined.known, Explained(), tuple[str, ...]()
+    if judged.record is not None:
+        lacks, about_span = _coverage(examined, scene, has, partial)
+        judged, notes = replace(judged, verdicts=(*judged.verdicts, *lacks)), tuple(about_span)
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
         explained = examined.explained
         if known.findings:
@@ -213,44 +216,44 @@ def _examined(
     plain: _Examined, asked: Scene, tolerances: Tolerances, is_accepted: bool
 ) -> tuple[Judgement, _Examined]:
     """Return the judgement of a file, and the file with what explains it; one that fits is not searched."""
-    judged = None
+    judged, examined = None, plain
     if not _is_far(plain.rows):
-        judged = _certain(plain.rows, asked, lambda: _judged(plain.rows, tolerances))
-        if judged.record is None or _fits(judged):
+        try:
+            with within_doubles(asked, Unsettled):
+                judged = _judged(plain.rows, tolerances)
+        except _NO_JUDGEMENT as doubt:
+            return _without_truth(plain.rows, doubt), plain
+        if _fits(judged):
             return judged, plain
-    examined = plain
     # What the search cannot tell is no matter of the verdict.
-    with suppress(Unsettled, NotRepresentable), within_doubles(asked, Unsettled):
+    with suppress(*_NO_JUDGEMENT), within_doubles(asked, Unsettled):
         examined = plain.searched(judged, is_accepted)
     if judged is None or (is_accepted and examined.known.findings):
-        judged = _certain(examined.rows, asked, lambda: _judged_within_reach(examined, tolerances))
+        try:
+            with within_doubles(asked, Unsettled):
+                judged = _judged_within_reach(examined, tolerances)
+        except _NO_JUDGEMENT as doubt:
+            judged = _without_truth(examined.rows, doubt)
     return judged, examined
 
 
-def _certain(rows: FileRows, asked: Scene, judge: Callable[[], Judgement]) -> Judgement:
-    """Return a judgement; one row that says why there is none, where sizes or the truth do not allow it."""
-    try:
-        with within_doubles(asked, Unsettled):
-            return judge()
-    except NotRepresentable as reason:
-        return _alone(rows, Status.REFUSED, str(reason), Cause.NOT_POSED)
-    except Unsettled as doubt:
-        return _alone(rows, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
+def _without_truth(rows: FileRows, doubt: Exception) -> Judgement:
+    """Return one row that says why the rows are not judged."""
+    if isinstance(doubt, NotRepresentable):
+        return _alone(rows, Status.REFUSED, str(doubt), Cause.NOT_POSED)
+    return _alone(rows, Status.UNDECIDED, str(doubt), Cause.NO_TRUTH)
 
 
-def _with_coverage(
-    judged: Judgement, examined: _Examined, asked: Scene, has: Sequence[str], partial: bool
-) -> tuple[Judgement, tuple[str, ...]]:
-    """Return the judgement with a row on what the compared rows lack, and notes on their span."""
+def _coverage(
+    examined: _Examined, asked: Scene, has: Sequence[str], partial: bool
+) -> tuple[list[Verdict], list[str]]:
+    """Return a row on what the file lacks, none if it is whole, and notes on its span."""
     rows = examined.rows
-    if judged.record is None:
-        return judged, ()
     extent = Extent.of(rows.scene, rows.times, rows.rung)
     lack = list(not_judged(extent, missing_groups(has, asked)))
-    if lack:
-        row = complete_verdict(examined.scene, examined.file.name, rows.rung, lack, partial)
-        judged = replace(judged, verdicts=(*judged.verdicts, row))
-    return judged, tuple(span_notes(rows.scene, rows.times, extent))
+    asks = (examined.scene, examined.file.name, rows.rung, lack, partial)
+    notes = list(span_notes(rows.scene, rows.times, extent))
+    return [complete_verdict(*asks)] if lack else [], notes
 
 
 def _notes_of_failure(
