@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import exp
+from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.caused_rows import RIGID as BODY
+from builders.caused_rows import rigid, titles
 from builders.integrators import turned
 from builders.numbers import cross
 from builders.turns import by_turns
@@ -219,3 +222,25 @@ def test_a_free_coast_with_a_factor_of_no_law_has_no_step() -> None:
     """Nothing but a short number tells the step of a body that coasts: without one, none is said."""
     sentences = causes(load(FREE), engine(coasting, 1 - 0.0512345 * H / 10))
     assert not any("of each step" in each for each in sentences.values())
+
+
+WEAK: dict[str, Callable[[float], float]] = {
+    "of power 1.5": lambda speed: 0.004 * speed**0.5,
+    "of power 1.2": lambda speed: 0.004 * speed**0.2,
+    "Coulomb": lambda speed: 0.003 / speed,
+    "of a logarithm": lambda speed: 0.003 * np.log1p(speed),
+    "linear and by the speed": lambda speed: 0.002 + 0.003 * speed,
+}
+
+
+@pytest.mark.parametrize("digits", by_turns([12, 7], 2))
+@pytest.mark.parametrize("law", [*WEAK])
+def test_two_drags_that_imitate_another_law_are_not_said(
+    law: str, digits: int, tmp_path: Path
+) -> None:
+    """Where |w| hardly changes two drags fit any law: twelve digits show the numbers of the true ones."""
+    made = rigid(moment=lambda t, w, q: -WEAK[law](float(np.linalg.norm(w))) * w)
+    printed = {name: [float(f"{x:.{digits}g}") for x in column] for name, column in made.items()}
+    names = titles(tmp_path, BODY.format(load=""), printed)
+    is_shown = law == "linear and by the speed" and digits == 12
+    assert any("drag" in each and "|w|" in each for each in names) == is_shown

@@ -14,6 +14,7 @@ from builders.caused_rows import Array, columns, rows, titles
 from builders.trajectories import Columns
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
+from scipy.spatial.transform import Rotation
 
 RIGID = """
 title = "Body"
@@ -193,3 +194,78 @@ def test_an_added_mass_by_past_accelerations_is_named(
     names = ("u1", "u2", "u3", "w1", "w2", "w3")
     words = titles(tmp_path, VEHICLE, stepped(plugin, 10, start, np.round(times, 6), names))
     assert [each for each in words if "added mass" in each] == title
+
+
+def in_order(order: tuple[int, ...], q: Array, w: Array, h: float) -> Array:
+    """A step of q + h q omega / 2 whose components are overwritten in some order."""
+    q = q.copy()
+    for i in order:
+        q[i] += h * turned(q, w)[i]
+    return q
+
+
+@pytest.mark.parametrize(
+    ("order", "words"),
+    by_turns(
+        [
+            ((3, 2, 1, 0), "in place, its last component first, h = 0.025"),
+            ((1, 2, 3, 0), "in place, its vector first, h = 0.025"),
+            ((0, 1, 2, 3), "in place, h = 0.025"),
+            ((2, 0, 3, 1), ""),
+        ],
+        3,
+    ),
+)
+def test_the_order_of_an_update_in_place_is_named(
+    order: tuple[int, ...], words: str, tmp_path: Path
+) -> None:
+    """Beside a right omega the quaternion is overwritten component by component, in a known order."""
+
+    def step(z: Array, h: float) -> Array:
+        right = z
+        for _ in range(10):
+            right = classical(right, h / 10)
+        return np.concatenate([right[:3], in_order(order, z[3:], z[:3], h)])
+
+    names = titles(tmp_path, RIGID, rigid(step, 4))
+    assert any("in place" in each for each in names) == bool(words)
+    assert not words or any(each.endswith(words) for each in names)
+
+
+MOMENT = np.array([0.2, -0.3, 0.25])
+PUSHED = RIGID.replace("[initial]", "moment = [0.2, -0.3, 0.25]\n[initial]")
+
+
+def pushed(moment: Array, z: Array, h: float) -> Array:
+    """A step of explicit Euler under a moment, with the attitude turned by the new omega."""
+    w = z[:3] + h * (spin(z[:3]) + np.linalg.solve(TENSOR, moment))
+    return np.concatenate([w, z[3:] + h * turned(z[3:], w)])
+
+
+def momentum_in_space(z: Array, h: float) -> Array:
+    """A step of an engine that keeps the momentum in space and adds the moment to it there."""
+    w, q = z[:3], z[3:]
+    momentum = matrix(q) @ (TENSOR @ w + h * MOMENT)
+    after = q + h * turned(q, w)
+    after /= np.linalg.norm(after)
+    return np.concatenate([np.linalg.solve(TENSOR, matrix(after).T @ momentum), after])
+
+
+def matrix(q: Array) -> Array:
+    return np.asarray(Rotation.from_quat(q[[1, 2, 3, 0]]).as_matrix())
+
+
+def test_the_attitude_beside_the_steps_of_a_fault_has_its_own_sentence(tmp_path: Path) -> None:
+    """A moment of the other sign in steps of Euler: what the steps leave of the attitude is named too."""
+    names = titles(tmp_path, PUSHED, rigid(partial(pushed, MOMENT * [1, 1, -1]), 10))
+    assert any("other sign, beside steps of explicit Euler, h = 0.01" in each for each in names)
+    assert any("attitude q + h q omega / 2 with the rate at the end" in each for each in names)
+
+
+def test_a_momentum_in_space_under_a_moment_is_named(tmp_path: Path) -> None:
+    """The moment of a step is added before the turn, which is that of a step of the quaternion."""
+    names = titles(tmp_path, PUSHED, rigid(momentum_in_space, 10))
+    words = (
+        "momentum with the moment of the step turned by q + h q omega / 2 at its begin, h = 0.01"
+    )
+    assert words in names

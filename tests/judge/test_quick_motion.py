@@ -63,3 +63,16 @@ def test_an_arc_of_more_than_half_a_turn_keeps_the_sign_of_its_quaternion(
         expected = exactly.astype(float)
         assert np.allclose(near[quantity], expected, rtol=0, atol=1e-5 * np.max(np.abs(expected)))
     assert min(spans) > 1e-4
+
+
+def test_a_motion_that_explodes_backwards_is_followed_where_it_is_wanted() -> None:
+    """A damped body cannot be followed far before its start; rows after it are none the worse."""
+    scene = load("euler/damped")
+    exact, times = solution(scene), scene.clock.elapsed
+    first = exact.motion([Fraction(0)], DIGITS)
+    quick = QuickMotion(scene, first.quantities, np.zeros(1), 32)
+    assert quick.at(np.array([-1e4])) is None
+    near = quick.at(np.array([float(times[3])]))
+    assert near is not None
+    expected = exact.motion([times[3]], DIGITS)["omega"].astype(float)
+    assert np.allclose(near["omega"], expected, rtol=0, atol=1e-5)

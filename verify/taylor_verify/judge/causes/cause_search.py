@@ -6,7 +6,6 @@ replayed_methods.py or inexact_conventions.py, a broken twin to the tests, a lin
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Final
@@ -16,7 +15,6 @@ import numpy as np
 from taylor_verify.judge.causes import starts
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Cause
-from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.dynamics import Dynamics
 from taylor_verify.judge.causes.float_answer import Answer, matrices
 from taylor_verify.judge.causes.in_space_axes import in_world
@@ -26,7 +24,8 @@ from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
 from taylor_verify.judge.causes.paths import contradicts
-from taylor_verify.judge.causes.proof import may_leave, whole
+from taylor_verify.judge.causes.proof import are_explained, left_of_all, may_leave, whole
+from taylor_verify.judge.causes.settled import PAIR
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
 from taylor_verify.judge.causes.stamps import other_times
 from taylor_verify.words.causes import with_numbers
@@ -126,8 +125,8 @@ def _of_motion(answer: Answer, moving: list[str], has_wrong_attitude: bool) -> l
 
 
 def _enough(answer: Answer, cause: Cause) -> float:
-    """Return what a cause of the motion may leave of the attitude: a step of it may have another update."""
-    return _PROVEN if _is_of_steps(cause) else may_leave(answer, ["attitude"], 1)
+    """Return what a cause of the motion may leave of the attitude before that is asked by itself."""
+    return _PROVEN if cause.kind in _OF_PIECES else may_leave(answer, ["attitude"], 1)
 
 
 def _of_moving_part(answer: Answer) -> list[Cause]:
@@ -141,10 +140,25 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         wrong = starts.wrong_arcs(defects)
         is_part = len(answer.right.switches) and 0 < 2 * len(wrong) < len(defects)
         causes = _some(in_numbers(answer, wrong)) if is_part else []
-        return causes or _pieces(answer, defects) or _some(search.cause())
+        causes = causes or _pieces(answer, defects) or _some(search.cause())
+        return causes or _from_own_start(answer)
     with suppress(Spent):
         return _some(search.cause() or simple)
     return [simple]
+
+
+def _from_own_start(answer: Answer) -> list[Cause]:
+    """Return another start and the causes of the motion from there; none if the first row is right."""
+    if not starts.has_own_start(answer):
+        return []
+    part = starts.piece(answer, 0, answer.count - 1)
+    causes = _of_motion(part, list(part.moving), "attitude" in part.failed)
+    if any(max(cause.leaves.values(), default=1.0) > PAIR for cause in causes):
+        return []
+    return _beside(
+        Cause("another start", "own start", {}),
+        [_of_part(answer, part, cause, "") for cause in causes],
+    )
 
 
 def _turns_too_little(answer: Answer) -> bool:
@@ -158,7 +172,8 @@ def _turns_too_little(answer: Answer) -> bool:
 
 def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> list[Cause]:
     is_stepped = cause is not None and cause.method is not None
-    changes = {} if cause is None or (is_stepped and "loss" not in cause.changes) else cause.changes
+    # Steps alone are steps of the scene; beside a fault they are steps of the changed one.
+    changes = {} if cause is None or cause.kind == "method" else cause.changes
     right = answer.right.changed(changes)
     of_attitude = kinematics(answer, right, None if cause is None else cause.method)
     if cause is not None and is_stepped:
@@ -201,25 +216,14 @@ def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
     pace = float(turns[1])
     right = answer.right.changed({"clock": pace})
     words = with_numbers("clock", (), (1.0,), (pace,))
-    if _left_of_all(answer, right):
+    if left_of_all(answer, right):
         return [replace(of_attitude, alike=(*of_attitude.alike, words))]
     if not answer.moving:
         return []
     causes = _of_moving_part(replace(answer, right=right))
-    if causes and _are_explained(answer, causes[-1].leaves):
+    if causes and are_explained(answer, causes[-1].leaves):
         return _beside(Cause(words, "clock", {}), causes)
     return []
-
-
-def _left_of_all(answer: Answer, right: Equations) -> Mapping[str, float]:
-    """Return what the motion of equations leaves of the whole answer; nothing if it is not explained."""
-    motion = whole(answer, right)
-    leaves = {} if motion is None else answer.leaves(motion)
-    return leaves if _are_explained(answer, leaves) else {}
-
-
-def _are_explained(answer: Answer, leaves: Mapping[str, float]) -> bool:
-    return all(leaves.get(name, 1.0) <= may_leave(answer, [name], 1) for name in answer.failed)
 
 
 _OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
@@ -287,7 +291,7 @@ def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) 
 def _all_along(answer: Answer, cause: Cause) -> Cause | None:
     """Return a cause of a part that explains the whole answer, as where a limit is not left before."""
     changed = answer.right.changed(cause.changes)
-    leaves = _left_of_all(answer, changed) if cause.changes else {}
+    leaves = left_of_all(answer, changed) if cause.changes else {}
     return replace(cause, leaves=leaves) if leaves else None
 
 
@@ -347,7 +351,7 @@ def _undone(answer: Answer, by_group: dict[str, Cause]) -> list[Cause]:
     """Return a convention that the first row shows, with the causes of what is left by it."""
     if "omega" in by_group and "attitude" in answer.failed and "attitude" not in by_group:
         own = starts.exact_in_pieces(answer, starts.roundings(answer))
-        if own is not None and own.kind == "own start" and _are_explained(answer, own.leaves):
+        if own is not None and own.kind == "own start" and are_explained(answer, own.leaves):
             return [own]
         read = with_omega(answer, answer.truth.v[:, answer.groups["omega"]])
         return _beside(by_group["omega"], _of_motion(read, [], has_wrong_attitude=True))

@@ -7,7 +7,7 @@ are usual.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -151,3 +151,14 @@ def chained(maps: Floats, first: Floats) -> Floats:
         q = each @ rows[-1]
         rows.append(q / np.linalg.norm(q))
     return np.array(rows)
+
+
+def left_of_all(answer: Answer, right: Equations) -> Mapping[str, float]:
+    """Return what the motion of equations leaves of the whole answer; nothing if it is not explained."""
+    motion = whole(answer, right)
+    leaves = {} if motion is None else answer.leaves(motion)
+    return leaves if are_explained(answer, leaves) else {}
+
+
+def are_explained(answer: Answer, leaves: Mapping[str, float]) -> bool:
+    return all(leaves.get(name, 1.0) <= may_leave(answer, [name], 1) for name in answer.failed)

@@ -71,8 +71,7 @@ class QuickMotion:
         largest = {name: np.max(np.linalg.norm(part, axis=1)) for name, part in rows.items()}
         self._sizes = [_SIZES.get(name, size or np.inf) for name, size in largest.items()]
         self._course: Course | None = None
-        self._is_lost = False
-        self._extend(*self._to_middles())
+        self._is_lost = not self._extend(*self._to_middles())
 
     @staticmethod
     def is_possible(scene: Scene, known: Mapping[str, Any]) -> bool:
@@ -83,15 +82,19 @@ class QuickMotion:
     def at(self, times: Floats) -> dict[str, Floats] | None:
         """Return the motion at times since the start; None where it takes too many arcs.
 
-        Nor is there one where float64 does not follow.
+        Nor is there one where float64 does not follow. The motion at other times is none the worse.
         """
         first, last = self._begins[0], self._begins[-1]
         until = np.array([min(np.min(times), first), max(np.max(times), last)])
-        if self._course is None or np.any(until != (first, last)):
-            self._extend(np.array([0, len(self._begins) - 1]), until)
-            self._course = self._through()
-        if self._course is None:
+        if self._is_lost:
             return None
+        if self._course is None or np.any(until != (first, last)):
+            before = self._begins, self._states, self._course
+            is_reached = self._extend(np.array([0, len(self._begins) - 1]), until)
+            self._course = self._through() if is_reached else None
+            if self._course is None:
+                self._begins, self._states, self._course = before
+                return None
         rows = np.asarray(self._course(times))
         motion = dict(zip(self._names, np.split(rows, self._edges, axis=1), strict=True))
         if "attitude" in motion:
@@ -117,11 +120,11 @@ class QuickMotion:
     def _rates(self, times: Floats, states: Floats) -> Floats:
         return np.asarray(self._right.rates(times, states.T[None])[0].T)
 
-    def _extend(self, places: Places, until: Floats) -> None:
-        """Follow some of the known states until these times."""
+    def _extend(self, places: Places, until: Floats) -> bool:
+        """Follow some of the known states until these times; False if that takes too many arcs."""
         begins, rows = [self._begins], [self._states]
         now, states = self._begins[places], self._states[places]
-        for _ in range(self._most_arcs * (not self._is_lost)):
+        for _ in range(self._most_arcs):
             goes_on = now != until
             if not np.any(goes_on):
                 break
@@ -133,14 +136,15 @@ class QuickMotion:
             begins.append(now)
             rows.append(states)
         else:
-            self._is_lost = True
+            return False
         self._begins, places = np.unique(np.concatenate(begins), return_index=True)
         self._states = np.concatenate(rows)[places]
+        return True
 
     def _through(self) -> Course | None:
         """Return the course through the known states, and through as many between them as it needs."""
         t, states, gaps = self._begins, self._states, np.arange(len(self._begins) - 1)
-        if self._is_lost or not np.all(np.isfinite(states)):
+        if not np.all(np.isfinite(states)):
             return None
         if not len(gaps):
             return lambda times: np.repeat(states, len(times), axis=0)

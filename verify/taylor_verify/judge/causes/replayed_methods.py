@@ -130,8 +130,24 @@ def _velocity(equations: Equations, momentum: Floats) -> Floats:
 
 def _turned_by_the_rate(equations: Equations, time: Floats, v: Floats, h: Floats) -> Floats:
     momentum = _momentum(equations, v)
-    torque = equations.mass @ equations.rates(time, v) - np.cross(momentum, v, axis=1)
-    return _velocity(equations, _rotated(momentum, v, -h) + h * torque)
+    push = h * _torque(equations, time, v, momentum)
+    return _velocity(equations, _rotated(momentum, v, -h) + push)
+
+
+def _pushed_and_turned(
+    is_euler: bool, equations: Equations, time: Floats, v: Floats, h: Floats
+) -> Floats:
+    momentum = _momentum(equations, v)
+    push = h * _torque(equations, time, v, momentum)
+    if is_euler:
+        # q + h q omega / 2 of unit length turns by the angle 2 atan(h |omega| / 2).
+        half = h * np.linalg.norm(v, axis=1, keepdims=True) / 2
+        v = v * np.arctan(half) / np.where(half > 0, half, 1.0)
+    return _velocity(equations, _rotated(momentum + push, v, -h))
+
+
+def _torque(equations: Equations, time: Floats, v: Floats, momentum: Floats) -> Floats:
+    return equations.mass @ equations.rates(time, v) - np.cross(momentum, v, axis=1)
 
 
 def _rotated(vectors: Floats, omega: Floats, h: Floats) -> Floats:
@@ -180,6 +196,13 @@ OF_MOMENTUM: Final[Mapping[str, Method]] = {
     "momentum turned by the rate at the begin of the step": Method(1, _turned_by_the_rate),
     "explicit step of the momentum, its size restored": Method(1, _of_fixed_size),
 }
+# Under a moment, which is added before the turn.
+OF_PUSHED_MOMENTUM: Final[Mapping[str, Method]] = {
+    f"momentum with the moment of the step turned by {turn} at its begin": Method(
+        1, partial(_pushed_and_turned, is_euler)
+    )
+    for turn, is_euler in (("the rate", False), ("q + h q omega / 2", True))
+}
 
 
 # Attitudes.
@@ -203,10 +226,12 @@ def _parts(rows: Floats) -> list[Any]:
     return list(rows.swapaxes(0, 1))
 
 
-def _in_turn(q: Floats, omega: Floats, cosine: Any, sine: Any) -> Floats:
+def _in_turn(
+    q: Floats, omega: Floats, cosine: Any, sine: Any, order: Sequence[int] = range(4)
+) -> Floats:
     """Return cosine q + sine q omega, where each component is put into the others that follow it."""
     q = q.copy()
-    for i in range(4):
+    for i in order:
         q[:, i] = cosine * q[:, i] + 2 * sine * _slope(q, omega)[:, i]
     return q
 
@@ -225,6 +250,12 @@ UPDATES: Final[Mapping[str, _Update]] = {
     "q + h q omega / 2 with the rate at the begin": lambda q, w, after, h: q + h * _slope(q, w),
     "q + h q omega / 2 with the rate at the end": lambda q, w, after, h: q + h * _slope(q, after),
     "quaternion updated in place": lambda q, w, after, h: _in_turn(q, w, 1.0, h / 2),
+    "quaternion updated in place, its last component first": lambda q, w, after, h: _in_turn(
+        q, w, 1.0, h / 2, range(3, -1, -1)
+    ),
+    "quaternion updated in place, its vector first": lambda q, w, after, h: _in_turn(
+        q, w, 1.0, h / 2, (1, 2, 3, 0)
+    ),
     "quaternion turned by the rate at the begin of the step, updated in place": _turned_in_place,
 }
 OF_SECOND_ORDER: Final = "turned by the mean of the rates of a step"

@@ -27,6 +27,7 @@ from taylor_verify.judge.causes.replayed_methods import (
     HELD,
     METHODS,
     OF_MOMENTUM,
+    OF_PUSHED_MOMENTUM,
     Method,
     with_unit_attitude,
     with_updates,
@@ -109,6 +110,8 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     if replayed is None:
         return
     known = {**METHODS, **({} if answer.n == 6 else OF_MOMENTUM)}
+    if answer.n == 3 and answer.right.has_loads:
+        known |= OF_PUSHED_MOMENTUM
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
     if answer.right.acting is not None:

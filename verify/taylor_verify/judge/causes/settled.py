@@ -33,6 +33,11 @@ _OF_PAIR: Final = 3
 PAIR: Final = 1e-4
 # A near family with more numbers fits all that is not nothing.
 NOTHING: Final = 1e-9
+# A term that the scene does not have leaves no more than a fair simulator does, or noise, or its numbers
+# have so few digits: a law of another form fits nearly, and with numbers of no short form.
+_FAIR: Final = 1e-6
+_SHORT: Final = 2
+_DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
 _NOISY: Final = 0.1
 _TRIED: Final = 3
@@ -165,7 +170,25 @@ class Choice:
         # The rounding of a file allows two faults nothing: near to it a pair fits what one fault does not.
         cap = PAIR if is_pair else CAPS[min(candidate.count, 1)]
         allowed = min(max(most, self._least), cap)
-        return proof if proof.worst <= allowed and not proof.candidate.is_nothing else None
+        is_proven = proof.worst <= allowed and not proof.candidate.is_nothing
+        return None if not is_proven or self._is_near_law(proof) else proof
+
+    def _is_near_law(self, proven: _Proven) -> bool:
+        """Return True for terms, or two faults, that a law of another form may imitate nearly.
+
+        Two drags imitate any drag, so nearly that the rounding of a file may hide it.
+        """
+        candidate, family = proven.candidate, proven.candidate.family
+        is_pair = candidate.kind == "pair"
+        are_drags = is_pair and _DRAGS.issuperset(part.kind for part in family.parts)
+        if not candidate.count or not (is_pair or not np.any(family.right)):
+            return False
+        if proven.worst <= (NOTHING if are_drags else max(self._least, _FAIR)):
+            return False
+        numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
+        short = self._left(replace(candidate, numbers=numbers))
+        are_short = short is not None and short.worst <= max(proven.worst, self._least)
+        return not are_short and (are_drags or not self._leaves_noise(proven))
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""

@@ -45,10 +45,7 @@ def roundings(answer: Answer) -> Floats:
 def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
     """Return the cause of an answer that is the exact motion from its own first row, or between jumps."""
     bad = np.flatnonzero(defects > max(_JUMP, _PART * float(np.max(defects))))
-    is_off = (
-        any(answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
-        and answer.is_from_start
-    )
+    is_off = has_own_start(answer)
     if is_off and (cause := _from_a_row(answer, 0)):
         return cause
     if len(bad) > max(_FEW, answer.count // _ONE_IN) or not (is_off or len(bad)):
@@ -75,6 +72,12 @@ def exact_in_pieces(answer: Answer, defects: Floats) -> Cause | None:
         "the scene's motion from its own first row"
     )
     return Cause(name, "jump", leaves)
+
+
+def has_own_start(answer: Answer) -> bool:
+    """Return True if the first row is at the start of the scene, and is not its initial motion."""
+    off = (answer.error[name][0] > _OFF * answer.roundings[name] for name in answer.moving)
+    return answer.is_from_start and any(off)
 
 
 def _is_at_rest(answer: Answer, rows: Floats) -> bool:

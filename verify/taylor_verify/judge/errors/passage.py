@@ -18,6 +18,8 @@ from taylor_verify.judge.errors.shifted import Compared, Floats, Run
 # Points between the first and the last row, and on either side of them.
 _BETWEEN: Final = 2048
 _BEYOND: Final = 256
+# The parts of the window that are tried, the longest first.
+_PARTS: Final = (1.0, 1 / 8, 1 / 64, 0.0)
 # Rows that are compared with all points at once.
 _AT_ONCE: Final = 512
 
@@ -31,17 +33,27 @@ class Passage:
 
     @property
     def around(self) -> float:
-        """The time before the first row, and after the last one."""
-        return min(self.window, abs(self.run.span))
+        """The time before the first row, and after the last one, over which the motion is followed."""
+        return self._followed[0]
 
-    @cached_property
+    @property
     def points(self) -> Mapping[str, Any] | None:
         """The motion at many times in order, in float64; None if it has loads."""
+        return self._followed[1]
+
+    @cached_property
+    def _followed(self) -> tuple[float, Mapping[str, Any] | None]:
+        """The longest part of the window in which float64 follows: a damped motion explodes backwards."""
+        around = min(self.window, abs(self.run.span))
         elapsed = np.array(sorted(float(t) for t in self.run.elapsed))
         inner = np.linspace(elapsed[0], elapsed[-1], _BETWEEN)
-        outer = np.linspace(0.0, self.around, _BEYOND + 1)[1:]
-        times = np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
-        return self.run.along(times)
+        for part in _PARTS:
+            outer = np.linspace(0.0, part * around, _BEYOND + 1)[1:]
+            times = np.concatenate([elapsed[0] - outer[::-1], inner, elapsed[-1] + outer])
+            points = self.run.along(times)
+            if points is not None:
+                return part * around, points
+        return 0.0, None
 
     @property
     def is_followed(self) -> bool:

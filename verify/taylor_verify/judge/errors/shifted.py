@@ -191,7 +191,8 @@ class Run:
 class Compared:
     """A quantity of an answer, compared with the exact motion at any shifts.
 
-    If it ``is_quick``, the motion at other times than the samples is taken in float64.
+    If it ``is_quick``, the motion at other times than the samples is taken in float64, and shifts that it
+    does not follow are not tried.
     """
 
     run: Run
@@ -226,9 +227,8 @@ class Compared:
         """Return the comparison with the exact motion at t - shifts; None if it cannot be computed."""
         run = self.run
         elapsed = [t - c for t, c in zip(run.elapsed, shifts, strict=True)]
-        quick = self._quickly(_floats(elapsed), shifts) if self.is_quick else None
-        if quick is not None:
-            return quick
+        if self.is_quick:
+            return self._quickly(_floats(elapsed), shifts)
         motion = run.motion(elapsed, run.digits)
         if motion is None:
             return None
@@ -289,13 +289,12 @@ class Compared:
         run = self.run
         rows = evenly(len(run.elapsed), _SEARCH_SAMPLES)
         shares = [Fraction(shape[k]) for k in rows]
-        motion = run.near(
-            [
-                run.elapsed[k] - step * share
-                for step in steps
-                for k, share in zip(rows, shares, strict=True)
-            ]
-        )
+        elapsed = [
+            run.elapsed[k] - step * share
+            for step in steps
+            for k, share in zip(rows, shares, strict=True)
+        ]
+        motion = run.along(_floats(elapsed)) if self.is_quick else run.near(elapsed)
         if motion is None:
             return None
         answer = self.over_scales({part: run.answer[part][rows] for part in self._scales})

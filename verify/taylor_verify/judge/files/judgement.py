@@ -57,11 +57,17 @@ from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
+FAR_ROWS: Final = (
+    "the rows after t = {:.6g} are not judged: they are far beyond the scene, which has no closed form, "
+    "and the rows before are wrong already"
+)
 NO_CONVENTIONS: Final = (
     "no convention and no shift of time is corrected under the loads of this scene, which may read the "
     "time and the axes; causes are looked for"
 )
 _NO_JUDGEMENT: Final = (NotRepresentable, Unsettled)
+# So few rows are not judged in place of all.
+_FEWEST: Final = 8
 # For a file the Taylor route goes at most this many times the scene's span.
 _FURTHEST: Final = 100
 
@@ -144,10 +150,12 @@ def judge_file(
         lacks, about_span = _coverage(examined, scene, has, partial)
         judged, notes = replace(judged, verdicts=(*judged.verdicts, *lacks)), tuple(about_span)
     if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
-        explained = examined.explained
-        if known.findings:
+        explained = examined.explained or explained
+        if known.findings or examined.explained is None:
             explained = causes_of_file(examined.in_body_axes, rung, known, judged)
         notes += _notes_of_failure(file, plain.scene, rung, known, explained)
+        if len(examined.rows.times) < len(plain.rows.times):
+            notes += (FAR_ROWS.format(float(examined.rows.times[-1])),)
     if judged.record is not None:
         notes += tuple(load_notes(plain.scene))
     left = () if accept_conventions else known.findings
@@ -168,14 +176,15 @@ def judge_file(
 class _Examined:
     """A file under examination: its rows as they are judged, and what is known of them.
 
-    ``scene`` asks for no more than the file has, and ``file`` has the groups that are compared.
+    ``scene`` asks for no more than the file has, and ``file`` has the groups that are compared. Causes are
+    looked for by a judgement: before there is one, they are None.
     """
 
     file: TrajectoryFile
     scene: Scene
     rows: FileRows
     known: Conventions
-    explained: Explained
+    explained: Explained | None
 
     @classmethod
     def of(cls, file: TrajectoryFile, scene: Scene, groups: Sequence[str], rung: Rung) -> _Examined:
@@ -186,6 +195,15 @@ class _Examined:
         along_space = {name: space_axes() for name in file.in_space if name in groups}
         known = Conventions((), World(scene), along_space)
         return cls(compared, scene, FileRows.of(compared, rung, known), known, Explained())
+
+    @property
+    def near(self) -> _Examined:
+        """The file without the rows that are far beyond the scene's end."""
+        clock = self.rows.scene.clock
+        reach = MOST_SPANS * max(abs(t) for t in clock.elapsed)
+        near = [k for k, t in enumerate(self.rows.times) if abs(t - clock.start) <= reach]
+        file = self.file.at(near)
+        return replace(self, file=file, rows=FileRows.of(file, self.rows.rung, self.known))
 
     @property
     def in_body_axes(self) -> TrajectoryFile:
@@ -200,8 +218,8 @@ class _Examined:
         examined = replace(self, file=file)
         rows, known, explained = examined.in_body_axes, self.known, self.explained
         if rows.groups:
-            explained = causes_of_file(rows, rung, known, judged)
-            is_open = is_accepted or not explained.is_motion
+            explained = None if judged is None else causes_of_file(rows, rung, known, judged)
+            is_open = is_accepted or explained is None or not explained.is_motion
             # Under loads a unit of time alone is looked for: without one such a file is too far.
             if is_open and (scene.body.loads is None or judged is None):
                 read = conventions(rows, scene, rung)
@@ -231,9 +249,9 @@ def _examined(
     if judged is None or (is_accepted and examined.known.findings):
         try:
             with within_doubles(asked, Unsettled):
-                judged = _judged_within_reach(examined, tolerances)
+                return _judged_within_reach(examined, tolerances)
         except _NO_JUDGEMENT as doubt:
-            judged = _without_truth(examined.rows, doubt)
+            return _without_truth(examined.rows, doubt), examined
     return judged, examined
 
 
@@ -342,22 +360,29 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
     return GRAVITY.index(verdict.verdict), -inf if ratio is None or ratio != ratio else -ratio
 
 
-def _judged_within_reach(examined: _Examined, tolerances: Tolerances) -> Judgement:
-    """Judge the rows, unless their times are too far away for a scene without a closed form."""
+def _judged_within_reach(
+    examined: _Examined, tolerances: Tolerances
+) -> tuple[Judgement, _Examined]:
+    """Judge the rows, those near the scene's end first where it has no closed form and others are far."""
     answer, world = examined.rows, examined.known.world
-    if world.scale != 1 and _is_far(answer):
+    is_far, near = _is_far(answer), examined.near
+    if is_far and world.scale != 1:
         why = (
             f"{world.words}; as it stands the file asks for times far beyond the scene, "
             "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
-        return _alone(answer, Status.FAIL, why, Cause.TOO_FAR)
+        return _alone(answer, Status.FAIL, why, Cause.TOO_FAR), examined
+    if is_far and len(near.rows.times) >= _FEWEST:
+        judged = _judged(near.rows, tolerances)
+        if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
+            return judged, near
     if _is_far(answer, _FURTHEST):
         why = (
             f"the file goes more than {_FURTHEST} times as far as the scene, which has no closed "
             "form: its exact motion is not computed up to there"
         )
-        return _alone(answer, Status.UNDECIDED, why, Cause.TOO_FAR)
-    return _judged(answer, tolerances)
+        return _alone(answer, Status.UNDECIDED, why, Cause.TOO_FAR), examined
+    return _judged(answer, tolerances), examined
 
 
 def _is_far(answer: FileRows, spans: int = MOST_SPANS) -> bool:
