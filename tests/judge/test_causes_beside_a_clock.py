@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,9 @@ import pytest
 from builders.caused_rows import RIGID, Array, Law, rigid, titles
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
+from taylor_verify.exact.route import solution
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.words.causes import steps_in_words
 
 FREE = RIGID.format(load="")
@@ -138,3 +140,18 @@ def test_steps_between_uneven_rows_have_no_one_length(
 ) -> None:
     """The length of a step is said where all are alike, and else their number."""
     assert steps_in_words(spans, count) == words
+
+
+def test_of_rows_far_beyond_a_scene_the_near_ones_are_judged_first(tmp_path: Path) -> None:
+    """A clock in frames goes 25 spans: its first rows show the factor, and a note says which they are."""
+    scene = "euler/constant-moment"
+    times = [Fraction(k, 5) for k in range(61)]
+    omega = solution(load(scene)).motion(times, 20)["omega"].astype(float)
+    columns = {
+        "t": [25.0 * float(t) for t in times],
+        **dict(zip(VECTORS["omega"], omega.T.tolist(), strict=True)),
+    }
+    judged = file_judgement(write_csv(tmp_path / "mine.csv", columns), scene)
+    assert [verdict.verdict for verdict in judged.verdicts].count(Status.FAIL) > 1
+    assert any("clock = 0.04" in cause.sentence for cause in judged.causes)
+    assert any("are far beyond the scene" in note for note in judged.notes)

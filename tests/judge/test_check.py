@@ -418,21 +418,6 @@ def test_far_beyond_a_scene_without_closed_form_is_undecided(tmp_path: Path) -> 
     assert "no closed form" in verdict.because
 
 
-def test_of_rows_far_beyond_a_scene_the_near_ones_are_judged_first(tmp_path: Path) -> None:
-    """A clock in frames goes 25 spans: its first rows show the factor, and a note says which they are."""
-    scene = "euler/constant-moment"
-    times = [Fraction(k, 5) for k in range(61)]
-    omega = solution(load(scene)).motion(times, 20)["omega"].astype(float)
-    columns = {
-        "t": [25.0 * float(t) for t in times],
-        **dict(zip(OMEGA, omega.T.tolist(), strict=True)),
-    }
-    judged = file_judgement(write_csv(tmp_path / "mine.csv", columns), scene)
-    assert [verdict.verdict for verdict in judged.verdicts].count(Status.FAIL) > 1
-    assert any("clock = 0.04" in cause.sentence for cause in judged.causes)
-    assert any("are far beyond the scene" in note for note in judged.notes)
-
-
 def test_columns_of_the_other_model_are_refused(tmp_path: Path) -> None:
     """Impulses are no answer to Euler's equations."""
     columns = {"t": [0.0], **{f"{letter}{i}": [1.0] for letter in "xy" for i in (1, 2, 3)}}
