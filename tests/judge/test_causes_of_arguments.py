@@ -292,3 +292,42 @@ def test_the_point_of_a_weight_is_named_by_its_key() -> None:
     """Weight and buoyancy of one size are one couple: both points explain it, before any couple."""
     (name,) = asked(VEHICLE, [("at = [0.02, 0, 0]", "at = [0.03, 0.01, 0]")])
     assert name in ("buoyancy.at", "weight.at")
+
+
+LINEAR_OF_FORCE = [(f" - 0.1*u{i}", "") for i in (1, 2, 3)]
+LINEAR_OF_COUPLE = [("-0.1*w1", "0"), ("-0.1*w2", "0"), ("-0.2*w3", "0")]
+OPPOSITE = [("at = [0, 0, 0.05]", "at = [0, 0, -0.05]"), ("[0.02, 0, 0]", "[-0.02, 0, 0]")]
+
+
+@pytest.mark.parametrize(
+    ("pairs", "name"),
+    by_turns(
+        [
+            (LINEAR_OF_FORCE + LINEAR_OF_COUPLE, "factor of all linear drag"),
+            ([("0, 20]", "0, 19.6]"), ("-20]", "-19.6]")], "factor of weight and buoyancy"),
+            (OPPOSITE, "couple of weight and buoyancy with the other sign"),
+        ],
+        2,
+    ),
+)
+def test_what_several_texts_have_in_common_is_named(
+    pairs: list[tuple[str, str]], name: str
+) -> None:
+    """Drag of one order left out, another gravity, or the other sign of a restoring couple is one fault."""
+    assert asked(VEHICLE, pairs) == [name]
+
+
+@pytest.mark.parametrize(
+    ("pairs", "name"),
+    by_turns(
+        [
+            ([("0, 20]", "0, 19.6]")], "factor of weight and buoyancy"),
+            (LINEAR_OF_FORCE + LINEAR_OF_COUPLE[:1], "factor of all linear drag"),
+            (OPPOSITE[:1], "couple of weight and buoyancy with the other sign"),
+        ],
+        3,
+    ),
+)
+def test_a_part_of_these_texts_has_another_name(pairs: list[tuple[str, str]], name: str) -> None:
+    """Weight alone, some of the drag or one of the points is no fault of all of them."""
+    assert name not in asked(VEHICLE, pairs)

@@ -14,7 +14,7 @@ from typing import Final
 
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.texts import HANGING, Place, places, rational, texts_of_vectors
-from taylor_verify.numbers.tensors import ZERO_VECTOR
+from taylor_verify.numbers.tensors import ZERO_VECTOR, scaled
 from taylor_verify.scenes.loads.loads import Hung, Loads
 from taylor_verify.scenes.loads.vocabulary import INERTIA, VECTORS, Entry
 
@@ -294,19 +294,27 @@ def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
         yield "points of weight and buoyancy exchanged", replace(loads, hung=exchanged)
     for some in [*([k] for k in has_force), *[has_force] * (len(has_force) > 1)]:
         noun = " and ".join(HANGING[k] for k in some)
-        without = _with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
+        without = with_hung(loads, some, lambda hung: Hung(ZERO_VECTOR))
         yield f"{noun} left out", without
         if any(any(loads.hung[k].at) for k in some):
-            yield f"{noun} at the origin", _with_hung(loads, some, lambda hung: Hung(hung.force))
+            yield f"{noun} at the origin", with_hung(loads, some, lambda hung: Hung(hung.force))
+            words = f"couple of {noun} with the other sign"
+            yield words, with_hung(loads, some, _turned_round)
         fixed = without
         for k in some:
             fixed = added(fixed, _texts_of(loads.hung[k], is_in_body=True))
         yield f"{noun} fixed in body axes", fixed
 
 
-def _with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:
+def with_hung(loads: Loads, some: Sequence[int], change: Callable[[Hung], Hung]) -> Loads:
+    """Return the loads with a change of weight, buoyancy, or both."""
     hung = (change(each) if k in some else each for k, each in enumerate(loads.hung))
     return replace(loads, hung=tuple(hung))
+
+
+def _turned_round(hung: Hung) -> Hung:
+    """Return a force whose couple has the other sign: it acts at the opposite point."""
+    return Hung(hung.force, scaled(Fraction(-1), hung.at))
 
 
 def written_out(loads: Loads) -> Loads:

@@ -22,6 +22,7 @@ from taylor_verify.judge.causes.changed_texts import (
     moving_names,
     rewritten,
     terms,
+    with_hung,
 )
 from taylor_verify.judge.causes.dials import (
     LITERAL,
@@ -45,7 +46,8 @@ from taylor_verify.judge.causes.texts import (
     with_entry,
 )
 from taylor_verify.models.acting import Acting
-from taylor_verify.scenes.loads.loads import Loads
+from taylor_verify.numbers.tensors import scaled
+from taylor_verify.scenes.loads.loads import Hung, Loads
 from taylor_verify.scenes.loads.tables import Kind
 
 KIND: Final = "number"
@@ -169,7 +171,8 @@ def _points(loads: Loads) -> dict[str, list[Place]]:
 @lru_cache(maxsize=8)
 def numbers(loads: Loads) -> list[Number]:
     """Return the numbers of the loads that may be others, and the factors of the terms of sums."""
-    every = [*_of_places(loads), *_repeated(loads), *_of_terms(loads), *_of_drag(loads)]
+    sums = (*_of_terms(loads), *_of_drag(loads), *_of_gravity(loads))
+    every = [*_of_places(loads), *_repeated(loads), *sums]
     free = [_at_no_switch(loads, number) for number in every if _is_free(number)][:_MOST]
     # Numbers that are dials go through one flow, one after the other.
     return sorted(free, key=lambda number: not number.keys)
@@ -324,13 +327,13 @@ def _weighted(parts: list[str], which: set[int], value: float) -> str:
 
 
 def _of_drag(loads: Loads) -> Iterator[Number]:
-    """Yield the factor of all terms that read velocities, and of those with their sizes alone."""
+    """Yield the factor of all terms that read velocities, and of the linear or quadratic ones alone."""
     names = moving_names(loads)
     own = texts_of_vectors(loads)
     of_loads = dict[tuple[frozenset[int], ...], tuple[str, Callable[[str], set[int]]]]()
-    for words, word in (("terms with velocities (drag)", ""), ("quadratic drag", "abs(")):
-        drag: Callable[[str], set[int]] = partial(_drag_of, names, word)
-        # Where all of the drag is quadratic, the second of the two words says it.
+    for words, is_drag in _DRAGS.items():
+        drag: Callable[[str], set[int]] = partial(_drag_of, names, is_drag)
+        # Where all of the drag is linear, or quadratic, the later words say it.
         of_loads[tuple(frozenset(drag(str(place.entry))) for place in own)] = words, drag
     for parts, (words, drag) in of_loads.items():
         if sum(map(bool, parts)) > 1:
@@ -339,10 +342,23 @@ def _of_drag(loads: Loads) -> Iterator[Number]:
             yield Number(f"factor of all {words}", 1.0, put, keys=tuple(keys))
 
 
-def _drag_of(names: frozenset[str], word: str, text: str) -> set[int]:
-    """Return the places of the terms of a text that have a word and read one of the names."""
+def _is_linear(part: str) -> bool:
+    """Return True for a product of numbers and one component of a velocity."""
+    velocities = [name for name in NAME.findall(part) if name[0] in "uw"]
+    return len(velocities) == 1 and set(part).isdisjoint("(^/") and "**" not in part
+
+
+_DRAGS: Final[dict[str, Callable[[str], bool]]] = {
+    "terms with velocities (drag)": lambda part: True,
+    "linear drag": _is_linear,
+    "quadratic drag": lambda part: "abs(" in part,
+}
+
+
+def _drag_of(names: frozenset[str], is_drag: Callable[[str], bool], text: str) -> set[int]:
+    """Return the places of the terms of a text that are a drag and read one of the names."""
     parts = enumerate(terms(text))
-    return {k for k, part in parts if word in part and not names.isdisjoint(NAME.findall(part))}
+    return {k for k, part in parts if is_drag(part) and not names.isdisjoint(NAME.findall(part))}
 
 
 def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Loads:
@@ -352,3 +368,15 @@ def _put_drag(loads: Loads, drag: Callable[[str], set[int]], value: float) -> Lo
     for name, _ in loads.vectors:
         loads = rewritten(loads, changed, name)
     return loads
+
+
+def _of_gravity(loads: Loads) -> Iterator[Number]:
+    """Yield the factor of weight and buoyancy together, as another acceleration of gravity makes it."""
+    if sum(any(hung.force) for hung in loads.hung) > 1:
+        yield Number("factor of weight and buoyancy", 1.0, partial(_put_gravity, loads))
+
+
+def _put_gravity(loads: Loads, value: float) -> Loads:
+    factor = Fraction(f"{value:.{_DIGITS}g}")
+    every = range(len(loads.hung))
+    return with_hung(loads, every, lambda hung: Hung(scaled(factor, hung.force), hung.at))
