@@ -47,10 +47,12 @@ def judge_scene(
     if isinstance(problem, Trajectory):
         return _not_begun(scene, solver, rung, problem)
     began = perf_counter()
-    trajectory = _answer(solver, problem)
-    seconds = perf_counter() - began
-    if trajectory.outcome is Outcome.NOT_REPRESENTABLE:
+    try:
+        trajectory = _answer(solver, problem)
+    except NotRepresentable as reason:
+        trajectory = Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
         return _not_begun(scene, solver, rung, trajectory)
+    seconds = perf_counter() - began
     if trajectory.file is not None:
         try:
             return _judged_as_file(scene, solver, rung, trajectory.file, asked)
@@ -92,7 +94,10 @@ def solve_scene(
     problem = posed(as_scene(scene), solver, rung)
     if isinstance(problem, Trajectory):
         return problem
-    answered = _answer(solver, problem)
+    try:
+        answered = _answer(solver, problem)
+    except NotRepresentable as reason:
+        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
     times = problem.given.clock.instants if answered.file is None else answered.file.times
     quantities = native(answered.quantities, rung)
     return replace(answered, quantities=quantities, times=tuple(times) if quantities else ())
@@ -115,14 +120,12 @@ def posed(scene: Scene, solver: Solver, rung: Rung) -> Problem | Trajectory:
 def _answer(solver: Solver, problem: Problem) -> Trajectory:
     """Return the solver's trajectory; a solver that calls `sys.exit` has failed, its caller goes on.
 
-    Sizes beyond the doubles, by which steps are chosen, are an outcome too.
+    Raises NotRepresentable where sizes of the scene are beyond the doubles that its steps are chosen by.
     """
     try:
         if isinstance(solver, Callback):
             return solver.answered(problem)
         with within_doubles(problem.scene, NotRepresentable, has_warnings=False):
             return solver.solve(problem)
-    except NotRepresentable as reason:
-        return Trajectory(Outcome.NOT_REPRESENTABLE, detail=str(reason))
     except SystemExit as end:
         return raised(end)

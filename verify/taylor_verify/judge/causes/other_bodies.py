@@ -122,6 +122,15 @@ def _coupled(mass: Floats, factor: float) -> Floats:
 # of A are -C_A(nu) nu, with the blocks [[0, -S(p)], [-S(p), -S(l)]] of (p, l) = A nu.
 
 
+_MASSES: Final = np.kron([[1.0, 0.0], [0.0, 0.0]], np.ones((3, 3)))
+# Parts of an added mass of which its Coriolis terms may be made; that of its diagonal is another body's.
+_PARTS: Final = {
+    "its masses alone": _MASSES,
+    "its diagonal masses alone": _MASSES * np.eye(6),
+    "all but its coupling of masses and moments": np.kron(np.eye(2), np.ones((3, 3))),
+}
+
+
 def faults_of_added_mass(right: Equations) -> Iterator[Family]:
     """Yield the faults of the entries of an added mass that the scene names."""
     if right.added is None or not np.any(right.added):
@@ -130,6 +139,14 @@ def faults_of_added_mass(right: Equations) -> Iterator[Family]:
         listed = " ".join(f"C_{i}{k}" for i, k in places)
         name = f"entries {listed} of the added mass are 0 ({words})"
         yield fault(name, _KIND, _changed(right, places, 0.0))
+    whole, parts = coriolis_of(right.added), [right.added, right.added * np.eye(6)]
+    for words, places in _PARTS.items():
+        part = right.added * places
+        if not any(np.array_equal(part, other) for other in parts):
+            parts.append(part)
+            extra = right.basis.factors(products=coriolis_of(part) - whole)
+            name = f"the Coriolis terms of the added mass are made of {words}"
+            yield fault(name, _KIND, {"extra": extra})
     for i, k in product(range(1, 7), repeat=2):
         for words, factor in (("is 0", 0.0), ("has the other sign", -1.0)):
             changes = _changed(right, ((i, k),), factor)
