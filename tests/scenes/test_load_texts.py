@@ -266,7 +266,7 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ],
 )
 def test_a_name_that_is_taken_is_refused(tables: str, place: str) -> None:
-    """Names of the other model, functions, components of a vector, words of Python, or made twice are taken."""
+    """Names of the other model, functions, components of a vector, words of Python, or made twice."""
     lines = faults("w1", tables=tables)
     assert lines
     assert all(
