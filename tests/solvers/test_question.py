@@ -115,7 +115,7 @@ def lists(document: Any) -> Iterator[list[Any]]:
         yield from lists(entry)
 
 
-@pytest.mark.parametrize("name", ["loads/vehicle-in-a-current", "kirchhoff/generic", "loads/pid"])
+@pytest.mark.parametrize("name", ["loads/vehicle-in-a-current", "kirchhoff/algebraic", "loads/pid"])
 def test_a_vector_is_one_object_of_text_and_hex(name: str) -> None:
     """The lists stand within it: none is a list of such objects."""
     document = protocol.question(pose(load(name), rung("f64")))

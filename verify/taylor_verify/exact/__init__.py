@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from taylor_verify import types
 from taylor_verify.numbers.working_precision import in_turn
-from taylor_verify.records.faults import answers
 
 
 @in_turn
@@ -68,6 +66,7 @@ def exact(
     from taylor_verify.exact.printed import motion_at
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.reader import as_scene
 
     known, digits, asked = answers(
@@ -121,9 +120,12 @@ def enclose(
     -----
     The method is that of exact.enclosure: Taylor series in balls, with a bound of all that they leave out.
     """
+    from dataclasses import replace
+
     from taylor_verify.exact.field import Field
     from taylor_verify.exact.printed import motion_at
     from taylor_verify.exact.request import check_digits, exact_time, exact_times
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.field import field_of
 
     loads, asked, digits, first = answers(
@@ -174,6 +176,7 @@ def events(
     """
     from taylor_verify.exact.event_times import events_of
     from taylor_verify.exact.request import check_digits, exact_time
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.reader import as_scene
 
     known, end, digits = answers(

@@ -118,9 +118,8 @@ class Problem:
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
         centre where they are tracked or a load reads them; then the scene's own continuous states. ``held``
-        are all held values. Both are in the scene's order and units. Arrays may have more axes in front, which
-        the result has too.
-        Raises ValueError where the scene writes no loads, and for a state or held values too short.
+        are all held values. Both are in the scene's order and units. More axes may stand in front, which
+        stay. Raises ValueError where the scene writes no loads, and for a state or held values too short.
         """
         return self._acting.loads(t, state, held)
 
