@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from fractions import Fraction
+
 import pytest
 
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading.reader import read
+from taylor_verify.scenes.loads.states import Held
+from taylor_verify.scenes.reading.reader import load, read
 
 SCENE = """
 title = "Faults"
@@ -122,3 +126,14 @@ h = { start = 0, rate = "w1" }
         "space.o[0], column 5", "space.o[1], column 1", "space.p[0], column 7", "space.p[1], column 1",
         "space.p[2], column 1",
     ]  # fmt: skip
+
+
+def test_the_equations_take_a_state_in_such_a_vector() -> None:
+    """The search for causes puts held values in place of the numbers of a scene."""
+    loads = load("loads/gravity-gradient").body.loads
+    assert loads is not None
+    one = (Fraction(1),)
+    held = Held("m", one, one, Fraction(1), Fraction(0), is_vector=False)
+    other = replace(loads, definitions=(("n", "m"),), states=(held,))
+    assert "m" in other.inputs
+    assert not [*other.faults()]

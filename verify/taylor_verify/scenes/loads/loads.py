@@ -211,6 +211,10 @@ class Loads:
         yield from self._faults_of_rotor(doubts)
         yield from self._missing_starts(doubts)
 
+    def faults_of_space(self, doubts: Doubts) -> Iterator[Fault]:
+        """Yield what a scene lets no vector of [space] read, beyond the ``doubts``: its equations would."""
+        yield from PieceReader(self, is_scan=True, doubts=doubts).faults_of_space()
+
     def _faults_of_rotor(self, doubts: Doubts) -> Iterator[Fault]:
         for i, entry in enumerate(self.rotor):
             place = f"body.rotor[{i}]"

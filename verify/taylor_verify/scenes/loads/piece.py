@@ -312,11 +312,16 @@ class PieceReader:
         for name, entries in loads.space:
             components = [f"{name}{i}" for i in (1, 2, 3)]
             self._grammar.may_jump = any(map(self._stands_in_values_alone, components))
-            self._is_in_space = True
             self.look_at(entries, f"space.{name}")
-            self._is_in_space = False
         # The components of a vector share their texts.
         yield from dict.fromkeys(self._grammar.faults)
+
+    def faults_of_space(self) -> Iterator[Fault]:
+        """Yield the names in vectors of [space] that lead to more than such a vector may read."""
+        self._is_in_space = self._grammar.may_jump = True
+        for name, entries in self._loads.space:
+            self.look_at(entries, f"space.{name}")
+        yield from (fault for fault in self._grammar.faults if fault.expected == _OF_SPACE)
 
     def _stands_in_values_alone(self, name: str) -> bool:
         asked = self._places.keys() | self._faulty

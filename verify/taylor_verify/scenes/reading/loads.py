@@ -238,7 +238,7 @@ def loaded(
     if body is None:
         doubts |= Doubts(frozenset(INERTIA) & names(loads.model))
     doubts |= words.doubts
-    for place, column, expected, got in loads.faults(doubts):
+    for place, column, expected, got in (*loads.faults(doubts), *loads.faults_of_space(doubts)):
         where = f"{place}, column {column}" if column else place
         top.faults.add(expected, got, where)
     if time is not None:
