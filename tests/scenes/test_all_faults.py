@@ -109,6 +109,12 @@ def test_names_of_what_could_not_be_read_are_no_faults() -> None:
     assert places("inertia = [1, 2, 3]", lost) == ["states.m.valu", "states.m.value"]
 
 
+def test_a_fault_of_a_table_does_not_hide_that_of_its_name() -> None:
+    """A name that is taken is taken by what could not be read too."""
+    tables = f"{CYCLE}\n[tables]\npi = {{ times = [0], values = [1, 2] }}"
+    assert places(define=tables) == sorted([*OF_TEXTS, "tables.pi", "tables.pi"])
+
+
 def test_a_vector_by_its_space_components_reads_no_state_of_the_body() -> None:
     """It reads the time, the centre, tables, and definitions that read these alone."""
     tables = """

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -94,11 +94,14 @@ class Vocabulary:
     """
 
     def __init__(self, top: Table, folder: Path | None, states: Sequence[State]) -> None:
-        self._folder, self._states = folder, states
+        self._folder = folder
         self.doubts = NO_DOUBTS
+        # All names that are made, with their places.
+        self._names: list[tuple[str, str]] = []
         self.definitions = self._named(top, "define", self._definition)
         self.space = self._named(top, "space", self._direction)
         self.tables = self._named(top, "tables", self._data)
+        self._names += [(f"states.{s.name}", name) for s in states for name in s.components]
         self._check_names(top.faults)
 
     def _named(
@@ -110,30 +113,22 @@ class Vocabulary:
             return ()
         pairs = []
         for name in table.left():
-            before = len(top.faults.lines)
+            made, before = _made_by(key, name), len(top.faults.lines)
             pairs.append((name, read(table, name)))
             if len(top.faults.lines) > before:
-                self.doubts |= Doubts(frozenset(_made_by(key, name)) - TAKEN)
+                self.doubts |= Doubts(frozenset(made) - TAKEN)
             is_name(table, name)
+            self._names += [(f"{key}.{name}", each) for each in made]
         return tuple((name, value) for name, value in pairs if value is not None)
 
     def _check_names(self, faults: Faults) -> None:
         known: set[str] = set()
-        for place, name in self._names():
+        for place, name in self._names:
             # A table is a function of time, and may have the name of one: `log(log)` is clear.
             is_function = name in ALL_FUNCTIONS and not place.startswith("tables.")
             if name in TAKEN or name in known or is_function:
                 faults.add("a name that is free", f"`{name}`", place)
             known.add(name)
-
-    def _names(self) -> Iterator[tuple[str, str]]:
-        """Yield all names that the tables make, with their places."""
-        tables = {"define": self.definitions, "tables": self.tables, "space": self.space}
-        for key, pairs in tables.items():
-            for name, _ in pairs:
-                yield from ((f"{key}.{name}", made) for made in _made_by(key, name))
-        for state in self._states:
-            yield from ((f"states.{state.name}", name) for name in state.components)
 
     @staticmethod
     def _definition(table: Table, name: str) -> Entry | None:
