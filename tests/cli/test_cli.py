@@ -23,6 +23,7 @@ from builders.turns import by_turns
 
 from taylor_verify.batch.job import Job
 from taylor_verify.cli import main
+from taylor_verify.cli.arguments import OWN_VERBS
 from taylor_verify.records.plugins import KINDS, plugins
 from taylor_verify.records.precisions import LADDER
 from taylor_verify.scenes import library
@@ -316,13 +317,51 @@ def test_explain_shows_the_equations_the_orbit_and_every_gate(capsys: Captured, 
 def test_a_scene_that_is_refused_ends_with_2_and_a_message(
     capsys: Captured, verb: str, file: Path
 ) -> None:
-    """Every fault is named on stderr; stdout stays empty."""
+    """Every fault is named on stderr, and in the document of --json."""
     verb, *options = verb.split()
     assert main([verb, str(file), *options, "--json"]) == 2
     out, error = capsys.readouterr()
-    assert out == ""
-    assert error.startswith("taylor-verify: expected ")
-    assert "Traceback" not in error
+    document = json.loads(out)
+    assert error == f"taylor-verify: {document['error']}\n"
+    assert document["error"].splitlines() == document["faults"]
+    assert all(fault.startswith("expected ") for fault in document["faults"])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(
+            f"{verb} nono"
+            for verb in OWN_VERBS
+            if verb not in ("list", "check", "certify", "scene")
+        ),
+        "check nono.csv --scene nono",
+        "certify nono.csv --scene nono",
+        "scene from nono.urdf",
+        "list --nono",
+        "run euler/rest --rung",
+        "runs euler/rest",
+        "claims nono",
+        "publish nono",
+        "",
+    ],
+)
+def test_a_call_that_is_wrong_prints_one_document(
+    words: str, capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All verbs print the sentences of stderr with --json, also where the options cannot be read."""
+    monkeypatch.chdir(tmp_path)
+    try:
+        status = main([*words.split(), "--json"])
+    except SystemExit as end:
+        status = end.code
+    assert status == 2
+    out, error = capsys.readouterr()
+    document = json.loads(out)
+    assert document.keys() == {"error", "faults"}
+    assert document["faults"]
+    assert document["error"] == "\n".join(document["faults"])
+    assert error.endswith(f": {document['error']}\n")
 
 
 @pytest.mark.parametrize(

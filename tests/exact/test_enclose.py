@@ -180,13 +180,16 @@ def test_a_divisor_that_is_nothing_throughout_is_a_reason(rate: str) -> None:
 
 
 def test_all_faults_are_named_at_once() -> None:
-    """Faults of names, texts and numbers come together, each with its place."""
+    """Faults of names, texts, numbers, times and digits come together, each with its place."""
     with pytest.raises(Refused) as refused:
-        enclose({"t": "1", "x": "y + ", "z": "1"}, {"t": 0, "x": "1 m", "z": 1}, [1])
-    assert [fault.rpartition(" @ ")[2].partition(" ")[0] for fault in refused.value.faults] == [
-        "rates.t",
-        "start.x",
-    ]
+        enclose({"t": "1", "x": "y + ", "z": "1"}, {"t": 0, "x": "1 m", "y": "q"}, ["a"], 0, "b")
+    places = [fault.rpartition(" @ ")[2].partition(" ")[0] for fault in refused.value.faults]
+    assert sorted(places) == [
+        "begin", "digits", "rates", "rates.t", "rates.x,", "start", "start.x", "start.y", "times[0]",
+    ]  # fmt: skip
+    with pytest.raises(Refused, match="a divisor that is not zero") as refused:
+        enclose({"x": "1/(2 - 2) + x"}, 3, ["a"])  # type: ignore[arg-type]
+    assert len(refused.value.faults) == 3
     with pytest.raises(Refused, match=r"rates\.x, column 3"):
         enclose({"x": "2*y", "z": "1"}, {"x": 1, "z": 1}, [1])
     with pytest.raises(Refused, match="the start of `x`"):

@@ -447,16 +447,16 @@ def test_the_schema_describes_every_field_of_a_verdict(capsys: Captured) -> None
 def test_junit_and_summary_are_written_beside_the_answer(
     short: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """stdout is the document alone; a folder that is not there is made; a summary is appended."""
+    """stdout is the document alone; a summary is appended."""
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", "summary.md")
     Path("summary.md").write_text("of another command\n", encoding="utf-8")
-    assert main(["run", str(short), "--junit", "a/b.xml", "--github", "--json"]) == 0
+    assert main(["run", str(short), "--junit", "b.xml", "--github", "--json"]) == 0
     out, error = capsys.readouterr()
     assert set(json.loads(out)) == {"verdicts", "summary", "sha256"}
-    assert is_green(Path("a/b.xml").read_text(encoding="utf-8"))
+    assert is_green(Path("b.xml").read_text(encoding="utf-8"))
     assert Path("summary.md").read_text(encoding="utf-8").startswith("of another command\n## ta")
     assert "::" not in error
-    assert "wrote a/b.xml" in error
+    assert "wrote b.xml" in error
 
 
 def test_a_failing_run_is_red_everywhere(
@@ -485,15 +485,17 @@ def test_without_a_runner_there_is_no_summary(
     assert "GITHUB_STEP_SUMMARY is not set" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("place", ["", ".", "short.toml/r.xml"])
+@pytest.mark.parametrize("place", ["", ".", "short.toml/r.xml", "none/r.xml"])
 def test_a_junit_file_that_cannot_be_written_is_a_wrong_call(
     short: Path, capsys: Captured, place: str
 ) -> None:
-    """Exit 2 and a message that names --junit, before any work."""
+    """Exit 2 and a message that names --junit, before any work; no folder is made for it."""
     assert main(["run", str(short), "--junit", place]) == 2
     out, error = capsys.readouterr()
     assert out == ""
+    assert f"got {place!r}" in error
     assert "--junit" in error
+    assert not Path("none").exists()
 
 
 def test_what_fails_in_writing_hides_no_verdict(

@@ -91,6 +91,12 @@ def test_quarter_turns_and_parameters_are_exact() -> None:
         ("axis_angle = { axis = [0, 0, 0], degrees = 1 }", "an axis that is not zero"),
         ("axis_angle = { axis = [0, 0, 1], degrees = 1e30 }", "angles of at most"),
         ("roll = 3", "turns about axes that move along"),
+        ("mrp = [0, 0, 0]\nattitude = [0, 0, 0, 0]", "a quaternion that is not zero"),
+        (
+            "attitude = { mrp = [0, 0, 1] }",
+            "(write `mrp = ..` in [initial], in place of `attitude`)",
+        ),
+        ("attitude = { yaw = 3 }", "write `euler = ..` or `rotation_vector = ..` or"),
         (
             "euler = [10, 5, 0]",
             'yaw, pitch and roll are `euler = { sequence = "zyx", degrees = [10, 5, 0]',

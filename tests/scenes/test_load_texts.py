@@ -257,6 +257,8 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     [
         ('[define]\nw1 = "2"', "define.w1"),
         ('[define]\nu1 = "2"', "define.u1"),
+        ('[define]\nsin = "2"', "define.sin"),
+        ("[space]\natan = [1, 0, 0]", "space.atan"),
         ('[define]\nlambda = "2"', "define.lambda"),
         ("[space]\nw = [1, 0, 0]", "space.w"),
         ("[define]\nb2 = 1\n[space]\nb = [1, 0, 0]", "space.b"),
@@ -264,7 +266,7 @@ def test_a_chain_of_thirty_names_is_read() -> None:
     ],
 )
 def test_a_name_that_is_taken_is_refused(tables: str, place: str) -> None:
-    """Names of the other model, of a component of a vector, of Python, or made twice are taken."""
+    """Names of the other model, functions, components of a vector, words of Python, or made twice."""
     lines = faults("w1", tables=tables)
     assert lines
     assert all(

@@ -156,6 +156,7 @@ def test_definitions_of_values_alone_may_jump() -> None:
         ("h = { start = 1, rate = 1, value = 2 }", "got nothing @ states.h.every"),
         ("w = { start = [0], rate = [0] }", "a name that is free, got `w1` @ states.w"),
         ("if = { start = 0, rate = 0 }", "a name that is free, got `if`"),
+        ("sin = { start = 0, rate = 0 }", "a name that is free, got `sin`"),
         ("omega = { start = 0, rate = 0 }", "a name that is no quantity of the motion"),
         ("T = { start = 0, rate = 0 }", "a name that is no quantity of the motion"),
         ('h = { start = 0, rate = "sign(w1)" }', "@ states.h.rate, column 1"),

@@ -66,7 +66,7 @@ def test_an_engine_is_given_the_wrench_of_the_problem(scene: str, solid: Any) ->
         body.push.t = t
         drift = np.array(body.push.drift)
         wrench = body.wrench(moving[:3], moving[3:], attitude, place - drift, t)
-        expected = np.ravel(problem.loads(t, [*impulses, *attitude, *place]))
+        expected = problem.loads(t, [*impulses, *attitude, *place])
         # The velocities are made of impulses there, by matrices of condition below a thousand.
         few = 1e-12 * np.abs(expected).max()
         assert np.abs(np.subtract(wrench, expected)).max() <= few

@@ -106,6 +106,34 @@ def test_every_key_is_explained(name: str) -> None:
     assert not {*keys(first)} & {*answer, *document["columns"]}
 
 
+def lists(document: Any) -> Iterator[list[Any]]:
+    """Every list at every level."""
+    if isinstance(document, list):
+        yield document
+    entries = document.values() if isinstance(document, dict) else document
+    for entry in entries if isinstance(document, dict | list) else ():
+        yield from lists(entry)
+
+
+@pytest.mark.parametrize("name", ["loads/vehicle-in-a-current", "kirchhoff/algebraic", "loads/pid"])
+def test_a_vector_is_one_object_of_text_and_hex(name: str) -> None:
+    """The lists stand within it: none is a list of such objects."""
+    document = protocol.question(pose(load(name), rung("f64")))
+    for entries in lists(document):
+        assert not entries or not all(isinstance(e, dict) and e.keys() == PAIR for e in entries)
+
+
+@pytest.mark.parametrize("name", ["loads/pid", "loads/thruster-pulses", "loads/vehicle-depth"])
+def test_what_is_tracked_includes_states_of_the_scenes_own(name: str) -> None:
+    """As `columns` do, so that a program may ask either of them."""
+    scene = load(name)
+    document = protocol.question(pose(scene, rung("f64")))
+    assert set(document["track"]) == scene.track | scene.states
+    assert scene.states
+    for own in scene.states:
+        assert any(column.startswith(own) for column in document["columns"])
+
+
 def test_a_key_with_two_meanings_is_caught() -> None:
     """The broken twin: a table that has a key of another table."""
     document = protocol.question(pose(load("euler/generic"), rung("f64")))

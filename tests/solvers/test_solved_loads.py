@@ -256,11 +256,11 @@ def test_loads_take_many_times_and_states_at_once(name: str) -> None:
     problem = pose(SMOOTH[name], rung("f64"))
     random = np.random.default_rng(1)
     states, times = random.uniform(0.3, 0.9, (20, 13)), np.linspace(-1, 3, 20)
-    together = np.hstack([problem.loads(times, states)])
-    single = [np.hstack([problem.loads(t, y)]) for t, y in zip(times, states, strict=True)]
-    together = np.concatenate(together, axis=-1) if together.ndim == 3 else together
-    single = [row.ravel() for row in single]
+    together = problem.loads(times, states)
+    single = [problem.loads(t, y) for t, y in zip(times, states, strict=True)]
     np.testing.assert_allclose(together, single, rtol=1e-14, atol=1e-15)
+    # The moment, or force and couple.
+    assert together.shape == (20, 3 if problem.given.model == "euler" else 6)
 
 
 @pytest.mark.parametrize("part", [3, 5, 7, 11])

@@ -22,6 +22,7 @@ from taylor_verify.cli.streams import (
     stdout_reserved,
     tell,
 )
+from taylor_verify.records.escapes import one_line
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -47,8 +48,11 @@ def _status(arguments: Sequence[str]) -> int:
     except Exception as error:
         if sys.flags.dev_mode:
             raise
-        tell(*_message(error))
-        return WRONG_CALL
+        return _refused(_message(error), arguments)
+    except SystemExit as end:
+        # The parser has printed its own message.
+        _print_faults(getattr(end, "faults", ()), arguments)
+        raise
     finally:
         print_out()
 
@@ -78,6 +82,20 @@ def _print(answer: Answer, as_json: bool) -> int:
         if "".join(message.split()) not in shown:
             (tell if is_needed else say)(message)
     return answer.status
+
+
+def _refused(lines: Sequence[str], arguments: Sequence[str]) -> int:
+    """Print a message on stderr, and on stdout as the document that --json asks for."""
+    tell(*lines)
+    _print_faults(lines, arguments)
+    return WRONG_CALL
+
+
+def _print_faults(lines: Sequence[str], arguments: Sequence[str]) -> None:
+    # Options may not have been read: it is the words of the call that ask for a document.
+    if lines and "--json" in arguments:
+        faults = [*map(one_line, lines)]
+        print_out(as_json_text({"error": "\n".join(faults), "faults": faults}))
 
 
 def _interruption(interrupt: KeyboardInterrupt) -> str:

@@ -56,7 +56,7 @@ def writable_file(name: str, option: str) -> Path:
     """Return the file if it can be written, its folder tried out before hours of work.
 
     A link stands for the file that it leads to. A device and a pipe are refused: the new file would take
-    their place.
+    their place. So is a file in a folder that does not exist, which may be a slip of the pen.
     """
     path = Path(name)
     with unwritable("a file that can be written", name, option):
@@ -64,7 +64,10 @@ def writable_file(name: str, option: str) -> Path:
             raise IsADirectoryError(0, "a folder" if name else "an empty name")
         if (path.exists() and not path.is_file()) or path.absolute().parent in _DEVICES:
             raise OSError(0, "a device or a pipe")
-        return _tried(path.resolve() if path.is_symlink() else path)
+        path = path.resolve() if path.is_symlink() else path
+        if not path.absolute().parent.exists():
+            raise FileNotFoundError(0, f"there is no folder {path.parent}")
+        return _tried(path)
 
 
 @contextmanager

@@ -34,6 +34,14 @@ _SENTENCES: Final = tuple(
 )
 
 
+class Misused(SystemExit):
+    """The end of a call that the parser refuses, which has been printed; ``faults`` are its lines."""
+
+    def __init__(self, code: Any, faults: Sequence[str]) -> None:
+        self.faults = faults
+        super().__init__(code)
+
+
 class Parser(argparse.ArgumentParser):
     """A parser whose message is one harmless line: it repeats words that may be names of files."""
 
@@ -42,7 +50,11 @@ class Parser(argparse.ArgumentParser):
             if match := pattern.fullmatch(message):
                 message = match.expand(sentence)
                 break
-        super().error(one_line(message))
+        line = one_line(message)
+        try:
+            super().error(line)
+        except SystemExit as end:
+            raise Misused(end.code, [line]) from None
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help and version as any answer: argparse says nothing of a disk that is full."""

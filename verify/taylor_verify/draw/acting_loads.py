@@ -43,5 +43,4 @@ def _forces(scene: Scene, loads: Loads, course: Mapping[str, Any]) -> Numbers:
     held_states = [np.array(course[s.name]) for s in loads.states if isinstance(s, Held)]
     taken = np.hstack(held_states) if held_states else None
     state = np.hstack([*moving, turns, *centre, *own])
-    values = Acting(scene, loads).loads(course["t"], state, taken)
-    return np.hstack(values) if isinstance(values, tuple) else values
+    return Acting(scene, loads).loads(course["t"], state, taken)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Any
 
 from taylor_verify import types
@@ -65,10 +66,13 @@ def exact(
     from taylor_verify.exact.printed import motion_at
     from taylor_verify.exact.request import check_digits, exact_times
     from taylor_verify.exact.route import solution
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.reader import as_scene
 
-    scene, digits, asked = as_scene(scene), check_digits(digits), exact_times(times)
-    return motion_at(solution(scene, route), asked, scene.clock.start, digits)
+    known, digits, asked = answers(
+        partial(as_scene, scene), partial(check_digits, digits), partial(exact_times, times)
+    )
+    return motion_at(solution(known, route), asked, known.clock.start, digits)
 
 
 @in_turn
@@ -116,13 +120,21 @@ def enclose(
     -----
     The method is that of exact.enclosure: Taylor series in balls, with a bound of all that they leave out.
     """
+    from dataclasses import replace
+
     from taylor_verify.exact.field import Field
     from taylor_verify.exact.printed import motion_at
-    from taylor_verify.exact.request import check_digits, exact_times
+    from taylor_verify.exact.request import check_digits, exact_time, exact_times
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.field import field_of
 
-    digits, (first,) = check_digits(digits), exact_times([begin])
-    return motion_at(Field(field_of(rates, start, first)), exact_times(times), first, digits)
+    loads, asked, digits, first = answers(
+        partial(field_of, rates, start),
+        partial(exact_times, times),
+        partial(check_digits, digits),
+        partial(exact_time, begin, "begin"),
+    )
+    return motion_at(Field(replace(loads, origin=first)), asked, first, digits)
 
 
 @in_turn
@@ -163,8 +175,11 @@ def events(
         Where the times cannot be had to so many digits.
     """
     from taylor_verify.exact.event_times import events_of
-    from taylor_verify.exact.request import check_digits, exact_times
+    from taylor_verify.exact.request import check_digits, exact_time
+    from taylor_verify.records.faults import answers
     from taylor_verify.scenes.reading.reader import as_scene
 
-    (end,) = exact_times([until])
-    return events_of(as_scene(scene), text, end, check_digits(digits))
+    known, end, digits = answers(
+        partial(as_scene, scene), partial(exact_time, until, "until"), partial(check_digits, digits)
+    )
+    return events_of(known, text, end, digits)

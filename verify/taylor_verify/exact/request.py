@@ -36,6 +36,15 @@ def exact_times(times: Iterable[Any]) -> list[Fraction]:
     return exact
 
 
+def exact_time(time: Any, place: str) -> Fraction:
+    """Return a single time likewise."""
+    faults = Faults()
+    exact = _exact_time(time, place, faults)
+    if faults.lines:
+        raise Refused(faults.lines)
+    return exact
+
+
 def check_digits(digits: Any) -> int:
     """Return the number of digits. Raises Refused unless it is a whole number from 1 to ten thousand."""
     try:

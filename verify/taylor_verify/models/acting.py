@@ -51,10 +51,9 @@ class Acting:
         # Code that was made here is made again there.
         return Acting, (self._scene, self.written)
 
-    def loads(self, t: Any, state: Any, held: Any = None) -> Floats | tuple[Floats, Floats]:
-        """Return the moment, or force and couple."""
-        values = self._values("outputs", t, state, held)
-        return values if self._is_euler else (values[..., :3], values[..., 3:])
+    def loads(self, t: Any, state: Any, held: Any = None) -> Floats:
+        """Return the moment (..., 3), or force and couple in one array (..., 6)."""
+        return self._values("outputs", t, state, held)
 
     def rates(self, t: Any, state: Any, held: Any = None) -> Floats:
         """Return the rates of the continuous components."""

@@ -51,7 +51,7 @@ def driven(units: Units, scene: Scene, span: Fraction) -> Units:
 def _largest(values: Iterable[Any]) -> Any:
     """Return the largest size of each component; None where one has no value."""
     with suppress(ArithmeticError, ValueError):
-        sizes = np.abs([np.concatenate(np.atleast_2d(value)) for value in values]).max(axis=0)
+        sizes = np.abs([*values]).max(axis=0)
         return sizes if np.isfinite(sizes).all() else None
     return None
 

@@ -114,12 +114,12 @@ class Problem:
         return () if loads is None else loads.instants(clock.elapsed[-1])
 
     def loads(self, t: Any, state: Any, held: Any = None) -> Any:
-        """Return the loads that the scene writes down: the moment, or force and couple, body axes.
+        """Return the loads that the scene writes down, body axes: the moment (3), or force and couple (6).
 
         ``t`` is the scene's time; ``state`` is omega, or x and y; then q0..q3 (body to space) and the
         centre where they are tracked or a load reads them; then the scene's own continuous states. ``held``
-        are all held values. Both are in the scene's order and units. Arrays may have more axes in front.
-        Raises ValueError where the scene writes no loads, and for a state or held values too short.
+        are all held values. Both are in the scene's order and units. More axes may stand in front, which
+        stay. Raises ValueError where the scene writes no loads, and for a state or held values too short.
         """
         return self._acting.loads(t, state, held)
 

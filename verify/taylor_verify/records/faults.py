@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any
 
 _LONGEST_SHOWN = 60
 # Nobody reads a million faults, and to write them takes minutes.
@@ -51,6 +52,20 @@ class Faults:
             self.lines.append("and more faults beyond these hundred")
             return
         self.lines.append(_line(expected, got, path, mend))
+
+
+def answers(*asked: Callable[[], Any]) -> list[Any]:
+    """Return the answer of each question. Raises Refused with the faults of all that are refused."""
+    given: list[Any] = []
+    faults: list[str] = []
+    for ask in asked:
+        try:
+            given.append(ask())
+        except Refused as refused:
+            faults += refused.faults
+    if faults:
+        raise Refused(faults)
+    return given
 
 
 def refusal(expected: str, got: object, place: object, mend: str = "") -> Refused:

@@ -92,7 +92,7 @@ def equations_of(given: Scene, has_momenta: bool) -> Equations:
     constant = [entry for name in body.load_names() for entry in parts[name]]
     acting = None if loads is None else Acting(given, loads)
     if acting is not None and _are_constant(acting.written):
-        constant, acting = np.ravel(acting.loads(0.0, np.zeros(n))).tolist(), None
+        constant, acting = acting.loads(0.0, np.zeros(n)).tolist(), None
     added = body.added_mass
     return Equations(
         mass,

@@ -19,10 +19,12 @@ from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Table
 from taylor_verify.scenes.loads.vocabulary import (
     CENTRE,
+    NO_DOUBTS,
     QUATERNION,
     ROTATION,
     TAKEN,
     VECTORS,
+    Doubts,
     Entries,
     Entry,
 )
@@ -203,15 +205,20 @@ class Loads:
         """True if a load depends on the centre."""
         return not self.inputs.isdisjoint(CENTRE)
 
-    def faults(self) -> Iterator[Fault]:
-        """Yield the faults of all texts, also of definitions that nothing names."""
-        yield from PieceReader(self, is_scan=True).faults()
-        yield from self._faults_of_rotor()
-        yield from self._missing_starts()
+    def faults(self, doubts: Doubts = NO_DOUBTS) -> Iterator[Fault]:
+        """Yield the faults of all texts, also of definitions that nothing names, beyond the ``doubts``."""
+        yield from PieceReader(self, is_scan=True, doubts=doubts).faults()
+        yield from self._faults_of_rotor(doubts)
+        yield from self._missing_starts(doubts)
 
-    def _faults_of_rotor(self) -> Iterator[Fault]:
+    def faults_of_space(self, doubts: Doubts) -> Iterator[Fault]:
+        """Yield what a scene lets no vector of [space] read, beyond the ``doubts``: its equations would."""
+        yield from PieceReader(self, is_scan=True, doubts=doubts).faults_of_space()
+
+    def _faults_of_rotor(self, doubts: Doubts) -> Iterator[Fault]:
         for i, entry in enumerate(self.rotor):
-            reader, place = PieceReader(self, is_scan=True), f"body.rotor[{i}]"
+            place = f"body.rotor[{i}]"
+            reader = PieceReader(self, is_scan=True, doubts=doubts)
             reader.look_at((entry,), place, is_vector=False)
             others = sorted(reader.reads().difference(("t", *self.continuous)))
             if others:
@@ -219,17 +226,17 @@ class Loads:
             if reader.jumps:
                 yield Fault(place, 1, _NO_JUMP, "a jump by the time")
 
-    def _missing_starts(self) -> Iterator[Fault]:
+    def _missing_starts(self, doubts: Doubts) -> Iterator[Fault]:
         """Yield held states that are read before they are first taken, and have no start."""
         at_once = [state for state in self.held_states if not state.offset]
-        first = self._read_by(at_once)
+        first = self._read_by(at_once, doubts)
         for state in self.held_states:
             if state.start is None and (state.offset or not first.isdisjoint(state.components)):
                 expected = "a start, as the state is read before it is first taken"
                 yield Fault(f"states.{state.name}", 0, expected, "nothing")
 
-    def _read_by(self, states: Sequence[Held]) -> frozenset[str]:
-        reader = PieceReader(self, is_scan=True)
+    def _read_by(self, states: Sequence[Held], doubts: Doubts) -> frozenset[str]:
+        reader = PieceReader(self, is_scan=True, doubts=doubts)
         for state in states:
             reader.look_at_state(state)
         return reader.reads()

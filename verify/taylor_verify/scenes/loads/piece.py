@@ -13,12 +13,15 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.scenes.loads.grammar import Fault, Grammar, Unread
 from taylor_verify.scenes.loads.states import Continuous, Held, State
-from taylor_verify.scenes.loads.steps import NoStep, Step, Steps
+from taylor_verify.scenes.loads.steps import NoStep, Step, Steps, needed
 from taylor_verify.scenes.loads.tables import Kind, Table
 from taylor_verify.scenes.loads.vocabulary import (
+    CENTRE,
     INERTIA,
     INVARIANTS,
+    NO_DOUBTS,
     VECTORS,
+    Doubts,
     Entries,
     Entry,
     names,
@@ -31,6 +34,9 @@ MOST_SWITCHES: Final = 10_000
 # The place of a text that is no part of a scene.
 FUNCTION: Final = "event"
 _TOO_MANY: Final = f"at most {MOST_SWITCHES} switches"
+# The inputs of vectors that are given by their space components.
+_IN_SPACE: Final = frozenset(("t", *CENTRE))
+_OF_SPACE: Final = "t, c1 to c3, tables, and definitions of these, in a vector of [space]"
 
 
 class Piece(NamedTuple):
@@ -55,7 +61,8 @@ class Piece(NamedTuple):
 class PieceReader:
     """The steps of all texts for the times between ``begin`` and ``end``.
 
-    A scan notes the times of all switches; which branch it takes does not matter, as all are read.
+    A scan notes the times of all switches; which branch it takes does not matter, as all are read. No text
+    is read beyond a name in ``doubts``.
     """
 
     def __init__(
@@ -64,9 +71,12 @@ class PieceReader:
         begin: Fraction | None = None,
         end: Fraction | None = None,
         is_scan: bool = False,
+        doubts: Doubts = NO_DOUBTS,
     ) -> None:
         self._loads = loads
         self._is_scan = is_scan
+        self._doubts = doubts
+        self._is_in_space = False
         self._inside = _between(begin, end)
         self.steps = Steps()
         self.switches: set[Fraction] = set()
@@ -183,9 +193,22 @@ class PieceReader:
                 raise
             finally:
                 self._open.pop()
+        if self._is_in_space and not self._open:
+            self._check_in_space(name, self._places[key])
         return self._places[key]
 
+    def _check_in_space(self, name: str, place: int) -> None:
+        """Raise NoStep for a name that leads to more than a vector by its space components may read."""
+        steps = self.steps.steps
+        inputs = {steps[k].name for k in needed(steps, [place]) if steps[k].operation == "input"}
+        if others := sorted(inputs.difference(_IN_SPACE, {name})):
+            raise NoStep(_OF_SPACE, f"`{name}`, which reads `{others[0]}`")
+        if not inputs <= _IN_SPACE:
+            raise NoStep(_OF_SPACE, f"`{name}`")
+
     def _meaning(self, name: str) -> int:
+        if name in self._doubts.names:
+            raise Unread
         if name in self._definitions:
             return self._entry(self._definitions[name], f"define.{name}")
         if name in self._space:
@@ -202,6 +225,8 @@ class PieceReader:
             return self.steps.combined("+", time, begin)
         if name in names(self._loads.model) or name in self._own or self._is_invariant(name):
             return self.steps.input(name)
+        if self._doubts.are_names_lost:
+            raise Unread
         raise NoStep("a known name", f"`{name}`")
 
     def _is_invariant(self, name: str) -> bool:
@@ -291,9 +316,17 @@ class PieceReader:
         # The components of a vector share their texts.
         yield from dict.fromkeys(self._grammar.faults)
 
+    def faults_of_space(self) -> Iterator[Fault]:
+        """Yield the names in vectors of [space] that lead to more than such a vector may read."""
+        self._is_in_space = self._grammar.may_jump = True
+        for name, entries in self._loads.space:
+            self.look_at(entries, f"space.{name}")
+        yield from (fault for fault in self._grammar.faults if fault.expected == _OF_SPACE)
+
     def _stands_in_values_alone(self, name: str) -> bool:
         asked = self._places.keys() | self._faulty
-        return (name, True) in asked and (name, False) not in asked
+        is_in_values = (name, True) in asked or self._doubts.are_values_lost
+        return is_in_values and (name, False) not in asked
 
     def look_at_state(self, state: State) -> None:
         """Read the rate or the value of a state; faults are for `faults` to yield."""

@@ -6,7 +6,7 @@ import keyword
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import chain
-from typing import Final
+from typing import Final, NamedTuple
 
 Entry = Fraction | str
 """A number, or the text of an expression."""
@@ -37,6 +37,28 @@ INVARIANTS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 
 
+class Doubts(NamedTuple):
+    """Faults of a scene that leave the meaning of words in its texts open.
+
+    Nothing is known of the ``names``. There may be names beside those that were read if ``are_names_lost``,
+    and held values, which may use any definition, if ``are_values_lost``.
+    """
+
+    names: frozenset[str] = frozenset()
+    are_names_lost: bool = False
+    are_values_lost: bool = False
+
+    def __or__(self, other: Doubts) -> Doubts:
+        return Doubts(
+            self.names | other.names,
+            self.are_names_lost or other.are_names_lost,
+            self.are_values_lost or other.are_values_lost,
+        )
+
+
+NO_DOUBTS: Final = Doubts()
+
+
 def names(model: str) -> frozenset[str]:
     """The names that a scene of this model may use without defining them."""
     if model == FIELD:
@@ -46,5 +68,5 @@ def names(model: str) -> frozenset[str]:
 
 
 # No scene may define these, so that a text has one meaning in both models. Words of Python are no names.
-# A function's name is free, since a function is followed by its bracket: a table may be called `log`.
+# The names of functions are for tables alone: a table may be called `log`.
 TAKEN: Final = frozenset(chain(names("euler"), names("kirchhoff"), keyword.kwlist))

@@ -28,16 +28,19 @@ _MOST_ANGLE: Final = 10**20
 def attitude(table: Table) -> Vector | None:
     """Return a quaternion of any norm but zero, scalar first, body to space; None after a fault."""
     written = [form for form in _FORMS if table.has(form)]
+    quaternions = [_FORMS[form](table) for form in written]
     if len(written) > 1:
-        for form in written:
-            table.take(form, "nothing")
         got = " and ".join(f"`{form}`" for form in written)
         table.fault("one form of the attitude", got, written[1])
         return None
-    return _FORMS[written[0]](table) if written else IDENTITY
+    return quaternions[0] if written else IDENTITY
 
 
 def _quaternion(table: Table) -> Vector | None:
+    if keys := table.peek_keys("attitude"):
+        table.take("attitude", "4 numbers")
+        table.fault("4 numbers, scalar first", "a table", "attitude", _of_table(keys))
+        return None
     if len(three := table.peek("attitude")) == 3:
         table.take("attitude", "4 numbers")
         table.fault("4 numbers, scalar first", shown(three), "attitude", _of_three(three))
@@ -58,6 +61,14 @@ def _of_three(entries: list[object]) -> str:
         f'yaw, pitch and roll are `euler = {{ sequence = "zyx", degrees = {numbers} }}`, a rotation '
         f"vector is `rotation_vector = {numbers}`, Rodrigues parameters are `mrp = {numbers}`"
     )
+
+
+def _of_table(keys: tuple[str, ...]) -> str:
+    """Return the lines to write for a table that stands in place of a quaternion."""
+    others = [form for form in _FORMS if form != "attitude"]
+    meant = [key for key in keys if key in others] or others
+    lines = " or ".join(f"`{form} = ..`" for form in meant)
+    return f"write {lines} in [initial], in place of `attitude`"
 
 
 def _rodrigues(table: Table) -> Vector | None:

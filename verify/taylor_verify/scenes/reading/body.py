@@ -26,11 +26,11 @@ _DENSITY: Final = right("a density that is not negative", lambda number: number 
 _CLEBSCH_KEYS = ("p", "p_prime", "q", "q_prime", "r", "r_prime")
 
 
-def rigid_body(table: Table, loads: Loads | None) -> RigidBody | None:
+def rigid_body(table: Table, loads: Loads) -> RigidBody | None:
     """Return the body of model euler; None after a fault."""
     inertia = _inertia(table)
     damping = table.number(DAMPING.name, default=Fraction(0))
-    if inertia is None or loads is None or damping is None:
+    if inertia is None or damping is None:
         return None
     moment, rotor = dict(loads.vectors)["moment"], loads.rotor
     turns_by_text = any(isinstance(entry, str) for entry in rotor)
@@ -72,12 +72,12 @@ def _is_positive(
     return True
 
 
-def immersed_body(table: Table, loads: Loads | None) -> ImmersedBody | None:
+def immersed_body(table: Table, loads: Loads) -> ImmersedBody | None:
     """Return the body of model kirchhoff; None after a fault."""
     damping = table.number(DAMPING.name, default=Fraction(0))
     form = _form(table)
     body = form(table) if form else None
-    if body is None or loads is None or damping is None:
+    if body is None or damping is None:
         return None
     if loads.is_written:
         return replace(body, damping=damping, loads=loads)
@@ -91,7 +91,8 @@ def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
     if len(written) == 1:
         return FORMS[written[0]]
     for form in written:
-        table.take(form, "a table")
+        # A mass needs an inertia, which the other forms do not.
+        _ = table.take(form, "a number") if form == "mass" else FORMS[form](table)
     names = ", ".join(f"`{form}`" for form in FORMS)
     table.fault(f"exactly one of {names}", " and ".join(written) or "none of them")
     return None

@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -17,17 +17,18 @@ from typing import Any, Final
 from taylor_verify.numbers.tensors import ZERO_VECTOR, Vector
 from taylor_verify.records.faults import Faults, shown
 from taylor_verify.scenes.bodies import Body
+from taylor_verify.scenes.loads.grammar import ALL_FUNCTIONS
 from taylor_verify.scenes.loads.loads import TAKEN, Entries, Entry, Hung, Loads
 from taylor_verify.scenes.loads.states import MOST_INSTANTS, State
 from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.loads.tables import Kind
 from taylor_verify.scenes.loads.tables import Table as Data
+from taylor_verify.scenes.loads.vocabulary import INERTIA, NO_DOUBTS, Doubts, names
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.csv_columns import columns
 from taylor_verify.scenes.reading.table import (
     Number,
     Table,
-    complete,
     exact_number,
     is_numeral,
     quantity,
@@ -71,9 +72,10 @@ def is_name(table: Table, name: str) -> bool:
     return False
 
 
-def _hanging(table: Table) -> tuple[Hung, ...] | None:
-    """Return the forces that are constant in space; None after a fault."""
-    return complete([_hung(table, name) for name in _HANGING if table.has(name)])
+def _hanging(table: Table) -> tuple[Hung, ...]:
+    """Return the forces that are constant in space, but for those with a fault."""
+    hung = [_hung(table, name) for name in _HANGING if table.has(name)]
+    return tuple(each for each in hung if each is not None)
 
 
 def _hung(table: Table, name: str) -> Hung | None:
@@ -86,46 +88,47 @@ def _hung(table: Table, name: str) -> Hung | None:
 
 
 class Vocabulary:
-    """Words that the texts of a scene may use: [define], [space], [tables], and its states."""
+    """Words that the texts of a scene may use: [define], [space], [tables], and its states.
 
-    def __init__(self, top: Table, folder: Path | None, states: Sequence[State] | None) -> None:
-        self._folder, self._states = folder, states or ()
-        self.is_complete = states is not None
+    All that could be read is here, so that its texts are examined; ``doubts`` are what could not.
+    """
+
+    def __init__(self, top: Table, folder: Path | None, states: Sequence[State]) -> None:
+        self._folder = folder
+        self.doubts = NO_DOUBTS
+        # All names that are made, with their places.
+        self._names: list[tuple[str, str]] = []
         self.definitions = self._named(top, "define", self._definition)
         self.space = self._named(top, "space", self._direction)
         self.tables = self._named(top, "tables", self._data)
+        self._names += [(f"states.{s.name}", name) for s in states for name in s.components]
         self._check_names(top.faults)
 
     def _named(
         self, top: Table, key: str, read: Callable[[Table, str], Any]
     ) -> tuple[tuple[str, Any], ...]:
-        table = top.table(key) if top.has(key) else None
+        table = top.table(key) if top.has(key) else top.empty(key)
         if table is None:
+            self.doubts |= Doubts(are_names_lost=True, are_values_lost=True)
             return ()
-        pairs = [(name, read(table, name)) for name in table.left()]
-        for name, _ in pairs:
+        pairs = []
+        for name in table.left():
+            made, before = _made_by(key, name), len(top.faults.lines)
+            pairs.append((name, read(table, name)))
+            if len(top.faults.lines) > before:
+                self.doubts |= Doubts(frozenset(made) - TAKEN)
             is_name(table, name)
-        known = tuple((name, value) for name, value in pairs if value is not None)
-        self.is_complete &= len(known) == len(pairs)
-        return known
+            self._names += [(f"{key}.{name}", each) for each in made]
+        return tuple((name, value) for name, value in pairs if value is not None)
 
     def _check_names(self, faults: Faults) -> None:
         known: set[str] = set()
-        for place, name in self._names():
-            if name in TAKEN or name in known:
+        for place, name in self._names:
+            # A table is a function of time, and may have the name of one: `log(log)` is clear.
+            is_function = name in ALL_FUNCTIONS and not place.startswith("tables.")
+            if name in TAKEN or name in known or is_function:
                 faults.add("a name that is free", f"`{name}`", place)
             known.add(name)
-
-    def _names(self) -> Iterator[tuple[str, str]]:
-        """Yield all names that the tables make, with their places."""
-        for name, _ in self.definitions:
-            yield f"define.{name}", name
-        for name, _ in self.tables:
-            yield f"tables.{name}", name
-        for name, _ in self.space:
-            yield from ((f"space.{name}", f"{name}{i}") for i in (1, 2, 3))
-        for state in self._states:
-            yield from ((f"states.{state.name}", name) for name in state.components)
 
     @staticmethod
     def _definition(table: Table, name: str) -> Entry | None:
@@ -164,6 +167,11 @@ class Vocabulary:
         return columns(table, self._folder, file, time, column, MOST_ROWS)
 
 
+def _made_by(key: str, name: str) -> tuple[str, ...]:
+    """Return the names in texts that an entry of a table makes."""
+    return tuple(f"{name}{i}" for i in (1, 2, 3)) if key == "space" else (name,)
+
+
 def _kind(table: Table) -> Kind | None:
     word = table.text("kind", default=Kind.LINEAR.value)
     if word is None:
@@ -182,73 +190,75 @@ def _rises(table: Table, times: Vector) -> bool:
     return True
 
 
-def rigid_loads(table: Table) -> Loads | None:
-    """Return what acts on a rigid body, numbers and texts alike; None after a fault."""
+def rigid_loads(table: Table) -> Loads:
+    """Return what acts on a rigid body, numbers and texts alike, as far as it could be read."""
     moment = table.vector("moment", default=ZERO_VECTOR, reader=ENTRY)
     rotor = table.vector("rotor", default=ZERO_VECTOR, reader=ENTRY)
-    hung = _hanging(table)
-    if moment is None or rotor is None or hung is None:
-        return None
-    return Loads("euler", (("moment", moment),), hung, rotor=rotor)
+    return Loads("euler", (("moment", moment or ()),), _hanging(table), rotor=rotor or ())
 
 
-def immersed_loads(table: Table) -> Loads | None:
-    """Return what acts on a solid in a fluid, numbers and texts alike; None after a fault."""
+def immersed_loads(table: Table) -> Loads:
+    """Return what acts on a solid in a fluid, numbers and texts alike, as far as it could be read."""
     force = table.vector("force", default=ZERO_VECTOR, reader=ENTRY)
     couple = table.vector("couple", default=ZERO_VECTOR, reader=ENTRY)
     hung = _hanging(table)
     current = table.vector("current", default=ZERO_VECTOR)
-    if force is None or couple is None or hung is None or current is None:
-        return None
-    return Loads("kirchhoff", (("force", force), ("couple", couple)), hung, current=current)
+    vectors = (("force", force or ()), ("couple", couple or ()))
+    return Loads("kirchhoff", vectors, hung, current=current or ZERO_VECTOR)
 
 
 def loaded(
     body: Body | None,
     loads: Loads,
-    states: Sequence[State] | None,
+    doubts: Doubts,
     top: Table,
     folder: Path | None,
     time: Clock | None,
 ) -> Body | None:
     """Return the body under its texts, with what these name; None after a fault.
 
-    ``loads`` are those of a body that has faults: its texts, and what no load names, are read all the same,
-    if the names of all ``states`` are known.
+    ``loads`` are what was read of them, also where there is no body. Texts are examined all the same, but
+    for what depends on a fault: ``doubts`` are those that the scene has so far.
     """
-    words = Vocabulary(top, folder, states)
+    words = Vocabulary(top, folder, loads.states)
     loads = replace(
         (body.loads if body is not None else None) or loads,
+        inertia=None if body is None else body.parts().get("inertia"),
         definitions=words.definitions,
         space=words.space,
         tables=words.tables,
         origin=Fraction(0) if time is None else time.start,
         reach=Fraction(0) if time is None else time.elapsed[-1],
     )
-    if words.is_complete:
-        for place, column, expected, got in loads.faults():
-            where = f"{place}, column {column}" if column else place
-            top.faults.add(expected, got, where)
+    if body is None:
+        doubts |= Doubts(frozenset(INERTIA) & names(loads.model))
+    doubts |= words.doubts
+    for place, column, expected, got in (*loads.faults(doubts), *loads.faults_of_space(doubts)):
+        where = f"{place}, column {column}" if column else place
+        top.faults.add(expected, got, where)
+    if time is not None:
+        _check_instants(loads, top, time)
+    if not top.faults.lines:
+        _check_switches(loads, top)
     if top.faults.lines or body is None or body.loads is None:
         return body
-    return body.with_loads(loads) if _fits(loads, top, time) else None
+    return body.with_loads(loads)
 
 
-def _fits(loads: Loads, top: Table, time: Clock | None) -> bool:
-    """Return True if switches and instants of the loads can be listed; else the reason is a fault."""
+def _check_switches(loads: Loads, top: Table) -> None:
+    """Note a fault if the switches of the loads cannot be listed."""
     try:
         _ = loads.switches
     except NoStep as fault:
         top.fault(fault.expected, fault.got, "body")
-        return False
-    if time is None or not loads.held_values:
-        return True
-    if time.elapsed[-1] < 0:
+
+
+def _check_instants(loads: Loads, top: Table, time: Clock) -> None:
+    """Note a fault if the held states cannot be taken at all their instants."""
+    if loads.held_values and time.elapsed[-1] < 0:
         top.fault("an end after the start, as held states run forward", "one before it", "time")
-        return False
+        return
     try:
         loads.instants(time.elapsed[-1])
     except ValueError:
         top.fault(f"at most {MOST_INSTANTS} instants of held states", "more", "states")
-        return False
-    return True

@@ -27,6 +27,7 @@ from taylor_verify.scenes.bodies import DAMPING, Body, ImmersedBody, RigidBody
 from taylor_verify.scenes.loads.loads import Loads
 from taylor_verify.scenes.loads.manufactured import Manufactured
 from taylor_verify.scenes.loads.states import State as Own
+from taylor_verify.scenes.loads.vocabulary import FIELD, TAKEN, Doubts, names
 from taylor_verify.scenes.motion import State
 from taylor_verify.scenes.reading.body import immersed_body, rigid_body, warnings
 from taylor_verify.scenes.reading.hints import advice
@@ -58,8 +59,8 @@ class Model(NamedTuple):
     """
 
     kind: type[Body]
-    loads: Callable[[Table], Loads | None]
-    body: Callable[[Table, Loads | None], Body | None]
+    loads: Callable[[Table], Loads]
+    body: Callable[[Table, Loads], Body | None]
     moving: Callable[[Table, Body | None], Vector | None]
     velocities: tuple[str, ...] = ()
 
@@ -111,12 +112,16 @@ def read(text: str, name: str, folder: Path | None = None) -> Scene:
     top = Table(parsed(text, name), "", faults)
     title, source = top.text("title"), top.text("source", default="")
     model = _model(top)
-    own, states = own_states(top)
+    states = own_states(top)
+    own, doubts = states.names, states.doubts
     track = _track(top, model, own)
-    body, loads = _loaded_body(top, model, states or ()) if model else _unread(top)
+    body, loads = _body_and_loads(top, model, states.states) if model else _unread(top)
     motion, initial = _motion_and_start(top, model, body) if model else (None, None)
     time = _part(top, "time", clock, model)
-    body = loaded(body, loads, states, top, folder, time)
+    if model is None:
+        doubts |= Doubts(TAKEN - names(FIELD))
+    loads = replace(loads, states=states.states)
+    body = loaded(body, loads, doubts, top, folder, time)
     if body is not None and motion is not None and time is not None:
         body = body.with_loads(motion.loads(body, time.start))
     top.close(advice("", model.name if model else ""))
@@ -199,15 +204,15 @@ def _motion_and_start(
     return None, _part(top, "initial", start, model)
 
 
-def _loaded_body(top: Table, model: Model, states: tuple[Own, ...]) -> tuple[Body | None, Loads]:
+def _body_and_loads(top: Table, model: Model, states: tuple[Own, ...]) -> tuple[Body | None, Loads]:
     """Return the body, None after a fault, and what acts on it, as far as it was read."""
     table = top.table("body")
-    loads = None if table is None else model.loads(table)
-    loads = None if loads is None else replace(loads, states=states)
-    body = None if table is None else model.body(table, loads)
-    if table is not None:
-        table.close(advice("body", model.name))
-    return body, loads or Loads(model.name, (), states=states)
+    if table is None:
+        return None, Loads(model.name, ())
+    loads = model.loads(table)
+    body = model.body(table, replace(loads, states=states))
+    table.close(advice("body", model.name))
+    return body, loads
 
 
 def _model(top: Table) -> Model | None:

@@ -10,25 +10,59 @@ from taylor_verify.numbers.tensors import Vector
 from taylor_verify.records.faults import shown
 from taylor_verify.records.quantities import RESERVED
 from taylor_verify.scenes.loads.states import Continuous, Held, State
+from taylor_verify.scenes.loads.vocabulary import TAKEN, Doubts
 from taylor_verify.scenes.reading.hints import advice
 from taylor_verify.scenes.reading.loads import ENTRY, is_name
-from taylor_verify.scenes.reading.table import Number, Table, complete, exact_number
+from taylor_verify.scenes.reading.table import LARGEST_EXPONENT, Number, Table, exact_number
 
 MOST_COMPONENTS: Final = 100
 _ZERO: Final = Fraction(0)
+# An interval with a fault stands as this one, so that its instants are not too many.
+_NEVER: Final = Fraction(10**LARGEST_EXPONENT)
 _START: Final = Number(exact_number, _ZERO)
 
 
-def own_states(top: Table) -> tuple[frozenset[str], tuple[State, ...] | None]:
-    """Return the names of all states of the scene's own, and the states; None after a fault."""
+class OwnStates(NamedTuple):
+    """The names of all states of a scene's own, and the states that could be read.
+
+    ``faulty`` are the names of those that have faults, read or not. ``is_table`` is False where [states] is
+    no table, so that no name is known.
+    """
+
+    names: frozenset[str]
+    states: tuple[State, ...]
+    faulty: frozenset[str] = frozenset()
+    is_table: bool = True
+
+    @property
+    def doubts(self) -> Doubts:
+        """Names that states with faults may lend to texts: the number of their components is open."""
+        numbers = ("", *range(1, MOST_COMPONENTS + 1))
+        names = frozenset(f"{name}{number}" for name in self.faulty for number in numbers)
+        known = TAKEN.union(*(state.components for state in self.states))
+        return Doubts(names - known, not self.is_table, len(self.states) < len(self.names))
+
+
+def own_states(top: Table) -> OwnStates:
+    """Return the states of the scene's own, as far as they could be read."""
     table = top.table("states") if top.has("states") else top.empty("states")
     if table is None:
-        return frozenset(), None
+        # Whatever is tracked may be a state.
+        tracked = (word for word in top.peek("track") if isinstance(word, str))
+        return OwnStates(frozenset(tracked), (), frozenset(), is_table=False)
     names = table.left()
     for name in names:
         if is_name(table, name) and name in RESERVED:
             table.fault("a name that is no quantity of the motion", f"`{name}`", name)
-    return frozenset(names), complete([_state(table, name) for name in names])
+    states, faulty = [], set()
+    for name in names:
+        before = len(top.faults.lines)
+        state = _state(table, name)
+        if len(top.faults.lines) > before:
+            faulty.add(name)
+        states.append(state)
+    read = tuple(state for state in states if state is not None)
+    return OwnStates(frozenset(names), read, frozenset(faulty))
 
 
 def _state(table: Table, name: str) -> State | None:
@@ -59,7 +93,7 @@ def _sampled(table: Table, name: str) -> Held | None:
     # Where the first instant is not known, no start is missed either.
     needs_none = not has_start and offset is not None
     first = None if needs_none else _start(table, start, value)
-    return Held(name, first, value.each, every or Fraction(1), offset or _ZERO, value.is_vector)
+    return Held(name, first, value.each, every or _NEVER, offset or _ZERO, value.is_vector)
 
 
 class _Entries(NamedTuple):

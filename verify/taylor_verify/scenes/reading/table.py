@@ -39,7 +39,8 @@ T = TypeVar("T")
 class Number(NamedTuple):
     """A way to read one number: ``read`` raises ValueError with what it expects.
 
-    ``stand_in`` takes the place of a number that is a fault, so that what reads it is examined too.
+    ``stand_in`` takes the place of a number that is a fault, so that what reads it is examined too. So are
+    the entries of an array of another length.
     """
 
     read: Callable[[object], Any]
@@ -203,6 +204,11 @@ class Table:
         value = self._left.get(key)
         return value if isinstance(value, list) else []
 
+    def peek_keys(self, key: str) -> tuple[str, ...]:
+        """Return the keys of a table without taking it; none for any other value."""
+        value = self._left.get(key)
+        return tuple(value) if isinstance(value, dict) else ()
+
     def is_array(self, key: str) -> bool:
         """Return True if the scene writes the key with an array, without taking it."""
         return isinstance(self._left.get(key), list)
@@ -242,9 +248,14 @@ class Table:
     def _row(
         self, value: object, key: str, length: int, reader: Number | None = None
     ) -> Vector | None:
-        return (
-            self._entries(value, key, reader or EXACT) if self._is_row(value, key, length) else None
-        )
+        reader = reader or EXACT
+        if self._is_row(value, key, length):
+            return self._entries(value, key, reader)
+        if reader.stand_in is None:
+            return None
+        entries = value[:length] if isinstance(value, list) else []
+        flat = [0 if isinstance(entry, list | dict) else entry for entry in entries]
+        return self._entries(flat, key, reader)
 
     def _entries(self, values: list[object], key: str, reader: Number) -> Vector | None:
         return complete([self._exact(v, f"{key}[{i}]", reader) for i, v in enumerate(values)])

@@ -30,11 +30,7 @@ def written_loads(problem: Problem) -> dict[str, Any]:
         "text": {name: [_text(entry) for entry in entries] for name, entries in loads.vectors},
         "define": {name: _text(entry) for name, entry in loads.definitions},
         "space": {name: [_text(entry) for entry in entries] for name, entries in loads.space},
-        **(
-            {"current": [exact_number(v, rung) for v in loads.current]}
-            if any(loads.current)
-            else {}
-        ),
+        **({"current": exact_number(loads.current, rung)} if any(loads.current) else {}),
         "inputs": sorted(loads.inputs),
         "pieces": [_piece(piece, loads, rung) for piece in _pieces(loads)],
     }

@@ -82,7 +82,7 @@ def question(problem: Problem) -> dict[str, Any]:
         "scene": scene.name,
         "title": scene.title,
         "model": scene.model,
-        "track": sorted(scene.track),
+        "track": sorted(scene.track | scene.states),
         "rung": problem.rung.name,
         "bits": problem.rung.bits,
         "columns": column_names(problem),
