@@ -140,8 +140,8 @@ def faults_of_added_mass(right: Equations) -> Iterator[Family]:
         name = f"entries {listed} of the added mass are 0 ({words})"
         yield fault(name, _KIND, _changed(right, places, 0.0))
     whole, parts = coriolis_of(right.added), [right.added, right.added * np.eye(6)]
-    for words, places in _PARTS.items():
-        part = right.added * places
+    for words, entries in _PARTS.items():
+        part = right.added * entries
         if not any(np.array_equal(part, other) for other in parts):
             parts.append(part)
             extra = right.basis.factors(products=coriolis_of(part) - whole)
