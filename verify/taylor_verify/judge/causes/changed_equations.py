@@ -314,8 +314,7 @@ class Equations:
                 values = read(when[0, 0], state[0, 0], *inputs)
         if values is None:
             values = read(when, state, *([] if taken is None else [taken]))
-        stacked = np.concatenate(values, axis=-1) if isinstance(values, tuple) else values
-        return np.asarray(stacked).reshape(*when.shape, -1).transpose(0, 2, 1)
+        return np.asarray(values).reshape(*when.shape, -1).transpose(0, 2, 1)
 
     def _times_of_texts(self, time: Floats) -> Floats:
         """Return the times at which texts are read, (parameters or 1, arcs)."""
