@@ -14,6 +14,7 @@ import numpy as np
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
+from taylor_verify.judge.causes.capped_speed import capped_speed
 from taylor_verify.judge.causes.changed_equations import Changes
 from taylor_verify.judge.causes.damped_steps import damped_steps
 from taylor_verify.judge.causes.fit import (
@@ -190,6 +191,8 @@ class Search:
             candidates = [each for each in candidates if has_few_digits(each, self.floor)]
         elif not is_stepped and not any(map(self._is_exact, candidates)):
             budget = self.answer.budget
+            with suppress(Spent), budget.at_most(budget.left / 4):
+                candidates += capped_speed(self.answer)
             with suppress(Spent), budget.at_most(budget.left / 4):
                 candidates += damped_steps(self.answer, stride)
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
