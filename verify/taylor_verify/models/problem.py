@@ -92,9 +92,12 @@ class Problem:
 
     @property
     def switches(self) -> Sequence[Fraction]:
-        """The elapsed times at which the loads that the scene writes down become others, sorted."""
-        loads = self.given.body.loads
-        return () if loads is None else loads.switches
+        """The elapsed times at which the loads that the scene writes down become others, sorted.
+
+        They are those between the start and the last sample.
+        """
+        loads, (first, last) = self.given.body.loads, sorted((0, self.given.clock.elapsed[-1]))
+        return [] if loads is None else [time for time in loads.switches if first <= time <= last]
 
     @property
     def instants(self) -> Sequence[Fraction]:

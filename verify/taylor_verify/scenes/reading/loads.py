@@ -217,13 +217,14 @@ def loaded(
     if the names of all ``states`` are known.
     """
     words = Vocabulary(top, folder, states)
+    last = Fraction(0) if time is None else time.elapsed[-1]
     loads = replace(
         (body.loads if body is not None else None) or loads,
         definitions=words.definitions,
         space=words.space,
         tables=words.tables,
         origin=Fraction(0) if time is None else time.start,
-        reach=Fraction(0) if time is None else time.elapsed[-1],
+        reach=(min(last, Fraction(0)), max(last, Fraction(0))),
     )
     if words.is_complete:
         for place, column, expected, got in loads.faults():
