@@ -64,6 +64,10 @@ class Acting:
         """Return the momentum of the wheels that a text writes."""
         return self._values("rotor", t, state, None)
 
+    def functions(self, t: Any, state: Any) -> Floats:
+        """Return the functions that are wanted along the motion, and act on nothing."""
+        return self._values("functions", t, state, None)
+
     def taken(self, instant: Instant, state: Any, held: Any) -> Floats:
         """Return the held components after an instant, from those before it."""
         after = np.array(held, dtype=float)
