@@ -1,4 +1,4 @@
-"""Rows of a file on the start, and on instants of held states, at any start and however they are written."""
+"""Rows of a file on the start and on instants of held states, however their times are written."""
 
 from __future__ import annotations
 
@@ -120,7 +120,9 @@ def test_a_row_one_step_before_an_instant_is_before_it(
     assert instant - meant <= abs(exactly - before) + abs(exactly - instant)
 
 
-def test_a_row_at_the_rounded_start_is_the_start(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_row_at_the_rounded_start_is_the_start(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """One such row is no trajectory, which `complete` says, and it is compared with the start."""
     scene, file = tmp_path / "scene.toml", tmp_path / "run.csv"
     third = Fraction(1, 3)

@@ -43,11 +43,14 @@ _UNIT: Final = "the time of the event"
 _DIGITS: Final = 30
 # A time answers an event if it is nearer than this share of the distance to the next one.
 _NEAR: Final = 4
+# A time that may be 0 has no relative digits: so is one below this share of the span.
+_LEAST_SHARE: Final = 2.0**-20
 
 
 class Answered(NamedTuple):
     """An event and the time that was given for it: off by ``error``, right to so many ``digits``.
 
+    ``scale`` is the size of the time, by which errors are divided; 1 where this is zero to the span.
     ``attainable`` is the error that perfect rounding would leave; None where it is not known.
     """
 
@@ -55,12 +58,8 @@ class Answered(NamedTuple):
     given: Fraction
     error: float
     digits: int
+    scale: float
     attainable: float | None = None
-
-    @property
-    def scale(self) -> float:
-        """The size of the time, by which errors are divided; 1 for an event at 0."""
-        return abs(float(self.event.t)) or 1.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -130,9 +129,10 @@ class EventsJudgement(Passing):
     @cached_property
     def _errors(self) -> Errors:
         """The errors of all times that answer an event, relative to its time."""
-        errors, radii = self._relative("error"), [
-            float(each.event.radius) / each.scale for each in self.answered
-        ]
+        errors, radii = (
+            self._relative("error"),
+            [float(each.event.radius) / each.scale for each in self.answered],
+        )
         return Errors(self.true.text, _UNIT, errors, np.array(radii), {})
 
     def _relative(self, name: str) -> Floats:
@@ -140,7 +140,7 @@ class EventsJudgement(Passing):
 
     @cached_property
     def _attainable(self) -> Floats | None:
-        """What perfect rounding would leave, likewise; None where it is not known."""
+        """The errors that perfect rounding would leave, likewise; None where they are not known."""
         return None if self.unbounded else self._relative("attainable")
 
     @cached_property
@@ -165,7 +165,8 @@ class EventsJudgement(Passing):
             why = f"no bound follows from arithmetic: {self.unbounded}"
         worst, bound = index_of_largest(values), self.tolerance or nan
         reason = stated(Cause.EVENTS, why)
-        return Finding(status, worst, bound, self.tolerance, False, nan, worst, reason)
+        no_rounding: dict[str, Any] = {"is_rounding": False, "ratio": nan, "ratio_at": worst}
+        return Finding(status, worst, bound, self.tolerance, reason=reason, **no_rounding)
 
     @property
     def verdicts(self) -> tuple[Verdict]:
@@ -268,7 +269,7 @@ def judge_events(
             continue
         best = min(near, key=lambda time: _distance(time, event))
         left.remove(best)
-        answered.append(_answered(event, best))
+        answered.append(_answered(event, best, abs(float(true.until - start))))
     unbounded = ""
     if answered:
         try:
@@ -311,11 +312,11 @@ def _windows(true: Events) -> dict[mpf, mpf]:
     return {t: min(gaps[max(0, k - 1) : k + 1]) / _NEAR for k, t in enumerate(every)}
 
 
-def _answered(event: EventTime, time: Fraction) -> Answered:
-    error = float(_distance(time, event))
-    relative = error / abs(float(event.t)) if event.t else error
-    digits = min(_DIGITS, floor(-log10(relative))) if relative else _DIGITS
-    return Answered(event, time, error, digits)
+def _answered(event: EventTime, time: Fraction, span: float) -> Answered:
+    error, size = float(_distance(time, event)), abs(float(event.t))
+    scale = size if size > _LEAST_SHARE * span else 1.0
+    digits = min(_DIGITS, floor(-log10(error / scale))) if error else _DIGITS
+    return Answered(event, time, error, digits, scale)
 
 
 def _distance(time: Fraction, event: EventTime) -> mpf:

@@ -96,8 +96,9 @@ class Problem:
 
         They are those between the start and the last sample.
         """
-        loads, (first, last) = self.given.body.loads, sorted((0, self.given.clock.elapsed[-1]))
-        return [] if loads is None else [time for time in loads.switches if first <= time <= last]
+        loads, last = self.given.body.loads, self.given.clock.elapsed[-1]
+        switches = () if loads is None else loads.switches
+        return [time for time in switches if min(last, 0) <= time <= max(last, 0)]
 
     @property
     def instants(self) -> Sequence[Fraction]:

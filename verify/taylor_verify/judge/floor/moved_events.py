@@ -1,8 +1,8 @@
-"""How far the roundoff floor of the state moves the times of an event g = 0.
+"""Times of an event g = 0, and the distance by which the roundoff floor of the state moves them.
 
 An error d of the state z moves the time by |dg/dz| d / |dg/dt|, and the time itself is rounded once:
 
-    attainable(t) = [ (u t)^2 + sum over the blocks z of the state (|dg/dz| attainable_z / |dg/dt|)^2 ]^(1/2).
+    attainable(t) = [ (u t)^2 + sum over the blocks z (|dg/dz| attainable_z / |dg/dt|)^2 ]^(1/2).
 
 The floor of the state is that of a file for the same scene, with a row at each event: roundings of the
 steps, as many as the scene has samples, and of the input. Both derivatives are differences of g along exact
@@ -197,6 +197,6 @@ def _quaternions(matrices: Floats) -> Floats:
 
 
 def _turns(quaternions: Floats) -> list[Floats]:
-    """Return the directions in which quaternions move as the body turns about each of its axes, by radian."""
+    """Return the change of quaternions, by radian, as the body turns about each of its axes."""
     axes = np.eye(4)[1:]
     return [np.transpose(product(list(quaternions.T), list(axis / 2))) for axis in axes]

@@ -85,7 +85,7 @@ class Held(State):
         return max(int((until - self.offset) // self.every) + 1, 0)
 
     def instants(self, until: Fraction, rung: Rung | None) -> Iterator[tuple[Fraction, Fraction]]:
-        """Yield the elapsed times at which the value is taken, exactly and on a rung, both ends included."""
+        """Yield the elapsed times at which the value is taken, exactly and on a rung, with both ends."""
         # The next one may round to the end, which is rounded too.
         for k in range(self.count(until) + 1):
             exactly = self.offset + k * self.every
