@@ -98,7 +98,8 @@ class Problem:
         """
         loads, last = self.given.body.loads, self.given.clock.elapsed[-1]
         switches = () if loads is None else loads.switches
-        return [time for time in switches if min(last, 0) <= time <= max(last, 0)]
+        begin, end = sorted([last, Fraction(0)])
+        return [time for time in switches if begin <= time <= end]
 
     @property
     def instants(self) -> Sequence[Fraction]:
