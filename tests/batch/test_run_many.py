@@ -15,9 +15,11 @@ from builders.scenes import THREE_INSTANTS
 
 import taylor_verify
 from taylor_verify.batch.chosen_scenes import Selection, select
+from taylor_verify.batch.failure import Failed
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.judgements import Judgements
 from taylor_verify.batch.judging import Interrupted
+from taylor_verify.chain import judge_scene
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
@@ -26,6 +28,7 @@ from taylor_verify.records.precisions import LADDER
 from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.scene import Scene
 
 SCENES = ["euler/rest", "kirchhoff/whole-motion", "euler/generic"]
 RUNGS = ["f32", "mp120"]
@@ -110,6 +113,31 @@ def test_an_interrupted_run_with_an_executor_goes_on_where_it_was(
     assert progress == [0, 1, 2, 3]
     assert len(submitted) == 1
     assert [file for file in tmp_path.rglob("*") if file.is_file()] == []
+
+
+def test_a_scene_that_breaks_the_code_stops_no_other(
+    alone: list[Judgement], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its row is undecided and says what broke; the others are judged. A machine's fault ends the run."""
+    error: list[Exception] = [ArithmeticError("on purpose")]
+
+    def broken(scene: Scene, *asked: Any) -> Judgement:
+        if scene.name == SCENES[1]:
+            raise error[0]
+        return judge_scene(scene, *asked)
+
+    monkeypatch.setattr("taylor_verify.chain.judge_scene", broken)
+    with ThreadPoolExecutor(1) as executor:
+        results = taylor_verify.run_many(SCENES, rungs=RUNGS, executor=executor)
+        assert numbers(results[:2] + results[4:]) == numbers(alone[:2] + alone[4:])
+        for judged in results[2:4]:
+            (row,) = judged.verdicts
+            assert row.verdict is Status.UNDECIDED
+            assert "ArithmeticError: on purpose" in row.because
+        assert results.exit_status == 3
+        error[0] = MemoryError()
+        with pytest.raises(Failed, match="expected more memory"):
+            taylor_verify.run_many(SCENES, rungs=RUNGS, executor=executor)
 
 
 @pytest.mark.parametrize(

@@ -162,6 +162,8 @@ CAUSES = {
     "space axes": ["moment in space axes"],
     "potential twice": ["moment twice"],
     "sign": ["moment 1 with the other sign"],
+    "switch missed": ["switch at t = 1.1875 missed"],
+    "switch late by a step": ["switch at t = 1.1875"],
 }
 
 

@@ -306,3 +306,33 @@ def test_the_question_has_the_steps_of_each_piece() -> None:
 def test_all_pieces_are_one_span() -> None:
     """The switches are those of the rounded numbers, elapsed and sorted."""
     assert pose(SMOOTH["thrusters"], rung("f64")).switches == [Fraction(1, 4), Fraction(3, 4)]
+
+
+STAIRS = {end: euler(("0.1*floor(3*t)", "0", "0"), end) for end in ("9/4", "-3/4")}
+
+
+@pytest.mark.parametrize(("end", "name"), by_turns(product(STAIRS, ["f64", "mp100"]), 2))
+def test_a_question_of_stairs_has_all_pieces_of_its_span(end: str, name: str) -> None:
+    """Each piece has an end, the first begins before the span and the last ends behind it."""
+    problem = pose(STAIRS[end], rung(name))
+    pieces = question(problem)["loads"]["pieces"]
+    ends = [tuple(map(Fraction, (piece["from"], piece["to"]))) for piece in pieces]
+    assert [end for _, end in ends[:-1]] == [begin for begin, _ in ends[1:]]
+    first, last = sorted((Fraction(0), problem.given.clock.elapsed[-1]))
+    assert ends[0][0] < first
+    assert last < ends[-1][1]
+
+
+@pytest.mark.parametrize("end", STAIRS)
+def test_stairs_are_known_wherever_a_solver_looks(end: str) -> None:
+    """A step may go beyond the samples on either side; the switches of a problem are those of its span."""
+    problem, state = pose(STAIRS[end], rung("f64")), np.ones(7)
+    first, last = sorted((Fraction(0), problem.given.clock.elapsed[-1]))
+    assert problem.switches
+    assert all(first <= switch <= last for switch in problem.switches)
+    times = np.arange(-5, 5, 0.3) + 0.01
+    moments = np.array([problem.loads(t, state)[0] for t in times])
+    np.testing.assert_allclose(moments, 0.1 * np.floor(3 * times), atol=1e-15)
+    problem = pose(STAIRS[end], rung("f64"))
+    together = problem.loads(times, np.ones((len(times), 7)))[:, 0]
+    np.testing.assert_array_equal(together, moments)

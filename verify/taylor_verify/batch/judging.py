@@ -10,10 +10,16 @@ from taylor_verify.batch.failure import Failed, failing
 from taylor_verify.batch.finished_jobs import unfinished
 from taylor_verify.batch.job import Job
 from taylor_verify.batch.work import run_all
-from taylor_verify.judge.judgement import Judgement
+from taylor_verify.judge.judgement import Judgement, unjudged
+from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.records.faults import Refused
+from taylor_verify.records.reason import Cause
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import as_scene
-from taylor_verify.solvers.registry import PYTHON
+from taylor_verify.scenes.scene import Scene
+from taylor_verify.solvers.registry import PYTHON, as_solver
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome
 
 Progress = Callable[[int, int, Job | None], None]
 """Called with the jobs finished, all jobs, and the one that has just ended (None at the start)."""
@@ -85,7 +91,7 @@ def judge_all(
                 report(job)
         try:
             made = run_all(
-                run_job,
+                run_beside_others,
                 waiting,
                 executor,
                 workers=workers,
@@ -103,16 +109,42 @@ def judge_all(
 
 def run_job(job: Job) -> list[Judgement]:
     """Return the judgements of a job, rung by rung. Raises Failed, with the scene and the rung."""
+    scene = _scene(job)
+    return [_judged(job, scene, rung) for rung in job.rungs]
+
+
+def run_beside_others(job: Job) -> list[Judgement]:
+    """Return the judgements of a job; a scene that breaks the code is undecided, and stops no other job.
+
+    Raises Failed for a scene that cannot be read, and for what the machine lacks.
+    """
+    scene, judgements = _scene(job), []
+    for rung in job.rungs:
+        try:
+            judgements.append(_judged(job, scene, rung))
+        except Failed as lost:
+            if isinstance(lost.__cause__, MemoryError | ImportError):
+                raise
+            judgements.append(_broken(scene, job.solver, rung, str(lost)))
+    return judgements
+
+
+def _scene(job: Job) -> Scene:
+    with failing(job.name, Refused):
+        return as_scene(job.scene)
+
+
+def _judged(job: Job, scene: Scene, rung: str) -> Judgement:
     # Not at the top: where others judge, this process does without it, which takes 300 ms.
     from taylor_verify.chain import judge_scene
 
-    with failing(job.name, Refused):
-        scene = as_scene(job.scene)
-    judgements = []
-    for rung in job.rungs:
-        with failing(f"{job.name} on {rung}", Refused):
-            judgements.append(judge_scene(scene, job.solver, rung, job.tolerances))
-    return judgements
+    with failing(f"{job.name} on {rung}", Refused):
+        return judge_scene(scene, job.solver, rung, job.tolerances)
+
+
+def _broken(scene: Scene, solver: Solver | str, rung: str, why: str) -> Judgement:
+    asked = as_solver(solver), rung_named(rung)
+    return unjudged(scene, *asked, Status.UNDECIDED, why, Cause.UNFINISHED, Outcome.RAISED)
 
 
 def _expense(job: Job) -> float:

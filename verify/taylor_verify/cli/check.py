@@ -115,16 +115,22 @@ def _of_events(options: argparse.Namespace, parts: CallParts, asked: Outputs) ->
     content = judged.document()
     lines = list(event_lines(content))
     row = Judgement(judged.verdicts, None)
-    text = partial(_text_of_events, judged, lines)
+    text = partial(_text_of_events, judged, lines, options.explain)
     return concluded(asked, row, exit_status(row.verdicts), content, text)
 
 
-def _text_of_events(judged: EventsJudgement, lines: Sequence[str], status: int | None) -> str:
-    event, page = judged.true.text, Page()
+def _text_of_events(
+    judged: EventsJudgement, lines: Sequence[str], explained: bool, status: int | None
+) -> str:
+    event, page, verdicts = judged.true.text, Page(), judged.verdicts
     page.line(bold(event), judged.heading.removeprefix(event))
     for line in lines:
         page.line(line)
-    print_end(page, [], counts(judged.verdicts), status, explained=True)
+    for verdict in verdicts:
+        print_sentence(page, verdict)
+    if explained and any(verdict.is_compared for verdict in verdicts):
+        print_arithmetic(page, verdicts)
+    print_end(page, verdicts, counts(verdicts), status, explained)
     return page.text()
 
 

@@ -35,5 +35,5 @@ def _csv(problem: Problem) -> str:
     """Return a header, and for each sample its time and a cell for every other column."""
     names, bits = column_names(problem), problem.rung.bits
     cells = "," * (len(names) - 1)
-    times = [shortest_decimal(time, bits) for time in problem.given.clock.instants]
+    times = [shortest_decimal(time, bits) for time in problem.scene.clock.instants]
     return "\n".join([",".join(names), *(f"{time}{cells}" for time in times)])

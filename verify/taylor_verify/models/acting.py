@@ -63,6 +63,10 @@ class Acting:
         """Return the momentum of the wheels that a text writes."""
         return self._values("rotor", t, state, None)
 
+    def functions(self, t: Any, state: Any) -> Floats:
+        """Return the functions that are wanted along the motion, and act on nothing."""
+        return self._values("functions", t, state, None)
+
     def taken(self, instant: Instant, state: Any, held: Any) -> Floats:
         """Return the held components after an instant, from those before it."""
         after = np.array(held, dtype=float)
@@ -76,18 +80,30 @@ class Acting:
     def _switches(self) -> list[float]:
         return [_not_before(switch) for switch in self.written.switches]
 
+    def _reach(self, first: float, last: float) -> None:
+        """Make the stairs of floor known as far as these times: a solver may look beyond the samples."""
+        wider = self.written
+        for time in (first, last):
+            if time < wider.reach[0] or time > wider.reach[1]:
+                wider = wider.reaching(exact_value(time))
+        if wider is not self.written:
+            self.written = wider
+            vars(self).pop("_switches", None)
+
     def _values(self, which: str, t: Any, state: Any, held: Any) -> Floats:
         """Return the values of the steps that a field of a piece lists."""
         state = np.asarray(state, dtype=float)
         held = None if held is None else np.asarray(held, dtype=float)
         elapsed = np.asarray(t, dtype=float) - float(self._start)
         if state.ndim == 1 and elapsed.ndim == 0:
+            self._reach(float(elapsed), float(elapsed))
             return self._at(which, float(elapsed), state, held)
         elapsed = np.broadcast_to(elapsed, state.shape[:-1])
         if not elapsed.size:
             return np.empty((*elapsed.shape, 0))
         if held is not None:
             held = np.broadcast_to(held, (*elapsed.shape, held.shape[-1]))
+        self._reach(float(elapsed.min()), float(elapsed.max()))
         pieces = np.searchsorted(self._switches, elapsed, side="right")
         if pieces.min() == pieces.max():
             flat = None if held is None else held.reshape(elapsed.size, held.shape[-1])

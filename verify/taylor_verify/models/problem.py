@@ -92,9 +92,14 @@ class Problem:
 
     @property
     def switches(self) -> Sequence[Fraction]:
-        """The elapsed times at which the loads that the scene writes down become others, sorted."""
-        loads = self.given.body.loads
-        return () if loads is None else loads.switches
+        """The elapsed times at which the loads that the scene writes down become others, sorted.
+
+        They are those between the start and the last sample.
+        """
+        loads, last = self.given.body.loads, self.given.clock.elapsed[-1]
+        switches = () if loads is None else loads.switches
+        begin, end = sorted([last, Fraction(0)])
+        return [time for time in switches if begin <= time <= end]
 
     @property
     def instants(self) -> Sequence[Fraction]:

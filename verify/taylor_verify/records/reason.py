@@ -52,6 +52,7 @@ class Carried(StrEnum):
     MATRIX = "length of the axes of the matrix"
     START = "start"
     ROW = "row"
+    EVENT = "event"
 
 
 _LENGTHS: Final = {
@@ -130,6 +131,10 @@ class RoundoffFloor:
 _MEANINGS: Final = {
     Carried.START: "one rounding of each component of the start on the rung",
     Carried.ROW: "a rounding of the input and one of the row",
+    Carried.EVENT: (
+        "the time t of an event g = 0; attainable = ((u t)^2 + (|dg/dz| x the floor of the state z / "
+        "|dg/dt|)^2)^(1/2), with as many steps as the scene has samples"
+    ),
     Carried.WORK: (
         "this quantity Q of the exact motion, at the start and with the work or impulse of all loads "
         "since; attainable = |dQ/dz| x the floor of the state z"

@@ -77,7 +77,9 @@ def allowance(verdict: Verdict) -> str:
 def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield a line for each time of a judgement as `check --event --json` prints it."""
     for row in document["events"]:
-        yield f"t = {row['given']:.17g}: right to {row['digits']} digits (off by {row['error']:.1e})"
+        allowed = "" if row["bound"] is None else f", {figure(row['bound'])} allowed"
+        off = f"off by {figure(row['error'])}{allowed}"
+        yield f"t = {row['given']:.17g}: right to {row['digits']} digits ({off})"
     for row in document["missed"]:
         yield f"missed: t = {row['t']}"
     for time in document["invented"]:

@@ -15,6 +15,7 @@ from mpmath import mp
 from taylor_verify.exact.route import solution
 from taylor_verify.judge.conventions.fits import Conventions
 from taylor_verify.judge.conventions.meanings import Reading
+from taylor_verify.judge.files.meant_times import meant_times
 from taylor_verify.judge.floor.arithmetic import truth_digits
 from taylor_verify.judge.velocities import momenta
 from taylor_verify.models.problem import adopt
@@ -48,7 +49,7 @@ class FileRows(ByRows):
     def of(cls, file: TrajectoryFile, rung: Rung, conventions: Conventions) -> FileRows:
         """Return the rows of a file, read by these conventions."""
         world, places = conventions.world, range(len(file.times))
-        times = _on_instants(world.times(file.times), world.scene, rung)
+        times = meant_times(world.times(file.times), world.scene, rung)
         return cls(world.scene, times, file, rung, conventions.readings, places)
 
     @property
@@ -105,23 +106,6 @@ class FileRows(ByRows):
         begin = first.start - first.step * (beyond - at)
         first = range(begin, first.stop, first.step) if first else range(at, beyond)
         return [replace(self, places=side) for side in (first, second) if side]
-
-
-def _on_instants(times: Sequence[Fraction], scene: Scene, rung: Rung) -> Sequence[Fraction]:
-    """Return the times, those that the rung makes one with an instant of a held state exactly there.
-
-    A simulator takes the value at the double nearest to 1/10 and writes 0.1, which is a little earlier.
-    """
-    loads, start = scene.body.loads, scene.clock.start
-    if loads is None or not loads.held_states:
-        return times
-    try:
-        taken = loads.on_rung(rung).instants(max(times) - start)
-    except ValueError:
-        # The same is said where the scene is posed.
-        return times
-    instants = {rung.round(start + instant.time): start + instant.time for instant in taken}
-    return tuple(instants.get(rung.round(time), time) for time in times)
 
 
 def first_flaw(file: TrajectoryFile, quantity: str) -> str:

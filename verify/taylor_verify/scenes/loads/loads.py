@@ -51,7 +51,7 @@ class Loads:
 
     The input t of the steps is the time since ``origin``, the start of the scene; so are all times here.
     With a ``rung`` every number of the steps, and every knot of a table, is rounded to it once; switches
-    follow from rounded numbers. The stairs of floor are known as far as the time ``reach``.
+    follow from rounded numbers. The stairs of floor are known between the two times of ``reach``.
     ``functions`` are texts that are wanted along the motion, and act on nothing.
     """
 
@@ -67,7 +67,7 @@ class Loads:
     rung: Rung | None = None
     states: tuple[State, ...] = ()
     rotor: Entries = ()
-    reach: Fraction = Fraction(0)
+    reach: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
     functions: tuple[str, ...] = ()
 
     @property
@@ -79,8 +79,10 @@ class Loads:
 
     def reaching(self, elapsed: Fraction) -> Loads:
         """Return these loads with the stairs of floor as far as a time, if they reached less far."""
-        is_known = min(self.reach, Fraction(0)) <= elapsed <= max(self.reach, Fraction(0))
-        return self if is_known or not self._scan.known else replace(self, reach=elapsed)
+        first, last = self.reach
+        if first <= elapsed <= last or not self._scan.known:
+            return self
+        return replace(self, reach=(min(first, elapsed), max(last, elapsed)))
 
     def on_rung(self, rung: Rung) -> Loads:
         """The loads that a solver on a rung receives.
@@ -107,21 +109,32 @@ class Loads:
             k -= 1
         return self._piece(k)
 
+    def known_pieces(self) -> Iterator[Piece]:
+        """Yield all pieces in the order of time, without those beyond the stairs of floor."""
+        for k in range(len(self.switches) + 1):
+            if self._is_known(*self._ends(k)):
+                yield self._piece(k)
+
     def _piece(self, k: int) -> Piece:
         if k not in self._pieces:
-            switches = self.switches
-            begin = switches[k - 1] if k else None
-            end = switches[k] if k < len(switches) else None
-            self._check_reach(begin, end)
+            begin, end = self._ends(k)
+            if not self._is_known(begin, end):
+                first, last = (str(self.origin + time) for time in self.reach)
+                raise ValueError(
+                    f"expected times between {first} and {last}, where the stairs of floor end"
+                )
             self._pieces[k] = self._made(PieceReader(self, begin, end), begin, end)
         return self._pieces[k]
 
-    def _check_reach(self, begin: Fraction | None, end: Fraction | None) -> None:
-        for first, last in self._scan.known:
-            if begin is None or begin < first or end is None or end > last:
-                raise ValueError(
-                    f"expected times as far as {self.origin + self.reach}, where the stairs of floor end"
-                )
+    def _ends(self, k: int) -> tuple[Fraction | None, Fraction | None]:
+        switches = self.switches
+        return switches[k - 1] if k else None, switches[k] if k < len(switches) else None
+
+    def _is_known(self, begin: Fraction | None, end: Fraction | None) -> bool:
+        return all(
+            begin is not None and begin >= first and end is not None and end <= last
+            for first, last in self._scan.known
+        )
 
     def _made(self, reader: PieceReader, begin: Fraction | None, end: Fraction | None) -> Piece:
         groups = (

@@ -284,7 +284,7 @@ class PieceReader:
         self.jumps = True
         slope, value = self._on_rung(slope), self._on_rung(value)
         if self._is_scan and slope:
-            ends = [slope * time + value for time in (Fraction(0), self._loads.reach)]
+            ends = [slope * time + value for time in self._loads.reach]
             first, last = ceil(min(ends)) - 1, floor(max(ends)) + 1
             self._check_switches(len(self.switches) + last - first + 1)
             stairs = sorted((k - value) / slope for k in range(first, last + 1))

@@ -84,9 +84,14 @@ class Held(State):
         """The number of instants up to an elapsed time, both ends included."""
         return max(int((until - self.offset) // self.every) + 1, 0)
 
-    def instants(self, until: Fraction) -> Iterator[Fraction]:
-        """Yield the exact elapsed times at which the value is taken, both ends included."""
-        return (self.offset + k * self.every for k in range(self.count(until)))
+    def instants(self, until: Fraction, rung: Rung | None) -> Iterator[tuple[Fraction, Fraction]]:
+        """Yield the elapsed times at which the value is taken, exactly and on a rung, with both ends."""
+        # The next one may round to the end, which is rounded too.
+        for k in range(self.count(until) + 1):
+            exactly = self.offset + k * self.every
+            rounded = exactly if rung is None else rung.round(exactly)
+            if rounded <= until:
+                yield exactly, rounded
 
 
 class Instant(NamedTuple):
@@ -108,13 +113,14 @@ def instants(
     On a rung each is formed exactly and rounded once, as sample times are. Raises ValueError for too many
     of them, and where two that differ round to one number.
     """
-    exactly: dict[Fraction, list[int]] = {}
+    exactly: set[Fraction] = set()
+    rounded: dict[Fraction, list[int]] = {}
     for k, state in enumerate(states):
         _check_count(state.count(until))
-        for time in state.instants(until):
-            exactly.setdefault(time, []).append(k)
+        for time, on_rung in state.instants(until, rung):
+            exactly.add(time)
+            rounded.setdefault(on_rung, []).append(k)
     _check_count(len(exactly))
-    rounded = {time if rung is None else rung.round(time): which for time, which in exactly.items()}
     if rung is not None and len(rounded) < len(exactly):
         raise ValueError(f"expected instants that differ, got two that {rung.name} makes one")
     return tuple(_instant(states, time, rounded[time]) for time in sorted(rounded))

@@ -221,6 +221,7 @@ def loaded(
     for what depends on a fault: ``doubts`` are those that the scene has so far.
     """
     words = Vocabulary(top, folder, loads.states)
+    last = Fraction(0) if time is None else time.elapsed[-1]
     loads = replace(
         (body.loads if body is not None else None) or loads,
         inertia=None if body is None else body.parts().get("inertia"),
@@ -228,7 +229,7 @@ def loaded(
         space=words.space,
         tables=words.tables,
         origin=Fraction(0) if time is None else time.start,
-        reach=Fraction(0) if time is None else time.elapsed[-1],
+        reach=(min(last, Fraction(0)), max(last, Fraction(0))),
     )
     if body is None:
         doubts |= Doubts(frozenset(INERTIA) & names(loads.model))

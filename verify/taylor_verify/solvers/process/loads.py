@@ -2,7 +2,8 @@
 
 ``steps`` are lists: ["input", name], ["number", text, hex], ["power", place, text, hex], and [operation,
 place, ...] for the rest, where a place counts the steps from 0. The input t is the time since the start.
-``from`` and ``to`` are such times, and null where a piece has no end. Of a piece ``rates`` are the places
+``from`` and ``to`` are such times, and null where a piece has no end.
+The pieces end with the stairs of floor where these end. Of a piece ``rates`` are the places
 of the rates of all states with a rate, ``values`` those of the values of all held ones, both in the order
 of ``states``, and ``rotor`` those of the momentum of wheels; each is there where the scene writes it.
 """
@@ -10,7 +11,6 @@ of ``states``, and ``rotor`` those of the momentum of wheels; each is there wher
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 from typing import Any
 
 from taylor_verify.models.problem import Problem
@@ -32,7 +32,7 @@ def written_loads(problem: Problem) -> dict[str, Any]:
         "space": {name: [_text(entry) for entry in entries] for name, entries in loads.space},
         **({"current": exact_number(loads.current, rung)} if any(loads.current) else {}),
         "inputs": sorted(loads.inputs),
-        "pieces": [_piece(piece, loads, rung) for piece in _pieces(loads)],
+        "pieces": [_piece(piece, loads, rung) for piece in loads.known_pieces()],
     }
 
 
@@ -61,14 +61,6 @@ def _components(state: State, rung: Rung) -> Iterator[dict[str, Any]]:
             yield {"name": name, "start": start, **times, "value": _text(entry)}
         else:
             yield {"name": name, "start": start, "rate": _text(entry)}
-
-
-def _pieces(loads: Loads) -> Iterator[Piece]:
-    switches = loads.switches
-    if switches:
-        yield loads.piece(switches[0], is_later=False)
-    for switch in switches or (Fraction(0),):
-        yield loads.piece(switch)
 
 
 def _piece(piece: Piece, loads: Loads, rung: Rung) -> dict[str, Any]:

@@ -115,7 +115,12 @@ def _data(problem: Problem) -> dict[str, Any]:
         },
         "initial": _merged(initial.parts(), derived.get("initial", {})),
     }
-    numbers["time"] = {"start": clock.start, "elapsed": clock.elapsed, "times": clock.instants}
+    # Each is rounded once: start + elapsed, of which both are rounded, may be another number.
+    numbers["time"] = {
+        "start": clock.start,
+        "elapsed": clock.elapsed,
+        "times": problem.scene.clock.instants,
+    }
     return {
         table: {key: exact_number(value, rung) for key, value in entries.items()}
         for table, entries in numbers.items()
