@@ -100,6 +100,8 @@ def has_few_digits(candidate: Candidate, floor: float) -> bool:
 
 def _is_written(number: float, right: float, floor: float) -> bool:
     written, size = float(f"{number:.{_WRITTEN}g}"), abs(number)
+    if size <= max(_SAME, _ROUNDINGS * floor) * abs(right):
+        return True  # 0, for a number that is none
     unknown = min(max(_NEAR * size, _ROUNDINGS * floor * abs(number - right)), _FAR * size)
     return abs(written - number) <= unknown and written != right
 
