@@ -409,6 +409,15 @@ def test_numbers_beyond_a_double_are_refused(tmp_path: Path) -> None:
     assert len(refused.value.faults) == 1
 
 
+def test_a_line_within_a_number_is_refused(tmp_path: Path) -> None:
+    """Two lines of digits are no number, also where each of them is one."""
+    file = tmp_path / "mine.json"
+    columns = {"t": ["0", "1"], "w1": ["0.1", "0\n2"], "w2": ["0", "0"], "w3": ["0", "0"]}
+    file.write_text(json.dumps(columns), encoding="utf-8")
+    with pytest.raises(Refused, match="row 2, column w1"):
+        read(str(file))
+
+
 def test_far_beyond_a_scene_without_closed_form_is_undecided(tmp_path: Path) -> None:
     """Rows without an exact motion are undecided, and the row says why."""
     columns = {"t": ["0", "1e9"], **{n: ["0", "0"] for n in OMEGA}}

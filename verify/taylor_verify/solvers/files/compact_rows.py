@@ -149,7 +149,9 @@ def _is_short(texts: Sequence[Any]) -> bool:
     """Return True if all are texts of short decimals."""
     if not all(isinstance(text, str) for text in texts):
         return False
-    return _SHORT_TEXTS.fullmatch("\n".join([*texts, ""])) is not None
+    # A text may have a line of its own within it, which is no number.
+    lines = "\n".join([*texts, ""])
+    return lines.count("\n") == len(texts) and _SHORT_TEXTS.fullmatch(lines) is not None
 
 
 def _doubles(values: Raw) -> Floats:
