@@ -185,9 +185,9 @@ def _with_attitude(answer: Answer, cause: Cause | None, causes: list[Cause]) -> 
         causes = [replace(each, leaves=leaves) if each is cause else each for each in causes]
     if of_attitude is not None:
         of_clock = _by_clock(answer, of_attitude)
-        # One fault of the motion beside that of the attitude is nearer than a clock beside two.
-        is_simpler = cause is None or cause.kind == "pair"
-        if of_clock and (is_simpler or all(each.kind != "pair" for each in of_clock)):
+        # A clock beside two faults is farther than one fault of the motion and one of the attitude.
+        is_single = cause is not None and cause.kind != "pair"
+        if of_clock and not (is_single and any(each.kind == "pair" for each in of_clock)):
             return of_clock
         if causes:
             # What is left of the motion is said of its own cause.

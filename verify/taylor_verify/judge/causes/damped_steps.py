@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
+from itertools import product
 from typing import Any, Final
 
 import numpy as np
@@ -36,12 +37,33 @@ _SHORT: Final = 1e-6
 _DIGITS: Final = 3
 # How near, where no step shows but by the number of its damping.
 _SURELY: Final = 1e-9
-# The motion of a step: the classical method where it is right, and the first-order ones of engines.
-_MOTIONS: Final = {"": "RK4", ", beside steps of explicit Euler": "explicit Euler"}
-_MOTIONS_OF_ENGINES: Final = {
-    ", without the gyroscopic term": "explicit Euler",
-    ", beside one Newton step of backward Euler": "one Newton step of backward Euler",
-}
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """The motion of a step by a method, with what a sentence says of it."""
+
+    method: str
+    words: str = ""
+    is_gyroscopic: bool = True
+
+    def changes(self, right: Equations) -> Changes:
+        """Return the changes of a motion without the gyroscopic term; none of others."""
+        if self.is_gyroscopic:
+            return {}
+        none = next(faults_of_terms(right))
+        return none.changes(none.right)
+
+
+# The classical method, where it is right, and the first-order ones of engines.
+_MOTIONS: Final = (
+    _Motion("RK4"),
+    _Motion("explicit Euler", ", beside steps of explicit Euler"),
+)
+_MOTIONS_OF_ENGINES: Final = (
+    _Motion("explicit Euler", ", without the gyroscopic term", is_gyroscopic=False),
+    _Motion("one Newton step of backward Euler", ", beside one Newton step of backward Euler"),
+)
 
 # The factor of a step, of c and h, and c by that factor and h.
 _Of = Callable[[float, float], float]
@@ -74,25 +96,16 @@ def damped_steps(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield damping by a factor once in each step, after the motion of the step or before it."""
     rows = np.array(evenly(answer.count - stride, _ARCS))
     arcs = Arcs(answer, rows, rows + stride)
-    motions = _MOTIONS | (_MOTIONS_OF_ENGINES if answer.n == 3 else {})
-    for words, name in motions.items():
-        for place in ("after", "before"):
-            of_motion, terms = METHODS[name], _terms(answer.right, words)
-            step = partial(_damped, of_motion.step, place == "before")
-            method = replace(of_motion, step=step, has_frame=not words)
-            fit = _fit(arcs, stride, method, terms)
-            if fit is not None:
-                yield _candidate(arcs, *fit, place, words, terms)
-                if fit[0].left < max(_EXACT, ROUNDINGS * arcs.floor):
-                    return
-
-
-def _terms(right: Equations, words: str) -> Changes:
-    """Return the changes of a motion that has no gyroscopic term; none of others."""
-    if "without" not in words:
-        return {}
-    none = next(faults_of_terms(right))
-    return none.changes(none.right)
+    motions = (*_MOTIONS, *(_MOTIONS_OF_ENGINES if answer.n == 3 else ()))
+    for of_motion, place in product(motions, ("after", "before")):
+        terms, words = of_motion.changes(answer.right), of_motion.words
+        method = METHODS[of_motion.method]
+        step = partial(_damped, method.step, place == "before")
+        fit = _fit(arcs, stride, replace(method, step=step, has_frame=not words), terms)
+        if fit is not None:
+            yield _candidate(arcs, *fit, place, words, terms)
+            if fit[0].left < max(_EXACT, ROUNDINGS * arcs.floor):
+                return
 
 
 def _damped(
@@ -139,13 +152,10 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
         inverse = 1 / more - along * (1 / few - 1 / more)
         if not 1 / _MOST < inverse < _LARGEST:
             return None
-        near = max(1, round(1 / inverse))
-        around = (
-            range(max(1, near - 1), near + 2)
-            if fitted(near)[0].size > _LEAVES * arcs.size
-            else [near]
-        )
-        count = min(around, key=lambda count: fitted(count)[0].size)
+        count = max(1, round(1 / inverse))
+        if fitted(count)[0].size > _LEAVES * arcs.size:
+            around = range(max(1, count - 1), count + 2)
+            count = min(around, key=lambda count: fitted(count)[0].size)
     else:
         counts = _counts_of_short_numbers(float(fitted(1)[0].numbers[0]), spacing)
         if len(counts) != 1:
