@@ -208,8 +208,11 @@ def test_t_repeats_the_text_given_and_times_come_in_any_order(exact: Asked) -> N
 
 @pytest.mark.parametrize("at", ["nan", "inf", "-inf", "1,,2", "", "1/0", "1e99999", "ten", "1;2"])
 def test_a_time_that_is_no_number_is_a_wrong_call(exact: Asked, at: str) -> None:
-    """One line that names the option, exit 2, and nothing on stdout."""
-    assert exact("euler/generic", f"--at={at}") is None
+    """One line that names the option, exit 2, and the same line in the document."""
+    document = exact("euler/generic", f"--at={at}")
+    assert document is not None
+    assert document["faults"] == [document["error"]]
+    assert document["error"] in exact.error
     assert exact.status == 2
     assert exact.error.count("\n") == 1
     assert "expected" in exact.error
@@ -249,7 +252,9 @@ def test_what_cannot_be_given_is_a_wrong_call(
     exact: Asked, arguments: list[str], fragment: str
 ) -> None:
     """Exit 2 and one line that says what could be given."""
-    assert exact("euler/generic", "--at", "1", *arguments) is None
+    document = exact("euler/generic", "--at", "1", *arguments)
+    assert document is not None
+    assert fragment in document["error"]
     assert exact.status == 2
     assert fragment in exact.error
 

@@ -170,8 +170,9 @@ def test_question_is_what_a_program_gets(on: str, capsys: Captured) -> None:
     ],
 )
 def test_a_wrong_question_is_refused(call: list[str], message: str, capsys: Captured) -> None:
-    """A wrong question ends with a single message on stderr, and exit status 2."""
+    """A wrong question ends with a single message on stderr, in --json on stdout too, and status 2."""
     assert main(call) == 2
     shown = capsys.readouterr()
     assert message in shown.err
-    assert not shown.out
+    assert (message in shown.out) == ("--json" in call)
+    assert shown.out.strip()[:1] in ("", "{")

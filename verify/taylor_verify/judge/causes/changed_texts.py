@@ -298,8 +298,10 @@ def _hung_otherwise(loads: Loads) -> Iterator[tuple[str, Loads]]:
         yield f"{noun} left out", without
         if any(any(loads.hung[k].at) for k in some):
             yield f"{noun} at the origin", with_hung(loads, some, lambda hung: Hung(hung.force))
-            words = f"couple of {noun} with the other sign"
-            yield words, with_hung(loads, some, _turned_round)
+            if loads.model == "kirchhoff":
+                # Of a rigid body weight is a moment, and no more.
+                words = f"couple of {noun} with the other sign"
+                yield words, with_hung(loads, some, _turned_round)
         fixed = without
         for k in some:
             fixed = added(fixed, _texts_of(loads.hung[k], is_in_body=True))
