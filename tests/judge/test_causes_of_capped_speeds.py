@@ -11,6 +11,7 @@ from builders.caused_rows import Array, titles
 from builders.integrators import turned
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
+from builders.turns import by_turns
 
 INERTIA = np.array([1.0, 2.2, 2.9])
 SCENE = """
@@ -64,7 +65,7 @@ def stepped(limit: partial[Array], every: int) -> Columns:
     )
 
 
-@pytest.mark.parametrize("every", [1, 5])
+@pytest.mark.parametrize("every", by_turns([5, 1], 2))
 def test_a_speed_that_is_cut_again_and_again_is_named(every: int, tmp_path: Path) -> None:
     """The length of the rows is the cap wherever it acts; the step is that of the engine."""
     names = titles(tmp_path, SCENE, stepped(partial(cut, 2.8), every))

@@ -234,7 +234,7 @@ WEAK: dict[str, Callable[[float], float]] = {
 
 
 @pytest.mark.parametrize("digits", by_turns([12, 7], 2))
-@pytest.mark.parametrize("law", [*WEAK])
+@pytest.mark.parametrize("law", by_turns([*WEAK], 2))
 def test_two_drags_that_imitate_another_law_are_not_said(
     law: str, digits: int, tmp_path: Path
 ) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Q, columns, rows, titles
 from builders.trajectories import Columns
+from builders.turns import by_turns
 
 SCENE = RIGID.format(load="")
 START = [0.9, -0.4, 1.0]
@@ -30,7 +31,7 @@ FAULTS: dict[str, Callable[[Array], Array]] = {
 }
 
 
-@pytest.mark.parametrize("name", [*FAULTS])
+@pytest.mark.parametrize("name", by_turns([*FAULTS], 3))
 def test_a_fault_is_named_beside_another_start(name: str, tmp_path: Path) -> None:
     """The first row shows the start, and the rows after it the fault of the equations."""
     first, *others = titles(tmp_path, SCENE, from_start(FAULTS[name], START))
