@@ -79,12 +79,17 @@ def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
     for row in document["events"]:
         allowed = "" if row["bound"] is None else f", {figure(row['bound'])} allowed"
         off = f"off by {figure(row['error'])}{allowed}"
-        yield f"t = {row['given']:.17g}: right to {row['digits']} digits ({off})"
+        yield f"t = {_shortest(row['given'])}: right to {row['digits']} digit{'s' * (row['digits'] != 1)} ({off})"
     for row in document["missed"]:
         yield f"missed: t = {row['t']}"
     for time in document["invented"]:
-        yield f"invented: t = {time:.17g}"
+        yield f"invented: t = {_shortest(time)}"
     for row in document["undecided"]:
         yield f"undecided: t = {row['t']}, within {row['radius']}"
     if "because" in document:
         yield f"undecided: {document['because']}"
+
+
+def _shortest(time: float) -> str:
+    """Return the shortest decimal that is read as a double: 0.41, and not 0.40999999999999998."""
+    return repr(float(time)).removesuffix(".0")
