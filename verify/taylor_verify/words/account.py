@@ -79,7 +79,8 @@ def event_lines(document: Mapping[str, Any]) -> Iterator[str]:
     for row in document["events"]:
         allowed = "" if row["bound"] is None else f", {figure(row['bound'])} allowed"
         off = f"off by {figure(row['error'])}{allowed}"
-        yield f"t = {_shortest(row['given'])}: right to {row['digits']} digit{'s' * (row['digits'] != 1)} ({off})"
+        digits = f"{row['digits']} digit{'s' * (row['digits'] != 1)}"
+        yield f"t = {_shortest(row['given'])}: right to {digits} ({off})"
     for row in document["missed"]:
         yield f"missed: t = {row['t']}"
     for time in document["invented"]:
