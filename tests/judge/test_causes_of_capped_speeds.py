@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, titles
-from builders.integrators import turned
+from builders.integrators import rk4, turned
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from builders.turns import by_turns
@@ -33,13 +33,6 @@ def free(w: Array) -> Array:
     return np.asarray(cross(INERTIA * w, w) / INERTIA)
 
 
-def moved(w: Array, h: float) -> Array:
-    a = free(w)
-    b = free(w + h / 2 * a)
-    c = free(w + h / 2 * b)
-    return np.asarray(w + h / 6 * (a + 2 * b + 2 * c + free(w + h * c)))
-
-
 def cut(cap: float, w: Array) -> Array:
     size = float(np.linalg.norm(w))
     return w * min(1.0, cap / size)
@@ -54,7 +47,7 @@ def stepped(limit: partial[Array], every: int) -> Columns:
     h, w, q = 0.1 / every, np.array([0.4, 3.0, 0.2]), np.array([1.0, 0, 0, 0])
     rows = [[*w, *q]]
     for step in range(1, 80 * every + 1):
-        w = limit(moved(moved(w, h / 2), h / 2))
+        w = limit(rk4(free, rk4(free, w, h / 2)[0], h / 2)[0])
         q = turned(q, h * w)
         if step % every == 0:
             rows.append([*w, *q])
@@ -74,7 +67,7 @@ def test_a_speed_that_is_cut_again_and_again_is_named(every: int, tmp_path: Path
 
 
 def test_a_cut_of_each_component_is_no_cut_of_the_length(tmp_path: Path) -> None:
-    """Where single components are clipped the length is cut nowhere, and the word is not said."""
+    """A clip of single components is no cut of the length, and the word is not said."""
     names = titles(tmp_path, SCENE, stepped(partial(clipped, 2.8), 1))
     assert not any("cut to the length" in each for each in names)
 

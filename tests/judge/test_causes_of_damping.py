@@ -219,7 +219,7 @@ def test_damping_beside_the_gyroscopic_terms_of_engines_is_named(
 
 
 def test_a_free_coast_with_a_factor_of_no_law_has_no_step() -> None:
-    """Nothing but a short number tells the step of a body that coasts: without one, none is said."""
+    """The step of a body that coasts shows by a short number alone: without one, none is said."""
     sentences = causes(load(FREE), engine(coasting, 1 - 0.0512345 * H / 10))
     assert not any("of each step" in each for each in sentences.values())
 
@@ -238,7 +238,7 @@ WEAK: dict[str, Callable[[float], float]] = {
 def test_two_drags_that_imitate_another_law_are_not_said(
     law: str, digits: int, tmp_path: Path
 ) -> None:
-    """Where |w| hardly changes two drags fit any law: twelve digits show the numbers of the true ones."""
+    """Two drags fit any law where |w| hardly changes: twelve digits show the numbers of the true ones."""
     made = rigid(moment=lambda t, w, q: -WEAK[law](float(np.linalg.norm(w))) * w)
     printed = {name: [float(f"{x:.{digits}g}") for x in column] for name, column in made.items()}
     names = titles(tmp_path, BODY.format(load=""), printed)

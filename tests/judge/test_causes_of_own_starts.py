@@ -52,6 +52,6 @@ def test_an_unknown_law_from_another_start_is_not_named(tmp_path: Path) -> None:
 
 
 def test_a_fault_from_the_right_start_has_no_other_one(tmp_path: Path) -> None:
-    """What begins as the scene does is a fault of the equations alone."""
+    """A file that begins as the scene does has a fault of the equations alone."""
     names = titles(tmp_path, SCENE, from_start(FAULTS["damping = 0.05"], [0.8, -0.5, 1.1]))
     assert not any("start" in each for each in names)

@@ -133,7 +133,7 @@ def test_an_honest_solver_is_within_the_bound(
     ),
 )
 def test_the_nearest_doubles_pass_for_any_expression(name: str, text: str, until: int) -> None:
-    """Of rates, attitude, place and velocities, forwards and backwards."""
+    """The doubles nearest to events pass: of rates, attitude, place and velocities, in both directions."""
     scene = load(name)
     scene = replace(scene, clock=Clock(scene.clock.start, (scene.clock.start, Fraction(until))))
     judged = check(scene, [float(event) for event in events(scene, text, until)], event=text)
@@ -143,7 +143,7 @@ def test_the_nearest_doubles_pass_for_any_expression(name: str, text: str, until
 
 
 def test_an_event_without_a_bound_is_judged_by_a_tolerance_alone() -> None:
-    """At an extremum the expression has no rate: the row is undecided, and says what judges it."""
+    """The row of an extremum, where the expression has no rate, is undecided and says what judges it."""
     text = "extremum w2"
     times = [float(event) for event in events(SCENE, text, 20)]
     (row,) = check(SCENE, times, event=text).verdicts

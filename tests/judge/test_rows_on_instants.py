@@ -123,7 +123,7 @@ def test_a_row_one_step_before_an_instant_is_before_it(
 def test_a_row_at_the_rounded_start_is_the_start(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One such row is no trajectory, which `complete` says, and it is compared with the start."""
+    """A single row at the start is no trajectory, which `complete` says, and is compared with the start."""
     scene, file = tmp_path / "scene.toml", tmp_path / "run.csv"
     third = Fraction(1, 3)
     end = third + 3

@@ -69,7 +69,7 @@ def test_a_fault_of_the_body_hides_no_fault_of_a_text(body: str, place: str) -> 
 
 
 def test_texts_in_a_vector_of_another_length_are_examined() -> None:
-    """Those of loads and of [space] alike."""
+    """The faults of texts in loads and in [space] come together with those of their shapes."""
     tables = '[space]\no = ["cos(t)", "bar"]'
     body = 'inertia = [1, 2, 3]\nmoment = ["foo", "o1"]'
     assert places(body, tables) == [

@@ -125,7 +125,7 @@ def test_a_vector_is_one_object_of_text_and_hex(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["loads/pid", "loads/thruster-pulses", "loads/vehicle-depth"])
 def test_what_is_tracked_includes_states_of_the_scenes_own(name: str) -> None:
-    """As `columns` do, so that a program may ask either of them."""
+    """`track` lists own states as `columns` do, so that a program may ask either of them."""
     scene = load(name)
     document = protocol.question(pose(scene, rung("f64")))
     assert set(document["track"]) == scene.track | scene.states

@@ -11,12 +11,12 @@ import numpy as np
 
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
-from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.fit import fault
-from taylor_verify.judge.causes.float_answer import Answer, Motion, Places
+from taylor_verify.judge.causes.float_answer import Answer, Places
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.replayed_methods import METHODS
-from taylor_verify.judge.causes.replays import Steps, moved_by, replay
+from taylor_verify.judge.causes.replays import Steps, in_steps, motion_of_steps
 from taylor_verify.scenes.instants import evenly
 
 # So many rows have the largest length, to so many roundings of the file.
@@ -50,7 +50,7 @@ def capped_speed(answer: Answer) -> Iterator[Candidate]:
             each = best.words(answer)
             title = f"omega is cut to the length {cap:.6g} after each step, {each}{words}"
             of_cap = fault(title, "method", {})
-            motion = partial(_motion, best)
+            motion = partial(motion_of_steps, best)
             yield Candidate(of_cap, of_cap.right, best.left, motion, _LEAVES, best)
 
 
@@ -71,11 +71,5 @@ def _cut(step: Any, cap: float, equations: Equations, time: Floats, v: Floats, h
 
 def _left(arcs: Arcs, method: Any, count: int) -> float:
     """Return the part of the defects that so many steps from row to row leave."""
-    answer = replace(arcs.answer, stepping=partial(replay, arcs.answer, method, count))
-    defects = replace(arcs, answer=answer, steps_given=1).defects([{}])
-    left = float(np.linalg.norm(defects)) / arcs.size
+    left = float(np.linalg.norm(in_steps(arcs, method, count).defects([{}]))) / arcs.size
     return left if np.isfinite(left) else np.inf
-
-
-def _motion(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
-    return moved_by(steps, steps.step(answer), answer, answer.right)

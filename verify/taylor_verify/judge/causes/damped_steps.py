@@ -18,7 +18,7 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
-from taylor_verify.judge.causes.replays import Steps, moved_by, replay
+from taylor_verify.judge.causes.replays import Steps, in_steps, moved_by
 from taylor_verify.judge.causes.terms import faults_of_terms
 from taylor_verify.scenes.instants import evenly
 
@@ -136,8 +136,7 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
 
     @cache
     def fitted(count: int) -> tuple[Fitted, Floats]:
-        own = replace(answer, stepping=partial(replay, answer, method, count * stride))
-        evidence = replace(arcs, answer=own, steps_given=1)
+        evidence = in_steps(arcs, method, count * stride)
         family = _family(_FIRST[2], spacing / count, pace, terms)
         fit = gauss_newton(evidence, family)
         return fit, evidence.defects([family.changes(fit.numbers)]).ravel()

@@ -104,6 +104,12 @@ def replay(
     return v
 
 
+def in_steps(arcs: Arcs, method: Method, steps: int) -> Arcs:
+    """Return arcs that go in so many steps of a method."""
+    own = replace(arcs.answer, stepping=partial(replay, arcs.answer, method, steps))
+    return replace(arcs, answer=own, steps_given=1)
+
+
 def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
     """Yield the methods whose steps lead from row to row."""
     replayed = _clear(answer, stride)
@@ -128,7 +134,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
             h = steps.step(answer)
             changes = held_over_steps(answer, h) if steps.method is HELD else {}
             of_steps = fault(_name(steps, answer), "method", changes)
-            motion = partial(_motion, steps)
+            motion = partial(motion_of_steps, steps)
             yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
 
 
@@ -252,9 +258,7 @@ class _Replays:
 
     def _stepped(self, method: Method, steps: int, sets: Sequence[Changes]) -> Floats:
         """Return what so many steps of an arc leave, (sets, entries)."""
-        answer = self.arcs.answer
-        own = replace(answer, stepping=partial(replay, answer, method, steps))
-        return self._compared(replace(self.arcs, answer=own, steps_given=1).defects(sets))
+        return self._compared(in_steps(self.arcs, method, steps).defects(sets))
 
     def _compared(self, defects: Floats) -> Floats:
         n, arcs = self.arcs.answer.n, len(self.arcs.first)
@@ -265,7 +269,7 @@ def _fine(method: Method) -> int:
     return _FINE_OF_DEAR if method.is_dear else _FINE
 
 
-def _motion(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
+def motion_of_steps(steps: Steps, answer: Answer, _: Changes) -> Motion | None:
     """Return the motion of an answer in steps from each row to the next one."""
     return moved_by(steps, steps.step(answer), answer, answer.right)
 

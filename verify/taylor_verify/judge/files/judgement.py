@@ -365,14 +365,14 @@ def _judged_within_reach(
 ) -> tuple[Judgement, _Examined]:
     """Judge the rows, those near the scene's end first where it has no closed form and others are far."""
     answer, world = examined.rows, examined.known.world
-    is_far, near = _is_far(answer), examined.near
+    is_far = _is_far(answer)
     if is_far and world.scale != 1:
         why = (
             f"{world.words}; as it stands the file asks for times far beyond the scene, "
             "which has no closed form, and they are not computed: the rows near the start are wrong already"
         )
         return _alone(answer, Status.FAIL, why, Cause.TOO_FAR), examined
-    if is_far and len(near.rows.times) >= _FEWEST:
+    if is_far and len((near := examined.near).rows.times) >= _FEWEST:
         judged = _judged(near.rows, tolerances)
         if any(verdict.verdict is Status.FAIL for verdict in judged.verdicts):
             return judged, near

@@ -21,6 +21,7 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
+from taylor_verify.judge.conventions.axis_orders import quaternion_columns
 from taylor_verify.judge.floor.arithmetic import truth_digits, working_bits
 from taylor_verify.judge.floor.counted_steps import Steps
 from taylor_verify.judge.floor.rounded_input import input_rounding
@@ -179,21 +180,9 @@ class _Function:
         names = (*MOMENTA[self._given.model], *frame, *own)
         blocks: dict[str, Floats] = {name: motion[name].astype(float) for name in names}
         if "attitude" in blocks:
-            blocks["attitude"] = _quaternions(blocks["attitude"])
+            q = quaternion_columns(blocks["attitude"])
+            blocks["attitude"] = q / np.linalg.norm(q, axis=1, keepdims=True)
         return blocks
-
-
-def _quaternions(matrices: Floats) -> Floats:
-    """Return the unit quaternions of rotations: 4 q q^T - 1 has the eigenvector q of its largest value."""
-    R = matrices
-    odd = [R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]]
-    trace = np.trace(R, axis1=1, axis2=2)
-    whole = np.empty((len(R), 4, 4))
-    whole[:, 0, 0] = trace
-    whole[:, 0, 1:] = whole[:, 1:, 0] = np.transpose(odd)
-    whole[:, 1:, 1:] = R + np.transpose(R, (0, 2, 1)) - trace[:, None, None] * np.eye(3)
-    vectors: Floats = np.linalg.eigh(whole)[1][:, :, -1].copy()
-    return vectors
 
 
 def _turns(quaternions: Floats) -> list[Floats]:

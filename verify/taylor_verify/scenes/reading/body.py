@@ -91,8 +91,11 @@ def _form(table: Table) -> Callable[[Table], ImmersedBody | None] | None:
     if len(written) == 1:
         return FORMS[written[0]]
     for form in written:
-        # A mass needs an inertia, which the other forms do not.
-        _ = table.take(form, "a number") if form == "mass" else FORMS[form](table)
+        if form == "mass":
+            # It needs an inertia, which the other forms do not.
+            table.take(form, "a number")
+        else:
+            FORMS[form](table)
     names = ", ".join(f"`{form}`" for form in FORMS)
     table.fault(f"exactly one of {names}", " and ".join(written) or "none of them")
     return None

@@ -69,7 +69,10 @@ def impulses(table: Table, body: Body | None) -> Vector | None:
     if by_velocity and by_impulse:
         given = (*by_impulse, *by_velocity)
         for key in given:
-            _rates(table, key) if key == VELOCITIES[1] else table.vector(key)
+            if key == VELOCITIES[1]:
+                _rates(table, key)
+            else:
+                table.vector(key)
         expected = "either the two impulses or the two velocities"
         pairs = (f"`{first}` with `{second}`" for first, second in (IMPULSES, VELOCITIES))
         keep = f"keep {', or '.join(pairs)}"
