@@ -143,11 +143,12 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
 
     few, more = _TRIED
     first, second = fitted(few)[1], fitted(more)[1]
-    if not np.linalg.norm(second) < _NEAR * arcs.size:
-        return None
     change = first - second
-    if np.linalg.norm(change) > _SURELY * arcs.size:
-        along = float(second @ change) / float(change @ change)
+    is_telling = np.linalg.norm(change) > _SURELY * arcs.size
+    along = float(second @ change) / float(change @ change) if is_telling else 0.0
+    if not np.linalg.norm(second - along * change) < _NEAR * arcs.size:
+        return None
+    if is_telling:
         inverse = 1 / more - along * (1 / few - 1 / more)
         if not 1 / _MOST < inverse < _LARGEST:
             return None

@@ -39,7 +39,7 @@ from taylor_verify.judge.causes.other_bodies import (
 )
 from taylor_verify.judge.causes.proof import BETTER, LEAVES, ROUNDINGS, whole
 from taylor_verify.judge.causes.replays import replays, stepped, steps_beside
-from taylor_verify.judge.causes.settled import FEW, FIT_ROWS, NOTHING, PAIR, Choice
+from taylor_verify.judge.causes.settled import FAIR, FEW, FIT_ROWS, NOTHING, PAIR, Choice
 from taylor_verify.judge.causes.terms import families_of_terms, faults_of_terms
 from taylor_verify.judge.causes.written_numbers import KIND as WRITTEN
 from taylor_verify.judge.causes.written_numbers import faults_of_texts, numbers, points_of_weights
@@ -53,8 +53,6 @@ _BESIDE: Final = 100_000.0
 _OF_INERTIA: Final = dict.fromkeys(
     ("body", "Coriolis matrix", "gyroscopic term", "Coriolis terms"), "inertia"
 )
-# What the steps of a fair simulator leave; a near family leaves a hundred times as much.
-_FAIR: Final = 1e-6
 # Without an attitude in the file a load in space axes is only nearly right on the arcs.
 _LOOSE: Final = 0.1
 # A fault, or the linear fit of a family, that leaves more than this is not tried.
@@ -92,7 +90,7 @@ class Dynamics:
     def without_numbers(self) -> Cause | None:
         """Return the proven cause that has no number to fit."""
         cause = self._search.cause(self._faults) if self._search.is_clear else None
-        if cause is not None and max(cause.leaves.values()) < _FAIR:
+        if cause is not None and max(cause.leaves.values()) < FAIR:
             self._search.proven = cause.name
         return cause
 
@@ -193,7 +191,7 @@ class Search:
             budget = self.answer.budget
             with suppress(Spent), budget.at_most(budget.left / 4):
                 candidates += capped_speed(self.answer)
-            with suppress(Spent), budget.at_most(budget.left / 4):
+            with suppress(Spent), budget.at_most(budget.left / 2):
                 candidates += damped_steps(self.answer, stride)
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped or is_blind:
@@ -210,7 +208,7 @@ class Search:
         if not group or not has_kinks(self.answer.right):
             return None
         cause = self.cause(candidates)
-        least = max(_FAIR, ROUNDINGS * self.answer.floor(self.choice.groups))
+        least = max(FAIR, ROUNDINGS * self.answer.floor(self.choice.groups))
         is_exact = cause is not None and max(cause.leaves[n] for n in self.choice.groups) < least
         return cause if is_exact else None
 
@@ -236,7 +234,7 @@ class Search:
 
         Nor is it seen to leave less than the arcs are wrong by.
         """
-        least = max(3 * self.floor + NOTHING, _FAIR, 3 * self.evidence.blur)
+        least = max(3 * self.floor + NOTHING, FAIR, 3 * self.evidence.blur)
         return candidate.defects < least or candidate.family.name == self.proven
 
     def _is_pace(self, candidate: Candidate) -> bool:

@@ -25,19 +25,15 @@ from taylor_verify.words.causes import with_numbers
 _FLOAT64: Final = 5e-13
 # Defects of so many roundings of the file may be left.
 _DEFECT_ROUNDINGS: Final = 30.0
-# Many numbers fit the error of a method nearly: with two numbers and more, this part of that is allowed.
-_STRICTER: Final = {0: 1.0, 1: 1.0, 2: 0.1, 3: 0.1, 4: 1e-4, 5: 1e-4, 6: 1e-4}
-# Two families at once have so many numbers, or leave nothing.
-_OF_PAIR: Final = 3
+# Each number after the first has to leave so much less: many fit nearly whatever is wrong.
+_OF_EACH_NUMBER: Final = 0.1
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
-# A near family with more numbers fits all that is not nothing.
 NOTHING: Final = 1e-9
-# A term that the scene does not have leaves no more than a fair simulator does, or noise, or its numbers
-# have so few digits: a law of another form fits nearly, and with numbers of no short form.
-_FAIR: Final = 1e-6
+# A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers have so few
+# digits: a law of another form fits nearly, and with numbers of no short form.
+FAIR: Final = 1e-6
 _SHORT: Final = 2
-_DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
 _NOISY: Final = 0.1
 _TRIED: Final = 3
@@ -160,8 +156,7 @@ class Choice:
         if proof is None or candidate.is_nothing:
             return None
         is_pair, count = candidate.kind == "pair", candidate.count
-        part = float(count <= _OF_PAIR) if is_pair else _STRICTER.get(count, 0.0)
-        most = max(most * part, NOTHING)
+        most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
         if count and proof.worst > min(PAIR, most) and self._polished < _POLISHED:
             self._polished += 1
             better = self._refitted(candidate)
@@ -171,24 +166,20 @@ class Choice:
         cap = PAIR if is_pair else CAPS[min(candidate.count, 1)]
         allowed = min(max(most, self._least), cap)
         is_proven = proof.worst <= allowed and not proof.candidate.is_nothing
-        return None if not is_proven or self._is_near_law(proof) else proof
+        return proof if is_proven and self._is_evident(proof) else None
 
-    def _is_near_law(self, proven: _Proven) -> bool:
-        """Return True for terms, or two faults, that a law of another form may imitate nearly.
+    def _is_evident(self, proven: _Proven) -> bool:
+        """Return True if what a candidate leaves is none of another law, which its numbers imitate.
 
-        Two drags imitate any drag, so nearly that the rounding of a file may hide it.
+        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short.
         """
-        candidate, family = proven.candidate, proven.candidate.family
-        is_pair = candidate.kind == "pair"
-        are_drags = is_pair and _DRAGS.issuperset(part.kind for part in family.parts)
-        if not candidate.count or not (is_pair or not np.any(family.right)):
-            return False
-        if proven.worst <= (NOTHING if are_drags else max(self._least, _FAIR)):
-            return False
+        candidate, least = proven.candidate, max(self._least, FAIR)
+        if not candidate.count or proven.worst <= least:
+            return True
         numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
         short = self._left(replace(candidate, numbers=numbers))
         are_short = short is not None and short.worst <= max(proven.worst, self._least)
-        return not are_short and (are_drags or not self._leaves_noise(proven))
+        return are_short or self._leaves_noise(proven)
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""

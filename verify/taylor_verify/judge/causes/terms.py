@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 from itertools import permutations, product
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.basis import coriolis, coriolis_of
-from taylor_verify.judge.causes.changed_equations import Changes, Equations
+from taylor_verify.judge.causes.changed_equations import Equations
 from taylor_verify.judge.causes.fit import Family, Sizes, fault, linear
 from taylor_verify.judge.causes.many_flows import Floats
 
@@ -120,7 +120,6 @@ def families_of_terms(right: Equations, sizes: Sizes) -> Iterator[Family]:
     yield from _loads(right, sizes)
     yield family("damping", "damping", sizes.pace, [right.damping], damping=[1])
     yield from _drags(right, sizes)
-    yield from _damping_steps(right)
     for name, rows in _coriolis_terms(right):
         extra = [factors(products=rows)]
         yield family(f"factor of the {name}", "Coriolis terms", 1.0, [1], extra=extra)
@@ -210,36 +209,3 @@ def _drags(right: Equations, sizes: Sizes) -> Iterator[Family]:
             title = f"{kind} on axis {places[0] + 1}" if len(places) == 1 else of_vector
             extra = [along[i] for i in places]
             yield linear(right, title, kind, scale[places], extra=extra)
-
-
-# The factor of one step as a function of x = c h.
-_FACTORS: Final = (
-    ("explicit damping step", "1 - c h", lambda x: 1 - x),
-    ("implicit damping step", "1/(1 + c h)", lambda x: 1 / (1 + x)),
-    ("exponential damping step", "exp(-c h)", lambda x: np.exp(-x)),
-)
-
-
-def _damping_steps(right: Equations) -> Iterator[Family]:
-    """Yield damping by a factor f once in each step h, after the motion of the step or before it.
-
-    With f = e^(-c' h) such an engine solves P' = k (terms of second order) - c' P exactly, where
-    k = c' h/(1 - f) for a factor after the motion, and f times that for one before it. The attitude turns
-    by k omega.
-    """
-    if not right.damping or right.has_loads or np.any(right.rotor):
-        return
-    h = np.array([0.05 / abs(right.damping)])
-    products = right.basis.factors(products=coriolis_of(right.mass))
-    for (name, words, factor), place in product(_FACTORS, ("after", "before")):
-
-        def changes(p: Floats, factor: Any = factor, place: str = place) -> Changes:
-            step = float(p[0]) or 1e-9
-            f = factor(right.damping * step)
-            damping = -np.log(f) / step if f > 0 else np.nan
-            k = damping * step / (1 - f) * (1.0 if place == "after" else f)
-            turns = np.array([0.0, k])
-            return {"extra": (k - 1) * products, "damping": damping, "turns": turns}
-
-        title = f"{name}: the momentum times {words} {place} the motion of each step, with h"
-        yield Family(title, "damping step", 1e-3 * h, h, changes)
