@@ -30,7 +30,7 @@ from taylor_verify.judge.causes.fit import (
 )
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.kinks import has_kinks
-from taylor_verify.judge.causes.lateness import is_of_stages, off_pace
+from taylor_verify.judge.causes.lateness import off_pace
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.other_bodies import (
     families_of_bodies,
@@ -154,9 +154,7 @@ class Search:
 
     def cause(self, candidates: Iterable[Candidate], leaves: float = LEAVES) -> Cause | None:
         """Return the proven cause, with all others that explain as well."""
-        answer, floor = self.answer, self.floor
-        some = [c for c in candidates if self._is_exact(c) or not is_of_stages(answer, c, floor)]
-        return self.choice.cause(some, leaves)
+        return self.choice.cause(candidates, leaves)
 
     @property
     def is_clear(self) -> bool:

@@ -9,10 +9,8 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.arcs import moved
-from taylor_verify.judge.causes.candidate import Candidate, has_few_digits
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
-from taylor_verify.judge.causes.terms import LATE
 
 _STEPS: Final = 4
 _ROUNDS: Final = 5
@@ -60,17 +58,6 @@ def off_pace(answer: Answer) -> float:
     along = np.sum(bend * now, axis=0) / np.maximum(np.sum(now**2, axis=0), 1e-300)
     size = float(np.linalg.norm(bend))
     return float(np.linalg.norm(bend - along * now)) / size if size > 0 else 0.0
-
-
-def is_of_stages(answer: Answer, candidate: Candidate, floor: float) -> bool:
-    """Return True for loads that are late by a part of a row, as the stages of a method take a switch.
-
-    A delay is another one: it leaves the rounding of the file, or is a number as somebody writes it.
-    """
-    if candidate.family.name != LATE or not len(answer.right.switches):
-        return False
-    is_within = abs(float(candidate.numbers[0])) < answer.spacing
-    return is_within and not has_few_digits(candidate, floor)
 
 
 def late_rows(answer: Answer, name: str) -> Iterator[tuple[str, Floats]]:

@@ -171,11 +171,14 @@ class Choice:
     def _is_evident(self, proven: _Proven) -> bool:
         """Return True if what a candidate leaves is none of another law, which its numbers imitate.
 
-        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short.
+        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. An update
+        of the attitude is replayed: it is exact, or another one.
         """
-        candidate, least = proven.candidate, max(self._least, FAIR)
-        if not candidate.count or proven.worst <= least:
+        candidate = proven.candidate
+        if proven.worst <= max(self._least, FAIR):
             return True
+        if not candidate.count:
+            return candidate.kind != "attitude step"
         numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
         short = self._left(replace(candidate, numbers=numbers))
         are_short = short is not None and short.worst <= max(proven.worst, self._least)

@@ -21,7 +21,6 @@ _PER_DEGREE: Final = (
     ("of omega in degrees", 1 / _DEGREE),
     ("of omega in radians for degrees", _DEGREE),
 )
-LATE: Final = "loads late"
 
 
 def faults_of_terms(right: Equations) -> Iterator[Family]:
@@ -127,7 +126,7 @@ def families_of_terms(right: Equations, sizes: Sizes) -> Iterator[Family]:
 
 def loads_late(right: Equations, sizes: Sizes) -> Family:
     """Return the family of loads that are those of another time."""
-    return linear(right, LATE, "load", 0.1 / sizes.pace, late=[1])
+    return linear(right, "loads late", "load", 0.1 / sizes.pace, late=[1])
 
 
 def _wheels(right: Equations, sizes: Sizes) -> Iterator[Family]:
