@@ -171,18 +171,19 @@ class Choice:
     def _is_evident(self, proven: _Proven) -> bool:
         """Return True if what a candidate leaves is none of another law, which its numbers imitate.
 
-        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. An update
-        of the attitude is replayed: it is exact, or another one.
+        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. Two
+        faults imitate so nearly that a rounding hides it: they leave nothing. An update of the attitude
+        is replayed: it is exact, or another one.
         """
-        candidate = proven.candidate
-        if proven.worst <= max(self._least, FAIR):
+        candidate, is_pair = proven.candidate, proven.candidate.kind == "pair"
+        if proven.worst <= (NOTHING if is_pair else max(self._least, FAIR)):
             return True
         if not candidate.count:
             return candidate.kind != "attitude step"
         numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
         short = self._left(replace(candidate, numbers=numbers))
         are_short = short is not None and short.worst <= max(proven.worst, self._least)
-        return are_short or self._leaves_noise(proven)
+        return are_short or (not is_pair and self._leaves_noise(proven))
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""
