@@ -1,11 +1,14 @@
 """Every gate has a broken solver that it catches, and the published table says what the rows say."""
 
+import json
 from dataclasses import replace
 from functools import lru_cache
 from math import nextafter
+from pathlib import Path
 
 import numpy as np
 import pytest
+from builders.studies.stored import publish_document
 
 from taylor_verify.exact.invariants import invariants
 from taylor_verify.models.problem import pose
@@ -16,8 +19,10 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.controls.broken_answers import ANSWERS
 from taylor_verify_reports.controls.defect import Defect
 from taylor_verify_reports.controls.defects import DEFECTS
+from taylor_verify_reports.studies.controls import controls_page as controls
 from taylor_verify_reports.studies.controls import proof
 from taylor_verify_reports.studies.controls.broken_runs import RUNG, Twins, sights, study
+from taylor_verify_reports.studies.controls.controls_page import STUDY
 from taylor_verify_reports.studies.controls.sight import CONTROLS, ControlsStudy, Sight
 
 NAMED = {defect.name: defect for defect in DEFECTS}
@@ -198,3 +203,17 @@ def test_faulty_twin_takes_the_gate_out_of_the_count(rows: tuple[Sight, ...]) ->
     faulty = replace(row, sound={**row.sound, "T": failed})
     assert not faulty.is_seen_by("T")
     assert any("sound twin fails" in sentence for sentence in proof.proven([faulty]))
+
+
+def test_table_is_made_from_stored_rows_alone(tmp_path: Path) -> None:
+    """A number changed in controls.json is changed in the tables, and no solver runs for it."""
+    publish_document(tmp_path, STUDY, CONTROLS, study([sight_of("energy-restored")]))
+    file = tmp_path / "data" / "controls.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    for row in content["verdicts"]:
+        if row["solver"] == "energy-restored" and row["quantity"] == "omega":
+            row["ratio"] = 1.25e7 * content["factor"]
+    file.write_text(json.dumps(content), encoding="utf-8")
+    changed = CONTROLS.load(tmp_path)
+    assert "**1.2e7**" in controls.page(changed)
+    assert ",12500000.0," in controls.sheet(changed)
