@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,8 +13,11 @@ from typing import Any
 
 import pytest
 from builders.studies.hard import (
+    ALL,
+    DRIFT,
     MISMATCH,
     REACH,
+    WHY,
     row,
     study,
     worst_of,
@@ -28,6 +32,7 @@ from taylor_verify.records.status import Status
 from taylor_verify.scenes import library
 from taylor_verify.words.cells import NOTHING
 from taylor_verify_reports.studies.hard import extremes as measure
+from taylor_verify_reports.studies.hard import hard_page as pages
 from taylor_verify_reports.studies.hard import reach, search
 from taylor_verify_reports.studies.hard.hard_page import STUDY, store_scenes
 from taylor_verify_reports.studies.hard.hard_scenes import HARD, last_value
@@ -153,3 +158,18 @@ def test_each_rung_has_its_reach(page: str) -> None:
     assert "figures/hard-reach.svg" in page
     assert "axis 1e-2, f32: the run stopped: too many steps. It counts as lost." in page
     assert "6 runs. In 1 of them the rung could not represent the motion" in page
+
+
+def test_the_sheet_has_every_quantity() -> None:
+    """A row for each verdict with every digit, what was expected and whether it came."""
+    rows = csv.DictReader(pages.sheet(study()).splitlines())
+    cells = {(r["scene"], r["quantity"]): r for r in rows}
+    assert set(cells) == {(v.scene, v.quantity) for v in ALL}
+    assert float(cells["extremes/near", "T"]["max"]) == DRIFT.max
+    impulse = cells["extremes/vast", "impulse"]
+    assert (impulse["max"], impulse["expected"], impulse["as_expected"]) == (
+        "fail",
+        "refused",
+        "no",
+    )
+    assert cells["extremes/long", "omega"]["why_expected"] == WHY

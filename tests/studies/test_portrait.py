@@ -85,23 +85,6 @@ def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
             assert np.abs(np.array(course[name][k]) - exact).max() <= 1.01 * HALF
 
 
-def test_the_course_has_the_whole_motion() -> None:
-    """Each quantity has a row for each time, an attitude its nine numbers, which are a rotation."""
-    sizes = {"omega": 3, "linear_impulse": 3, "angular_impulse": 3, "attitude": 9, "centre": 3}
-    of_model = {"euler": {"omega"}, "kirchhoff": {"linear_impulse", "angular_impulse", "centre"}}
-    for name in SCENES:
-        course = dict(stored(name)["course"])
-        times = course.pop("t")
-        assert course.keys() == of_model[load(name).model] | {"attitude"}
-        for quantity, rows in course.items():
-            assert {len(row) for row in rows} == {sizes[quantity]}
-            assert len(rows) == len(times)
-        R = np.array(course["attitude"]).reshape(-1, 3, 3)
-        gram = np.einsum("nij,nik->njk", R, R)
-        assert np.abs(gram - np.eye(3)).max() <= 20 * HALF
-        assert (np.linalg.det(R) > 0).all()
-
-
 # What is drawn besides
 
 

@@ -334,6 +334,18 @@ def test_a_run_that_never_began_is_shown(report: Path, scene: str, rung: str, wo
     assert f"- `{scene}`, {rung}: **{word}**, the reason why {scene} has no number" in text
 
 
+def test_the_sheet_holds_a_row_for_every_verdict(report: Path) -> None:
+    """The sheet of the gates has a row a verdict with every digit."""
+    gates = rows(report, "gates.csv")
+    assert len(gates) == len(MIXED)
+    assert {row["verdict"] for row in gates} <= set(Status)
+    by_place = {(row["scene"], row["rung"], row["quantity"]): row for row in gates}
+    for verdict in MIXED:
+        row = by_place[verdict.scene, verdict.rung, verdict.quantity]
+        if verdict.bound is not None:
+            assert float(row["bound"]) == verdict.bound
+
+
 def pages(report: Path) -> Iterable[str]:
     files = [report / "README.md", *(report / "tables").glob("*.md")]
     return [file.read_text(encoding="utf-8") for file in files]

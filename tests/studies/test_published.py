@@ -246,6 +246,20 @@ def published_reference(name: str) -> bytes:
     return (REPORTS / reference_files.FOLDER / name).read_bytes()
 
 
+@pytest.mark.slow
+def test_exact_trajectories_are_those_of_the_code() -> None:
+    """Each CSV, the page and the examples equal those computed now, byte for byte."""
+    fresh_files = (reports.every_reference() / reference_files.FOLDER).iterdir()
+    made_now = {
+        f"{reference_files.FOLDER}/{f.name}": f.read_bytes()
+        for f in fresh_files
+        if f.suffix != ".json"
+    }
+    published = [path for path in committed() if path.startswith(reference_files.FOLDER)]
+    assert set(made_now) == set(published)
+    assert [path for path in published if (REPORTS / path).read_bytes() != made_now[path]] == []
+
+
 @cache
 def drawable() -> tuple[Picture, ...]:
     """Return each picture drawn from published data."""

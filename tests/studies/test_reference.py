@@ -22,6 +22,7 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load
+from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.studies.reference import reference_page as reference_files
 from taylor_verify_reports.studies.reference.exact_table import DIGITS, reference
 from taylor_verify_reports.studies.stored import document as document_of
@@ -257,6 +258,18 @@ def test_a_scene_that_cannot_be_solved_is_named(error: Exception, text: str) -> 
 
 
 # Read.
+
+
+def test_the_page_names_every_file() -> None:
+    """Each link of the page leads to a file; it links to all but the JSON; its maker is line 1."""
+    text = (folder() / "README.md").read_text(encoding="utf-8")
+    assert text.splitlines()[0] == MADE_BY
+    assert "{{" not in text
+    links = set(re.findall(r"\]\(([^)]+)\)", text))
+    committed = {path.name for path in folder().iterdir() if path.suffix != ".json"}
+    assert links == committed - {"README.md"} | {"../tables/accuracy.md"}
+    for name in reference_files.EXAMPLES:
+        assert (folder() / name).read_text(encoding="utf-8") in text.replace("\n```", "\n")
 
 
 @pytest.fixture(scope="module")

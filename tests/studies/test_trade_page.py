@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import replace
 from pathlib import Path
 
-from builders.studies.tradeoff import NUMBERS_MADE, TIMES_MADE
+from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.tradeoff_page import page
+from taylor_verify_reports.studies.tradeoff.tradeoff_page import page, sheet
 from taylor_verify_reports.studies.tradeoff.trades import Trades
 
 
@@ -58,3 +59,11 @@ def test_a_failure_is_listed_and_nowhere_else(tmp_path: Path) -> None:
     assert "it would take minutes" in listed
     assert "rtol=1e-3" not in section(text, "What so many digits cost")
     assert "false success" in line(section(text, "Asked for and achieved"), "SciPy RK45")
+
+
+def test_the_sheet_has_a_row_for_every_setting() -> None:
+    """The sheet has every setting with every digit, the failed ones included."""
+    rows = list(csv.DictReader(sheet(Trades(NUMBERS_MADE, TIMES_MADE)).splitlines()))
+    assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
+    assert rows[1]["ratio"] == "1.0"
+    assert rows[6]["standing"] == "false success"
