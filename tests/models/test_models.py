@@ -22,7 +22,9 @@ from taylor_verify.models.form import Form
 from taylor_verify.models.frame import attitude_rate, centre_rate, rotation
 from taylor_verify.models.kirchhoff import (
     clebsch_equations,
+    impulse_rates,
     kirchhoff_equations,
+    velocities,
 )
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
@@ -75,6 +77,41 @@ def test_momentum_form_is_the_form_of_the_text(seed: int) -> None:
     omega = angular_velocity(H, K)
     omega_rate = angular_velocity(momentum_rate(H, K, M), K)
     assert heinbockel_moment(omega, omega_rate, tensors.inverse(K)) == list(M)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_text_in_components_and_in_principal_axes(seed: int) -> None:
+    """(2.2.70) written out is (2.2.71), and in principal axes (2.2.72), index by index."""
+    random = Random(seed)
+    I, w, a = symmetric(random), vector(random), vector(random)
+    h = tensors.apply(I, w)
+    components = [
+        tensors.dot(I[0], a) + h[2] * w[1] - h[1] * w[2],
+        tensors.dot(I[1], a) + h[0] * w[2] - h[2] * w[0],
+        tensors.dot(I[2], a) + h[1] * w[0] - h[0] * w[1],
+    ]
+    assert heinbockel_moment(w, a, I) == components
+    J = tensors.diagonal((I[0][0], I[1][1], I[2][2]))
+    assert heinbockel_moment(w, a, J) == [
+        J[0][0] * a[0] + (J[2][2] - J[1][1]) * w[1] * w[2],
+        J[1][1] * a[1] + (J[0][0] - J[2][2]) * w[2] * w[0],
+        J[2][2] * a[2] + (J[1][1] - J[0][0]) * w[0] * w[1],
+    ]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_kirchhoff_conserves_identically(seed: int) -> None:
+    """d(x.x)/dt = 2 x.X, d(x.y)/dt = X.y + x.L and dT/dt = U.X + Omega.L for any 21 numbers."""
+    random = Random(seed)
+    A, C, B = symmetric(random), symmetric(random), tuple(vector(random) for _ in range(3))
+    x, y, X, L = (vector(random) for _ in range(4))
+    U, Omega = velocities(x, y, A, B, C)
+    x_rate, y_rate = impulse_rates(x, y, U, Omega, X, L)
+    assert tensors.dot(x, x_rate) == tensors.dot(x, X)
+    fg_rate = tensors.dot(x_rate, y) + tensors.dot(x, y_rate)
+    assert fg_rate == tensors.dot(X, y) + tensors.dot(x, L)
+    work = tensors.dot(U, x_rate) + tensors.dot(Omega, y_rate)
+    assert work == tensors.dot(U, X) + tensors.dot(Omega, L)
 
 
 @pytest.mark.parametrize("seed", range(10))
