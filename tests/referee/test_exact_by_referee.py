@@ -1,21 +1,28 @@
-"""`taylor-verify exact` by a referee that shares nothing with it."""
+"""`taylor-verify exact` by a referee that shares nothing with it, and that referee by textbook formulas."""
 
 from __future__ import annotations
 
 import ast
 import copy
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from operator import mul, sub
 from pathlib import Path
 from typing import Any, Final
 
+import gmpy2
 import pytest
+from gmpy2 import cos, cosh, exp, log, mpfr, sin, sqrt, tanh
 
+from referee.bodies import rotation
 from referee.command import Command
 from referee.comparison import faults
-from referee.draws import draw
+from referee.draws import KINDS, draw
 from referee.judged import judged, judgement
+from referee.lamb import lamb_integral
+from referee.motion import Row, motion
 
 HERE: Final = Path(__file__).parent
 MOST_REFUSED: Final = Fraction(2, 100)
@@ -63,6 +70,103 @@ def test_the_referee_imports_the_standard_library_and_gmpy2_alone(file: Path) ->
     assert imported(file.read_text(encoding="utf-8")) <= allowed
 
 
+def test_a_process_that_judges_has_not_loaded_the_package() -> None:
+    """No detour leads from the comparison to taylor_verify."""
+    modules = "referee.judged, sys; print([m for m in sys.modules if 'taylor_verify' in m])"
+    run = [sys.executable, "-c", f"import {modules}"]
+    shown = subprocess.run(run, cwd=HERE.parent, capture_output=True, text=True, check=True)
+    assert shown.stdout == "[]\n"
+
+
+# The referee against formulas of the textbooks.
+
+
+def alone(body: str, initial: str, at: Fraction, track: str = '["omega"]', bits: int = 150) -> Row:
+    """Return what the referee says about one time."""
+    model = "euler" if "omega =" in initial else "kirchhoff"
+    text = SCENE.format(model=model, track=track, body=body, initial=initial)
+    return motion(text, [at], bits)[0]
+
+
+def are_near(row: Row, name: str, formula: list[Any], digits: int = 38) -> bool:
+    """Return True if a vector is that of a formula, and is known to as many digits."""
+    return all(
+        known.digits >= digits and abs(known.value - value) <= abs(value) / 10**digits
+        for known, value in zip(row[name], formula, strict=True)
+    )
+
+
+def test_an_axisymmetric_body_precesses() -> None:
+    """Omega turns about axis 3 at the rate (C - A)/A w3."""
+    row = alone("inertia = [2, 2, 3]", "omega = [1, 0, 4]", Fraction(7, 3))
+    with gmpy2.context(precision=150):
+        angle = mpfr(Fraction(14, 3))
+        assert are_near(row, "omega", [cos(angle), sin(angle), mpfr(4)])
+
+
+def test_a_separatrix_is_a_hyperbolic_secant() -> None:
+    """The body goes to its middle axis as sech and tanh go, where |H|^2 = 2 T I2."""
+    # Here |H|^2 = 9/16 + 81/16 and 2 T = 9/16 + 9/4.
+    row = alone('inertia = [1, 2, "9/4"]', "omega = [0.75, 0, 1]", Fraction(3, 2))
+    with gmpy2.context(precision=150):
+        # w2 tends to sqrt(2 T/I2); its rate at the start is (I3 - I1)/I2 w3 w1.
+        limit = sqrt(mpfr(Fraction(45, 32)))
+        rate = mpfr(Fraction(5, 8) * Fraction(3, 4)) / limit
+        s = rate * mpfr(Fraction(3, 2))
+        assert are_near(row, "omega", [mpfr("0.75") / cosh(s), limit * tanh(s), 1 / cosh(s)])
+
+
+def test_damping_is_a_change_of_time() -> None:
+    """Damping c makes omega(t) exp(-c t) times the free omega at (1 - exp(-c t))/c."""
+    body, initial, t = "inertia = [1, 2, 4]", "omega = [1, -1, 0.5]", Fraction(2)
+    damped = alone(f"{body}\ndamping = 0.25", initial, t)
+    with gmpy2.context(precision=150):
+        factor = exp(mpfr("-0.5"))
+        free = alone(body, initial, Fraction(*map(int, ((1 - factor) * 4).as_integer_ratio())))
+        assert are_near(damped, "omega", [factor * known.value for known in free["omega"]])
+
+
+MASSES: Final = """mass_matrix = [
+  [5, 1, 0, 0, 1, 0], [1, 6, 0, 0, 0, 1], [0, 0, 4, 1, 0, 0],
+  [0, 0, 1, 3, 0, 0], [1, 0, 0, 0, 2, 0], [0, 1, 0, 0, 0, 4],
+]"""
+STARTED: Final = """linear_impulse = [1, 2, 3]
+angular_impulse = [2, 0, -1]
+attitude = [1, 2, 0, -1]
+centre = [1, 1, 0]"""
+
+
+def in_space(attitude: list[list[Any]], centre: list[Any], x: list[Any], y: list[Any]) -> list[Any]:
+    """Return R x and R y + centre x R x: the impulse, and its moment about a point of space."""
+    x, y = ([sum(map(mul, row, v)) for row in attitude] for v in (x, y))
+    c = centre
+    return x + [y[i] + c[i - 2] * x[i - 1] - c[i - 1] * x[i - 2] for i in range(3)]
+
+
+def test_the_impulse_and_its_moment_stand_still_in_space() -> None:
+    """R x and R y + centre x R x stay what they are at the start, for 21 coefficients."""
+    row = alone(MASSES, STARTED, Fraction(2), '["centre"]')
+    start = rotation([Fraction(n) for n in (1, 2, 0, -1)])
+    before = in_space(start, [1, 1, 0], [1, 2, 3], [2, 0, -1])
+    with gmpy2.context(precision=150):
+        x, y, centre, r = (
+            [known.value for known in row[name]]
+            for name in ("linear_impulse", "angular_impulse", "centre", "attitude")
+        )
+        after = in_space([r[:3], r[3:6], r[6:]], centre, x, y)
+        assert max(map(abs, map(sub, after, before))) <= mpfr("1e-38")
+
+
+def test_lambs_integrals_are_those_of_a_sphere_and_of_a_prolate_spheroid() -> None:
+    """Lamb's alpha is 2/3 in a sphere and 2 (1 - e^2)/e^3 (artanh e - e) along the axis of a spheroid."""
+    with gmpy2.context(precision=300):
+        near = mpfr("1e-85")
+        assert abs(lamb_integral([4, 4, 4], [0]) - mpfr(2) / 3) <= near
+        e = sqrt(mpfr(3)) / 2
+        alpha = 2 * (1 - e**2) / e**3 * (log((1 + e) / (1 - e)) / 2 - e)
+        assert abs(lamb_integral([4, 1, 1], [0]) - alpha) <= near
+
+
 # The command.
 
 
@@ -74,6 +178,13 @@ def test_drawn_scenes_are_answered_as_the_referee_finds(command: Command, count:
     refused = [verdict for verdict in verdicts if verdict.refusal]
     assert not wrong, "\n".join([f"{len(wrong)} of {count} answers are wrong", *map(str, wrong)])
     assert len(refused) <= MOST_REFUSED * count, "\n".join(map(str, refused))
+
+
+def test_every_kind_is_drawn_at_every_precision() -> None:
+    """The few questions that are always asked are of all kinds, with 10, 40 and 200 digits."""
+    questions = [draw(number) for number in range(FEW)]
+    assert {question.kind for question in questions} == {kind.__name__ for kind in KINDS}
+    assert {question.digits for question in questions} == {10, 40, 200}
 
 
 def test_a_refused_scene_counts_as_refused(command: Command) -> None:
