@@ -1,4 +1,4 @@
-"""The verb `claims`: a table, JSON, exit statuses, and the page with the errata in front."""
+"""The verb `claims`: a table, JSON, exit statuses, and files that are refused."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from builders.studies.claims import ROWS, STUDY
+from builders.studies.claims import STUDY
 from builders.studies.stored import publish_document
 
 from taylor_verify.cli import main
-from taylor_verify.words.page_parts import MADE_BY
 from taylor_verify_reports.claims import ledger
-from taylor_verify_reports.claims.claim import Claim, Verdict
+from taylor_verify_reports.claims.claim import Claim
 from taylor_verify_reports.claims.ledger import claims
-from taylor_verify_reports.claims.numbers import CITED
-from taylor_verify_reports.studies.claims_page import CLAIMS, page
+from taylor_verify_reports.studies.claims_page import CLAIMS
 from taylor_verify_reports.studies.claims_page import STUDY as PUBLISHED
 
 QUICK = "hydromechanics 49 (11)"
@@ -79,21 +77,6 @@ def test_an_entry_that_lost_its_verdict_fails(
     captured = capsys.readouterr()
     assert json.loads(captured.out)[0]["recorded"] == "false as transcribed"
     assert f"expected the verdict 'false as transcribed', got 'holds' @ {QUICK}" in captured.err
-
-
-def test_the_page_has_the_errata_in_front() -> None:
-    """Every false entry with its correction before anything else, and every entry in the ledger."""
-    text = page(STUDY)
-    assert text.startswith(MADE_BY)
-    errata, _, rest = text.partition("## True on a condition")
-    for entry in ROWS:
-        is_false = entry.verdict is Verdict.FALSE
-        assert (f"**`{entry.id}`**" in errata) == is_false
-        assert f"| `{entry.id}`" in rest
-        if is_false:
-            assert f"correct: $`{entry.correction}`$" in errata
-    for number in CITED:
-        assert number in rest
 
 
 def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:

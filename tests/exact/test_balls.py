@@ -238,25 +238,6 @@ def test_a_ball_contains_its_rational(value: Fraction, bits: int) -> None:
     assert exact_value(midpoint(enclosure.rad())) <= abs(value) * Fraction(2) ** (1 - bits)
 
 
-@given(st.integers(), st.integers(-5000, 5000), st.integers(2, 60))
-def test_midpoints_are_converted_exactly(mantissa: int, exponent: int, prec: int) -> None:
-    """Whatever the precision of mpmath, and however far from 1 the number is."""
-    with ctx.workprec(max(mantissa.bit_length(), 2)):
-        number_ball = arb(mantissa) * arb(2) ** exponent
-    with mp.workprec(prec):
-        number = midpoint(number_ball)
-    assert exact_value(number) == Fraction(mantissa) * Fraction(2) ** exponent
-
-
-@given(dyadic, st.integers(2, 100))
-def test_an_upper_end_is_above(value: Fraction, bits: int) -> None:
-    """Rounded, if at all, upwards."""
-    with ctx.workprec(bits):
-        enclosure = ball(value)
-        end = upper(enclosure)
-    assert exact_value(end) >= value
-
-
 def test_what_is_not_finite_is_not_taken_for_a_number() -> None:
     """NaN stays NaN; the larger of NaN and anything is NaN."""
     assert mp.isnan(upper(NOT_A_NUMBER))

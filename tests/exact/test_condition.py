@@ -18,7 +18,6 @@ from builders.scenes import (
     sample_scene,
     vector,
 )
-from mpmath import mp, mpf
 
 from taylor_verify.exact.conditioning.by_differences import derivatives
 from taylor_verify.exact.conditioning.condition import Path, path, sharp, transition
@@ -89,17 +88,6 @@ def test_place_moves_with_the_path() -> None:
     ):
         assert not flow.norms(out, into).any()
     assert flow.norms("centre", "linear_impulse")[0] == 0
-
-
-@pytest.mark.slow
-def test_flows_conserve_volume() -> None:
-    """det D = 1 with and without loads, and not if a column is wrong by one part in a million."""
-    flow = derivatives(LOADED_KIRCHHOFF, times(1, -1), 20, 50)
-    assert flow.volume_error() <= mpf("1e-15")
-    with mp.workdps(50):
-        wrong = flow.momentum.copy()
-        wrong[:, :, 4] *= 1 + mpf("2e-6")
-        assert replace(flow, momentum=wrong).volume_error() >= mpf("1e-6")
 
 
 def test_growth_beside_an_unstable_rotation() -> None:
@@ -223,19 +211,6 @@ def test_where_float64_cannot_follow_there_are_no_variational_norms() -> None:
     near = vector("1e-40", 1, "1e-40")
     saddle = sample_scene(RigidBody(turned), start=Spin(apply(turn, near)))
     assert integrated(saddle, times(0, 250)) is None
-
-
-@pytest.mark.slow
-def test_a_long_tumble_is_followed_in_steps() -> None:
-    """Without a closed form, steps of float64 serve however long the way is.
-
-    Each difference would be an enclosure with a hundred digits more, thirteen of them for a solid.
-    """
-    tumble = load("kirchhoff/auv-turn")
-    orbit = path(replace(tumble, clock=Clock(Fraction(0), vector(0, 14, 28))))
-    assert orbit.rate * 28 > 2000
-    assert not orbit.is_regular
-    assert orbit.exponent == 0
 
 
 # The choice of times.

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
-import numpy as np
 import pytest
 from builders.turns import by_turns
 from flint import arb, arb_mat, ctx
 
-from taylor_verify.exact.balls import midpoint
 from taylor_verify.exact.conditioning.by_differences import derivatives
-from taylor_verify.exact.conditioning.condition import transition
 from taylor_verify.exact.conditioning.momentum import block_units
 from taylor_verify.exact.enclosure.box import Box, carried, identity
 from taylor_verify.exact.enclosure.course import Course
@@ -25,8 +21,6 @@ from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
-
-Array = np.ndarray[Any, Any]
 
 BITS = 140
 # The start is a box of this half width, so that there is something to carry.
@@ -49,13 +43,6 @@ BY_DIFFERENCES = {
     "kirchhoff/general-body": 1,
     "extremes/kirchhoff-nearly-clebsch": 3,
 }
-BY_STEPS = (
-    "euler/constant-moment",
-    "kirchhoff/general-body",
-    "kirchhoff/constant-loads",
-    "kirchhoff/steklov",
-    "extremes/kirchhoff-nearly-clebsch",
-)
 
 
 def enclosed(scene: Scene, times: Sequence[Fraction]) -> list[arb_mat]:
@@ -114,23 +101,3 @@ def test_differences_of_the_motion_lie_in_the_enclosed_derivative(name: str) -> 
                 for j, entry in enumerate(row):
                     assert counted[i, j].overlaps(ball(exact_value(entry)) + arb(0, slack))
                     assert counted[i, j].rad() <= ball(size) * OF_NORMS
-
-
-@pytest.mark.parametrize("name", BY_STEPS)
-def test_norms_of_variational_steps_are_those_of_the_enclosed_derivative(name: str) -> None:
-    """The norms that float64 makes of the variational equations agree to three digits."""
-    scene = replace(load(name), track=frozenset())
-    last = scene.clock.elapsed[-1] / 4
-    times = [last / 2, last]
-    flow = transition(scene, [Fraction(0), *times])
-    for i, matrix in enumerate(enclosed(scene, times), start=1):
-        floats = np.array([[float(midpoint(e)) for e in row] for row in matrix.tolist()])
-        for (out, into), rows in blocks(scene).items():
-            expected = np.linalg.norm(floats[rows], 2)
-            assert abs(flow.norms(out, into)[i] - expected) <= 1e-3 * expected
-
-
-def blocks(scene: Scene) -> dict[tuple[str, str], tuple[slice, slice]]:
-    names = ("momentum",) if scene.model == "euler" else ("linear_impulse", "angular_impulse")
-    places = {name: slice(3 * k, 3 * k + 3) for k, name in enumerate(names)}
-    return {(a, b): (places[a], places[b]) for a in names for b in names}

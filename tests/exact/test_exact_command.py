@@ -241,22 +241,11 @@ def test_without_a_closed_form_the_answer_is_enclosed_by_taylor_series(exact: As
     assert len(document["rows"]) == 1
 
 
-@pytest.mark.parametrize(
-    ("arguments", "fragment"),
-    [
-        (["--digits", "0"], "--digits"),
-        (["--digits", "10001"], "--digits"),
-    ],
-)
-def test_what_cannot_be_given_is_a_wrong_call(
-    exact: Asked, arguments: list[str], fragment: str
-) -> None:
-    """Exit 2 and one line that says what could be given."""
-    document = exact("euler/generic", "--at", "1", *arguments)
-    assert document is not None
-    assert fragment in document["error"]
+@pytest.mark.parametrize("digits", ["0", "10001"])
+def test_digits_out_of_range_are_a_wrong_call(exact: Asked, digits: str) -> None:
+    """Exit 2 and one line that names the option."""
+    assert "--digits" in exact("euler/generic", "--at", "1", "--digits", digits)["error"]
     assert exact.status == 2
-    assert fragment in exact.error
 
 
 def test_a_tensor_of_no_real_solid_is_a_warning(exact: Asked, tmp_path: Any) -> None:

@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import resource
 import signal
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
-from builders.processes import PATIENCE, interruptible, wait_until
 from flint import acb, ctx
 
 from taylor_verify.exact.integral import integral
 from taylor_verify.exact.solution import Unsettled
 
 BITS = 1500
-# The processor time of an answer, from the interrupt to its end.
-SECONDS = 4.0
 
 
 class Interrupting:
@@ -70,32 +62,3 @@ def test_an_integral_that_would_take_hours_is_declined() -> None:
     """The nodes of its rules would be made in calls of minutes, which hear no interrupt."""
     with ctx.workprec(33_000), pytest.raises(Unsettled, match="would take hours"):
         integral(Interrupting(0), acb(0), acb(3))
-
-
-@pytest.mark.slow
-def test_an_interrupt_ends_a_long_exact_answer() -> None:
-    """Two thousand digits take half a minute in integrals; Ctrl-C in their midst soon exits with 130."""
-    words = ["-m", "taylor_verify", "exact", "kirchhoff/weber", "--at", "2", "--digits", "2000"]
-    before = processor_seconds(resource.RUSAGE_CHILDREN)
-    with interruptible():
-        child = subprocess.Popen(
-            [sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-        )
-    with child:
-        wait_until(lambda: running_seconds(child.pid) >= 6)
-        spent = running_seconds(child.pid)
-        child.send_signal(signal.SIGINT)
-        assert child.wait(PATIENCE) == 130
-    assert processor_seconds(resource.RUSAGE_CHILDREN) - before - spent <= SECONDS
-
-
-def processor_seconds(whose: int) -> float:
-    """Return the seconds of processor time of this process or of its children that have ended."""
-    used = resource.getrusage(whose)
-    return used.ru_utime + used.ru_stime
-
-
-def running_seconds(pid: int) -> float:
-    """Return the seconds of processor time of a process that runs, by Linux's own account."""
-    numbers = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(numbers[11]) + int(numbers[12])) / os.sysconf("SC_CLK_TCK")

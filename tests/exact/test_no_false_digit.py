@@ -166,18 +166,6 @@ def precession(H: list[mpf], across: mpf, along: mpf, t: mpf) -> list[mpf]:
 DEGREES: Final = '["2 deg/s", "1 deg/s", "3 deg/s"]'
 
 
-@pytest.mark.parametrize("route", ROUTES)
-def test_degrees_have_a_hundred_and_fifty_digits(route: str) -> None:
-    """A body of revolution precesses as by hand; the rationals that stand for degrees have 120 digits."""
-    row = printed(scene("inertia = [2, 2, 3]", f"omega = {DEGREES}"), route, 100, 150)
-    with mp.workdps(400):
-        H = [factor * mp.pi / 180 for factor in (4, 2, 9)]
-        expected = precession(H, mpf(2), mpf(3), mpf(100))
-        moments = (2, 2, 3)
-        values = [entry / moment for entry, moment in zip(expected, moments, strict=True)]
-        assert_equal(row["omega"], values, 150)
-
-
 @pytest.mark.parametrize("route", ["arb", "taylor"])
 def test_a_spheroid_in_degrees_has_two_hundred_digits(route: str) -> None:
     """A prolate spheroid that does not move along precesses, with Lamb's added inertia, as by hand."""
@@ -195,31 +183,9 @@ def test_a_spheroid_in_degrees_has_two_hundred_digits(route: str) -> None:
         assert_equal(row["angular_impulse"], precession(H, *moments, mpf(20)), 200)
 
 
-@pytest.mark.slow
-def test_velocities_of_an_ellipsoid_have_two_hundred_digits() -> None:
-    """Without a closed form too: two hundred digits are the beginning of three hundred."""
-    body = "ellipsoid = { semi_axes = [3, 2, 1], density = 1, fluid_density = 1 }"
-    start = f'linear_velocity = [1, 0, "1/3"]\nangular_velocity = {DEGREES}'
-    asked = scene(body, start, "centre")
-    row = printed(asked, None, Fraction(1, 2), 200)
-    assert row["regime"] == NO_CLOSED_FORM
-    check_digits(row, printed(asked, None, Fraction(1, 2), 300))
-
-
 # Tiny components.
 
 TINY: Final = "extremes/euler-unstable-axis-1e-40"
-ENTRY: Final = "6.2806133794736699933e-41"
-
-
-@pytest.mark.parametrize("route", ROUTES)
-def test_a_tiny_entry_of_the_attitude_is_right_or_zero(route: str) -> None:
-    """Beside entries of size one it may have no digit at twenty; at sixty it has some."""
-    coarse, fine = (printed(load(TINY), route, 1, digits) for digits in (20, 60))
-    assert fine["attitude"][0][1][:21] == ENTRY[:21]
-    assert coarse["attitude"][0][1] in ("0", ENTRY)
-    assert ("absolute" in coarse) is ("0" in vectors(coarse)["attitude"])
-    check_digits(coarse, fine)
 
 
 @pytest.mark.parametrize("digits", [4, 20])

@@ -247,18 +247,6 @@ def test_a_state_at_rest_has_the_digits_of_its_largest_norm() -> None:
     assert Fraction(row["radius"]) <= Fraction(1, 10**9)
 
 
-@pytest.mark.slow
-def test_instants_cost_bits_and_no_digits() -> None:
-    """Eight hundred of them, of a controller that turns forever."""
-    states = 'm = { every = "1/10", value = "-w2" }\nn = { every = "1/10", value = "w1" }'
-    scene = about_axes(states, 'moment = ["m", "n", 0]', "[1, 0, 0]", end="80")
-    w = (Fraction(1), Fraction(0))
-    for _ in range(800):
-        w = w[0] - w[1] / 10, w[1] + w[0] / 10
-    got = motion(scene, "80")
-    assert_near(got, "omega", 0, [*w, 0])
-
-
 def test_arcs_begin_with_own_states_of_their_own() -> None:
     """Arcs lead from the middle of a motion to its end, with values held as they were there."""
     for name in ("sampled", "wheel of a text"):

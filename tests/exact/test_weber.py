@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
-from typing import Any
+from itertools import cycle, pairwise
 
 import numpy as np
 import pytest
@@ -92,15 +91,6 @@ def curve_of(scene: Scene) -> Curve:
     return weber_curve
 
 
-def body_and_start() -> list[Any]:
-    """Return every pair of body and start as parameters of a test: one of three is quick."""
-    return [
-        pytest.param(body, start, marks=() if (n + m) % 3 == 0 else pytest.mark.slow)
-        for n, start in enumerate(STARTS)
-        for m, body in enumerate(BODIES)
-    ]
-
-
 def shipped() -> Scene:
     return load("kirchhoff/weber")
 
@@ -108,11 +98,8 @@ def shipped() -> Scene:
 # Against Taylor.
 
 
-# Every start, the bodies by turns; the other pairs are slow.
-PAIRS = body_and_start()
-
-
-@pytest.mark.parametrize(("body", "start"), PAIRS)
+# Every start, the bodies by turns.
+@pytest.mark.parametrize(("body", "start"), [*zip(cycle(BODIES), STARTS, strict=False)])
 def test_the_balls_hold_the_taylor_motion(body: str, start: str) -> None:
     """x and y to 42 digits, forward and backward, of both families and from every kind of start."""
     scene = case(start, body)

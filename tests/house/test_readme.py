@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from builders.worked import ROOT, blocks, work
+from builders.worked import ROOT, work
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PROSE = re.sub(r"```.*?```|`[^`]*`|\]\([^)]*\)", "", README, flags=re.DOTALL).lower()
@@ -26,34 +26,9 @@ UNEXPLAINED = (
 )
 
 
-def test_what_comes_first() -> None:
-    """The order is title, picture, what it is not, installing, a scene of one's own, the three paths."""
-    heads = ("1. A file of your own", "2. A function or program of your own", "3. A gate in CI")
-    places = [
-        README.index("# taylor-verify"),
-        README.index("!["),
-        README.index("It is **not**"),
-        README.index("pip install"),
-        README.index("A **scene** is"),
-        *(README.index(f"## {head}\n") for head in heads),
-        *(README.index(command) for command in ("make verify ", "make test ")),
-    ]
-    assert places == sorted(places)
-    assert README.count("![") == 1
-
-
 def test_no_word_is_used_before_it_is_explained() -> None:
     """Words of the docs stay in the docs."""
     assert [word for word in UNEXPLAINED if re.search(rf"\b{word}s?\b", PROSE)] == []
-
-
-def test_the_first_example_is_a_body_of_one_s_own() -> None:
-    """The scene has a load, and as comments track, attitude and wheels; --rung is named."""
-    (scene,) = (block.text for block in blocks(README) if block.language == "toml")
-    assert 'moment = ["' in scene
-    assert all(f"# {key} = [" in scene for key in ("track", "attitude", "rotor"))
-    assert "scalar first" in scene
-    assert "`--rung f32`" in README
 
 
 def test_what_the_page_says_to_type_works(tmp_path: Path) -> None:

@@ -101,28 +101,6 @@ def test_coarse(verify_solver):
 """
 
 
-@pytest.mark.slow
-def test_another_project_has_the_plugin_by_installing_the_wheel(
-    installed: Path, tmp_path: Path
-) -> None:
-    """Its tests find the fixtures and the marker without a line of configuration, and may fail."""
-    (tmp_path / "test_simulator.py").write_text(ANOTHER_PROJECT)
-    pytest_of_it = (sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "--strict-markers")
-    done = launch(installed, tmp_path, *pytest_of_it, "-rA")
-    assert done.returncode == pytest.ExitCode.TESTS_FAILED, done.stdout
-    ended = dict(line.split()[:2][::-1] for line in done.stdout.splitlines() if "py::" in line)
-    assert {name.partition("::")[2]: outcome for name, outcome in ended.items()} == {
-        "test_callable": "PASSED",
-        "test_program": "PASSED",
-        "test_scene[euler/steady-middle-axis-f32]": "PASSED",
-        "test_scene[euler/rest-f32]": "PASSED",
-        "test_wrong": "FAILED",
-        "test_coarse": "FAILED",
-    }
-    assert "1 of 4 judged quantities are no pass" in done.stdout
-    assert "fail  euler/generic f64 omega: " in done.stdout
-
-
 def run(installed: Path, folder: Path, *command: str) -> str:
     """Standard output of a command that sees the installed copy first, and succeeds."""
     done = launch(installed, folder, *command)

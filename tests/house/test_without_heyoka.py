@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-import pytest
 from builders.lacking import lacking
 from builders.processes import on_one_core
-from builders.turns import by_turns
 
-import taylor_verify
 from taylor_verify.solvers.taylor.package import INSTALL
 from taylor_verify_reports.studies.registry import STUDIES
 
@@ -61,6 +57,12 @@ for found in [run(SCENE), *run_many(["euler/rest", "euler/spherical"], rungs=["f
     assert lack in found.verdicts[0].because
     assert not found
 """,
+    "explain": STILL
+    + """
+document = explain("kirchhoff/constant-loads")
+assert document["equations"] and document["truth_digits"] and document["cost"]["steps"] is None
+assert {gate["verdict"] for gate in document["gates"]} == {"pass"}
+""",
     "a trade-off": f"""
 from taylor_verify import tradeoff
 from taylor_verify.numbers.precision import rung
@@ -99,24 +101,6 @@ def test_what_works_without_heyoka(tmp_path: Path) -> None:
     broken = {"broken on purpose": "import heyoka"}
     done = lacking(tmp_path, HEYOKA, "-c", IN_TURN.format(uses={**USES, **broken}))
     assert done.stdout.splitlines() == list(broken), done.stderr
-
-
-# A program by itself, and verbs that one process goes through: to start takes longer than most of them.
-IN_ONE_PROCESS = """
-import contextlib, io, json
-from taylor_verify.cli import main
-for call in {calls!r}:
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
-        status = main(call)
-    print(json.dumps([status, out.getvalue(), err.getvalue()]))
-"""
-
-
-def commands(folder: Path, *calls: list[str]) -> list[tuple[int, str, str]]:
-    """The exit status of each verb without heyoka, and its two streams."""
-    done = lacking(folder, HEYOKA, "-c", IN_ONE_PROCESS.format(calls=calls))
-    assert done.returncode == 0, done.stderr
-    return [tuple(json.loads(line)) for line in done.stdout.splitlines()]
 
 
 def command(folder: Path, *words: str) -> tuple[int, str, str]:
@@ -164,33 +148,6 @@ def test_nothing_is_published_without_heyoka(tmp_path: Path) -> None:
         f"taylor-verify: {expected} @ publish {name}" for name in measured
     ]
     assert not (tmp_path / "reports").exists()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", by_turns(["euler/with-attitude", "kirchhoff/constant-loads"], 2))
-def test_explain_shows_all_but_the_cost_of_a_run(scene: str, tmp_path: Path) -> None:
-    """Equations, orbit, truth and bounds are those of the exact motion, and a warning names the mend."""
-    (status, out, err), (_, text, _) = commands(
-        tmp_path, ["explain", scene, "--json"], ["explain", scene]
-    )
-    assert status == 0, err
-    document = json.loads(out)
-    (warning,) = document["warnings"]
-    assert warning.startswith(f"expected heyoka, got no such package: {INSTALL}; the gates are")
-    with_heyoka = json.loads(json.dumps(taylor_verify.explain(scene)))
-    same = {"equations", "parameters", "units", "regime", "route", "truth_digits", "orbit"}
-    assert {name: document[name] for name in same} == {name: with_heyoka[name] for name in same}
-    assert (document["cost"]["steps"], document["cost"]["products"] > 0) == (None, True)
-    gates = {gate["quantity"]: gate for gate in document["gates"]}
-    assert set(gates) == {gate["quantity"] for gate in with_heyoka["gates"]}
-    for gate in gates.values():
-        assert gate["verdict"] == "pass"
-        # A row that is right is a rounding off, and a rounding is part of every bound.
-        assert 0 <= gate["max"] <= gate["attainable"]
-        assert gate["bound"] == pytest.approx(10 * gate["attainable"])
-    # The warning stands in the text too, and no cost of a run.
-    assert INSTALL in " ".join(text.split())
-    assert "steps of order" not in text
 
 
 def test_no_library_of_a_solver_is_imported(tmp_path: Path) -> None:

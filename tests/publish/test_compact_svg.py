@@ -79,12 +79,6 @@ def test_every_mark_is_there_with_its_style_and_words(drawn: str) -> None:
         assert all(abs(a - b) <= HUNDREDTH for a, b in pairs)
 
 
-def test_the_font_of_all_words_stands_once(drawn: str) -> None:
-    """The family that every text of the drawing had is that of all texts."""
-    families = set(re.findall(r"font-family: ([^;\"]*)", drawn))
-    assert re.findall(r"font-family: ([^}]*)", compact(drawn)) == [*families]
-
-
 def test_it_is_two_thirds_at_most_and_stays_as_it_is(drawn: str) -> None:
     """Made compact twice it is the same, and each version is smaller than the one before."""
     once = compact(drawn)

@@ -91,13 +91,3 @@ def acceleration(inertia: Matrix, omega: Vector) -> Vector:
     """I^-1 (I omega x omega)."""
     momentum = tensors.apply(inertia, omega)
     return tensors.apply(tensors.inverse(inertia), tensors.cross(momentum, omega))
-
-
-def test_the_heading_of_the_vehicle_is_what_its_comment_says() -> None:
-    """(4 + 2k) is a turn about axis 3 with cosine 0.6 and sine 0.8: 53 degrees."""
-    q = load("kirchhoff/auv-turn").initial.attitude
-    assert rotation_matrix(q) == (
-        (Fraction(3, 5), Fraction(-4, 5), 0),
-        (Fraction(4, 5), Fraction(3, 5), 0),
-        (0, 0, 1),
-    )

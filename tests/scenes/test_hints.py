@@ -7,7 +7,6 @@ import re
 import pytest
 
 from taylor_verify.records.faults import Refused
-from taylor_verify.scenes.reading.hints import hints
 from taylor_verify.scenes.reading.reader import read
 
 BODIES = {
@@ -17,32 +16,6 @@ BODIES = {
 STARTS = {
     "euler": "omega = [1, 2, 3]",
     "kirchhoff": "linear_impulse = [1, 2, 3]\nangular_impulse = [1, 2, 3]",
-}
-LOADS = ("define", "space", "tables")
-# The keys that a scene of each model may have, so that none of them is hinted at.
-KNOWN = {
-    ("body", "euler"): {"inertia", "moment", "weight", "buoyancy", "rotor", "damping"},
-    ("body", "kirchhoff"): {
-        *("clebsch", "energy", "ellipsoid", "mass_matrix", "mass", "force", "couple"),
-        *("weight", "buoyancy", "current", "damping"),
-    },
-    ("initial", "euler"): {"omega", "attitude"},
-    ("initial", "kirchhoff"): {
-        *("linear_impulse", "angular_impulse", "linear_velocity", "angular_velocity"),
-        *("attitude", "centre"),
-    },
-    ("time", ""): {"start", "end", "samples", "at"},
-    ("", ""): {
-        "title",
-        "model",
-        "source",
-        "track",
-        "body",
-        "initial",
-        "time",
-        "manufactured",
-        *LOADS,
-    },
 }
 
 
@@ -118,15 +91,6 @@ def test_a_key_that_people_try_is_answered(model: str, part: str, key: str, frag
 def test_a_key_that_nobody_thought_of_is_answered_with_the_nearest() -> None:
     """Without a sentence of its own a key gets the known one most like it."""
     assert "did you mean `moment`?" in refusal("euler", "body", "momant")
-
-
-@pytest.mark.parametrize(("part", "model"), KNOWN)
-def test_no_sentence_is_for_a_key_that_is_read(part: str, model: str) -> None:
-    """A sentence for a known key would never be shown; a key in capitals would never be met."""
-    keys = hints(part, model)
-    assert keys
-    assert not KNOWN[part, model].intersection(keys)
-    assert all(key == key.lower() for key in keys)
 
 
 WRITTEN = [

@@ -88,15 +88,6 @@ def test_the_matrix_is_inverted_and_the_impulses_formed_exactly(
     assert back == (velocity, turning)
 
 
-def test_a_mass_matrix_is_the_body_that_its_inverse_is() -> None:
-    """The inertia of the REMUS, read as a mass matrix, is the body that is shipped as an energy."""
-    shipped = load("kirchhoff/remus-100")
-    start = "linear_velocity = [1.5, 0.1, -0.2]\nangular_velocity = [0.5, 0.3, 0.2]"
-    scene = vehicle(written(remus_inertia()), start)
-    assert scene.body == shipped.body
-    assert impulses(scene) == impulses(shipped)
-
-
 @pytest.mark.parametrize("form", [CLEBSCH, ELLIPSOID, written(remus_inertia())])
 def test_velocities_start_a_body_of_every_form(form: str) -> None:
     """U = A x + B y and Omega = B^T x + C y of the impulses formed are the velocities written."""

@@ -240,32 +240,6 @@ def test_the_energy_of_a_vehicle_is_the_inverse_of_its_inertia(
     assert tensors.apply(inertia, tuple(map(Fraction, velocities.split()))) == scene.initial.moving
 
 
-# The upper triangle of the inverse inertia in Lauvdal's npsauv.m, as printed.
-PRINTED_INVERSE = """
-1.662e-4 1.846e-10 1.303e-7 3.726e-9 -1.132e-6 7.320e-10
-         1.052e-4 3.843e-10 9.638e-6 -3.340e-9 2.368e-6
-                  4.315e-5 7.757e-9 -2.357e-6 1.524e-9
-                           2.431e-4 -6.742e-8 -7.740e-7
-                                    2.049e-5 -1.324e-8
-                                             4.838e-5
-"""
-
-
-def test_the_energy_of_the_swimmer_delivery_vehicle_is_the_printed_inverse() -> None:
-    """Every coefficient is the one in the transcription, to half a unit of its fourth digit: mass,
-    sign of the products of inertia, offset of the centre of mass and powers of the length are right.
-    """
-    body = load("kirchhoff/swimmer-vehicle").body
-    assert isinstance(body, ImmersedBody)
-    printed = iter(PRINTED_INVERSE.split())
-    for i in range(6):
-        for j in range(i, 6):
-            text = next(printed)
-            half_unit = Fraction(10) ** int(text.split("e")[1]) / 2000
-            assert abs(body.energy_matrix[i][j] - Fraction(text)) <= half_unit
-    assert next(printed, None) is None
-
-
 # The shipped scenes
 
 
@@ -387,13 +361,6 @@ def test_every_motion_is_shipped_with_its_path(word: str) -> None:
     """Some scene of each regime tracks attitude and centre."""
     tracks = [load(f"kirchhoff/{name}").track for name in MOTIONS[word]]
     assert {"attitude", "centre"} in tracks
-
-
-def test_no_word_for_a_motion_is_without_a_scene() -> None:
-    """The words of the table are those that the docstring of ``regime`` explains."""
-    lines = (regime.__doc__ or "").splitlines()
-    heads = [line.split(":")[0] for line in lines if line.strip().startswith("- ")]
-    assert {word for head in heads for word in head.strip("- ").split(", ")} == set(MOTIONS)
 
 
 def clebsch(scene: Scene) -> Clebsch:

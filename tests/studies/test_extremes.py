@@ -149,29 +149,6 @@ def test_the_energy_is_nearly_singular(name: str) -> None:
 # The truth, by two routes and by its own scaling
 
 
-# Left out: long or steep ones, since the recursion takes a step for every radian, and those that are
-# held to their own scaling below.
-RECURSION = [
-    name
-    for name in NAMES
-    if not re.search(
-        r"million|many|1e-40|1e-?150|subnormal|ratio-1e12|modulus-1e-[23]0|load|moment", name
-    )
-    and solution(load(name)).route == "arb"
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", RECURSION)
-def test_the_closed_form_agrees_with_the_recursion(name: str) -> None:
-    """At the end of the run both routes have the same vectors, matrices and centre to 20 digits."""
-    scene = load(name)
-    closed, stepped = at_end(scene), at_end(scene, "taylor")
-    with mp.workdps(_DIGITS + 10):
-        for quantity, value in closed.items():
-            assert distance(value, stepped[quantity]) <= 4 * mpf(10) ** -_DIGITS
-
-
 SCALED = [
     ("euler-omega-1e-150", Fraction(1, 10**150)),
     ("euler-omega-1e150", Fraction(10**150)),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 from builders.studies.hard import searched_family, verdict
-from hypothesis import HealthCheck, example, given, settings, target
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from taylor_verify.records.quantities import GATE_FACTOR
@@ -21,20 +21,6 @@ from taylor_verify_reports.studies.hard.search import SEARCHED, Candidate, searc
 from taylor_verify_reports.studies.study import NotMeasured
 
 STORED = library.names(library.WORST)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SEARCHED)
-@given(st.data())
-@settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
-def test_searched_for_the_worst_the_sound_driver_passes(name: str, data: st.DataObject) -> None:
-    """Led by error over attainable, a search finds no scene at which a gate fails."""
-    searched = family(name)
-    cube = st.lists(st.floats(0, 1), min_size=searched.free, max_size=searched.free)
-    (candidate,) = hunt.candidates_at(searched, [data.draw(cube)])
-    if candidate is not None:
-        target(candidate.ratio)
-        assert candidate.verdict.verdict is Status.PASS
 
 
 def test_a_searched_family_is_judged() -> None:

@@ -26,7 +26,6 @@ from taylor_verify.scenes.reading.reader import load
 from taylor_verify_reports.studies.portraits.latex_equations import equations
 from taylor_verify_reports.studies.portraits.stored_portraits import PORTRAITS
 
-ROOT = Path(__file__).resolve().parents[2]
 # Portraits of all scenes take most of a minute.
 pytestmark = pytest.mark.slow
 
@@ -67,16 +66,6 @@ def test_a_portrait_is_the_same_when_made_again(scene: str) -> None:
     assert again == before
 
 
-def test_the_comment_and_the_text_are_those_of_the_file() -> None:
-    """`toml` is the scene file to the letter, and `why` all that it says about itself."""
-    for name in SCENES:
-        portrait = stored(name)
-        lines = [line for line in portrait["toml"].splitlines() if line.startswith("#")]
-        assert portrait["toml"] == (ROOT / "cases" / f"{name}.toml").read_text(encoding="utf-8")
-        assert [f"# {line}".rstrip() for line in portrait["why"]] == lines
-        assert portrait["why"]
-
-
 # The motion
 
 
@@ -94,23 +83,6 @@ def test_the_course_is_the_motion_at_the_times_printed(scene: str) -> None:
             exact = [float(entry) for entry in value.flat]
             assert max(map(abs, exact)) < 10
             assert np.abs(np.array(course[name][k]) - exact).max() <= 1.01 * HALF
-
-
-def test_the_course_has_the_whole_motion() -> None:
-    """Each quantity has a row for each time, an attitude its nine numbers, which are a rotation."""
-    sizes = {"omega": 3, "linear_impulse": 3, "angular_impulse": 3, "attitude": 9, "centre": 3}
-    of_model = {"euler": {"omega"}, "kirchhoff": {"linear_impulse", "angular_impulse", "centre"}}
-    for name in SCENES:
-        course = dict(stored(name)["course"])
-        times = course.pop("t")
-        assert course.keys() == of_model[load(name).model] | {"attitude"}
-        for quantity, rows in course.items():
-            assert {len(row) for row in rows} == {sizes[quantity]}
-            assert len(rows) == len(times)
-        R = np.array(course["attitude"]).reshape(-1, 3, 3)
-        gram = np.einsum("nij,nik->njk", R, R)
-        assert np.abs(gram - np.eye(3)).max() <= 20 * HALF
-        assert (np.linalg.det(R) > 0).all()
 
 
 # What is drawn besides
@@ -149,20 +121,6 @@ def test_the_equations_name_what_acts_and_what_is_tracked() -> None:
 
 
 # The files
-
-
-def test_portraits_of_scenes_that_are_gone_are_removed(tmp_path: Path) -> None:
-    """A second set takes the place of the first; a file that names no maker of ours stays."""
-    document = portrait_without_run(FRESH[0])
-    removed = {**document, "scene": "euler/gone"}
-    mine = tmp_path / PORTRAITS.folder / "mine.json"
-    first = PORTRAITS.write(tmp_path, [document, removed])
-    mine.write_text("{}", encoding="utf-8")
-    contents = {file: file.read_bytes() for file in first}
-    second = PORTRAITS.write(tmp_path, [document])
-    assert {file.name for file in second[0].parent.iterdir()} == {second[0].name, "mine.json"}
-    assert contents[second[0]] == second[0].read_bytes()
-    assert PORTRAITS.find(tmp_path, "euler/gone") is None
 
 
 def test_the_command_writes_one_file_a_scene(

@@ -22,7 +22,6 @@ from builders.verdicts import (
     PROVENANCE,
     RECORD,
     STOPPED,
-    UNIT,
     VERSIONS,
     passed,
     unscored,
@@ -267,43 +266,6 @@ def front_page(report: Path) -> str:
     return (report / "README.md").read_text(encoding="utf-8")
 
 
-def test_every_link_of_the_front_page_leads_somewhere(report: Path) -> None:
-    """Each file and folder that it links to is there; what is not there is not linked to."""
-    links = re.findall(r"\]\((?!https?:)([^)#]+)", front_page(report))
-    assert "tables/accuracy.md" in links
-    assert [link for link in links if not (report / link).exists()] == []
-    assert "reference" not in links
-
-
-def test_the_headline_numbers_are_those_of_the_verdicts(tmp_path: Path) -> None:
-    """Scenes, runs and verdicts are counted; a rung's line has its median and its largest error."""
-    u = UNIT["f64"]
-    sizes = {"a": 2, "b": 3, "c": 40}
-    write(
-        tmp_path,
-        [
-            *(passed(f"euler/{n}", "f64", "omega", max=k * u, ratio=k) for n, k in sizes.items()),
-            passed("euler/a", "f64", "T", **dict.fromkeys(("max", "mean", "final", "ratio"), 0.0)),
-        ],
-        [],
-    )
-    publish(tmp_path)
-    text = front_page(tmp_path)
-    assert "**3** scenes, **3** runs, **4** verdicts." in text
-    assert "below **2.50** of what is attainable; 1 conserved quantities are kept exactly" in text
-    (line,) = (line for line in text.splitlines() if line.startswith("| f64"))
-    assert cells(line) == [
-        "f64",
-        "1.11e-16",
-        "3",
-        "3",
-        "3.00",
-        "40.0",
-        "40.0",
-        "`omega` of `euler/c`",
-    ]
-
-
 def test_the_front_page_hides_no_failure(report: Path) -> None:
     """A scene that did not pass has its verdict in its line, and its rung does not count as all."""
     by_scene = {cells(line)[0]: cells(line) for line in front_page(report).splitlines()}
@@ -370,23 +332,6 @@ def test_a_run_that_never_began_is_shown(report: Path, scene: str, rung: str, wo
     assert cells(line)[-1] == f"the reason why {scene} has no number"
     text = (report / "tables" / "accuracy.md").read_text(encoding="utf-8")
     assert f"- `{scene}`, {rung}: **{word}**, the reason why {scene} has no number" in text
-
-
-def test_the_numbers_of_a_cell_are_the_verdicts(report: Path) -> None:
-    """Errors appear in their unit and in u, with the time, the ratio, the bound and the steps."""
-    (line,) = lines(report, "accuracy.md", "euler/generic", "f64")
-    u = 2.0**-53
-    assert cells(line)[3:] == [
-        figure(3 * u),
-        figure(2 * u),
-        "7",
-        "3.00",
-        "2.00",
-        "0.500",
-        figure(60 * u),
-        "41",
-        "pass",
-    ]
 
 
 def test_the_sheet_holds_a_row_for_every_verdict(report: Path) -> None:

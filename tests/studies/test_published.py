@@ -11,7 +11,6 @@ import re
 import shutil
 from collections.abc import Iterator
 from fnmatch import fnmatch
-from fractions import Fraction
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -19,7 +18,6 @@ from typing import Any
 
 import pytest
 from builders import reports
-from builders.pages import results
 from builders.schema import violations
 from builders.verdicts import row as baseline_row
 
@@ -40,7 +38,7 @@ from taylor_verify_reports.studies import published_report as report
 from taylor_verify_reports.studies.bulk import patterns
 from taylor_verify_reports.studies.controls import controls_page as controls
 from taylor_verify_reports.studies.controls.sight import CONTROLS
-from taylor_verify_reports.studies.enclosure_width import ENCLOSURE, SCENES, widths
+from taylor_verify_reports.studies.enclosure_width import ENCLOSURE, SCENES
 from taylor_verify_reports.studies.engines import document as board
 from taylor_verify_reports.studies.engines.entry import BOARDS
 from taylor_verify_reports.studies.growth import growth_page as growth
@@ -82,12 +80,6 @@ def is_bulk(path: str) -> bool:
 @cache
 def verdicts() -> tuple[Verdict, ...]:
     return store.load(REPORTS)
-
-
-@cache
-def published_rows() -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = json.loads(text_of("data/verdicts.json"))["verdicts"]
-    return rows
 
 
 def text_of(path: str) -> str:
@@ -146,7 +138,7 @@ def dead_links(page: Path) -> Iterator[str]:
 
 
 def test_no_other_test_reads_what_is_published() -> None:
-    """Tests of code make their data; vectors, words, and scripts about engines, are read where they lie.
+    """Tests of code make their data; vectors, and scripts about engines, are read where they lie.
 
     Those in a browser look at the pages that `make test-site` has made, in a folder of their own.
     """
@@ -157,7 +149,7 @@ def test_no_other_test_reads_what_is_published() -> None:
         and re.search(r"""(ROOT|\]) / "reports["/]""", file.read_text(encoding="utf-8"))
     }
     board = {"test_published_board.py", "test_engine_findings.py", "test_page.py"}
-    assert reading == {"test_published.py", "test_vectors.py", "test_words.py"} | board
+    assert reading == {"test_published.py", "test_vectors.py"} | board
 
 
 # Current: what is published is what the code makes of the published data.
@@ -289,14 +281,6 @@ def test_a_picture_of_each_kind_is_drawn_of_the_published_data() -> None:
         assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
 
 
-@pytest.mark.slow
-def test_pictures_are_drawn_of_the_published_data() -> None:
-    """Each picture of a measurement is the published file."""
-    assert len(drawable()) > 8
-    for picture in drawable():
-        assert content(picture, "svg") == published_as(picture).read_bytes(), picture.stem
-
-
 def test_every_published_picture_can_be_drawn_again() -> None:
     """`publish --paper` draws all of them, so that `make release-data` has a PDF of each."""
     drawn = {picture.stem for picture in drawable()}
@@ -311,19 +295,6 @@ def test_the_docs_have_the_short_table_of_the_controls() -> None:
     page = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
     shown = page[page.index(controls.BEGIN) : page.index(controls.END) + len(controls.END)]
     assert shown == controls.short(CONTROLS.load(REPORTS))
-
-
-@pytest.mark.parametrize("row", results(), ids=lambda row: " ".join(row[:2]))
-def test_the_table_of_results_is_that_of_the_verdicts(row: list[str]) -> None:
-    """Each cell of docs/results.md is max/u (ratio) of a published verdict, to the digits printed."""
-    scene, quantity, *cells = row
-    expected = [
-        f"{v['max'] / v['roundoff']:.3g} u ({v['ratio']:.2g})"
-        for rung in LADDER
-        for v in published_rows()
-        if (f"`{v['scene']}`", v["quantity"], v["rung"]) == (scene, quantity, rung)
-    ]
-    assert cells == expected
 
 
 # The published numbers.
@@ -379,19 +350,6 @@ def test_published_widths_are_above_the_true_errors() -> None:
     study = ENCLOSURE.load(REPORTS)
     assert {row.scene for row in study.rows} == set(SCENES)
     assert all(row.error <= row.width for row in study.rows)
-
-
-@pytest.mark.slow
-def test_published_widths_are_remade() -> None:
-    """The first rows of each motion are those that its scene gives today.
-
-    The steps that lead to them do not know yet where the run ends.
-    """
-    study = ENCLOSURE.load(REPORTS)
-    for name in SCENES:
-        rows = [row for row in study.rows if row.scene == name][:40]
-        times = [Fraction(row.t) for row in rows]
-        assert widths(load(name), times, study.bits)[:10] == rows[:10]
 
 
 # What is made of all of them.

@@ -3,32 +3,15 @@
 from __future__ import annotations
 
 import csv
-import io
 import re
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
 from builders.studies.tradeoff import NUMBERS_MADE, POINTS, TIMES_MADE
 
 from taylor_verify.words.cells import NOTHING
-from taylor_verify_reports.studies.tradeoff.tradeoff_page import STUDY, page
-from taylor_verify_reports.studies.tradeoff.trades import (
-    Trades,
-    write,
-)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("published")
-    write(place, NUMBERS_MADE, TIMES_MADE)
-    STUDY.publish(place)
-    return place
-
-
-def text_of(folder: Path) -> str:
-    return (folder / "tables" / "tradeoff.md").read_text(encoding="utf-8")
+from taylor_verify_reports.studies.tradeoff.tradeoff_page import page, sheet
+from taylor_verify_reports.studies.tradeoff.trades import Trades
 
 
 def section(text: str, heading: str) -> str:
@@ -39,19 +22,6 @@ def line(text: str, *words: str) -> list[str]:
     """The cells of the only line that has all these words."""
     (matching,) = [row for row in text.splitlines() if all(word in row for word in words)]
     return [cell.strip() for cell in re.split(r"(?<!\\)\|", matching)[1:-1]]
-
-
-def test_the_cheapest_setting_for_so_many_digits(folder: Path) -> None:
-    """The cheapest setting is the fastest that leaves so many digits; to ask for them is not enough."""
-    table = section(text_of(folder), "What so many digits cost")
-    _, _, six, nine, twelve = line(table, "SciPy DOP853")
-    # The one at 1e-6 leaves five digits, so the one at 1e-9 stands here.
-    assert six == "**12.0** [10.8, 14.4] @ 1e-09"
-    assert (nine, twelve) == ("not reached", "not reached")
-    _, _, six, nine, twelve = line(table, "| taylor ")
-    assert six.startswith("**0.80")
-    assert nine == twelve
-    assert nine.startswith("**1.00** ")
 
 
 def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
@@ -80,9 +50,9 @@ def test_a_peer_that_is_ahead_is_named(tmp_path: Path) -> None:
     assert twelve[2:] == ["taylor, alone", "**1.00**", "0.500", "not reached"]
 
 
-def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
+def test_a_failure_is_listed_and_nowhere_else(tmp_path: Path) -> None:
     """A false success is no digit and no cell of a cost; its reason cannot break the table."""
-    text = text_of(folder)
+    text = page(Trades(NUMBERS_MADE, TIMES_MADE), tmp_path)
     listed = section(text, "What failed, and what was not run")
     assert "false success" in line(listed, "RK45?rtol=1e-3")
     assert r"size \| of the motion" in listed
@@ -91,10 +61,9 @@ def test_a_failure_is_listed_and_nowhere_else(folder: Path) -> None:
     assert "false success" in line(section(text, "Asked for and achieved"), "SciPy RK45")
 
 
-def test_the_sheet_has_a_row_for_every_setting(folder: Path) -> None:
+def test_the_sheet_has_a_row_for_every_setting() -> None:
     """The sheet has every setting with every digit, the failed ones included."""
-    text = (folder / "tables" / "tradeoff.csv").read_text(encoding="utf-8")
-    rows = list(csv.DictReader(io.StringIO(text)))
+    rows = list(csv.DictReader(sheet(Trades(NUMBERS_MADE, TIMES_MADE)).splitlines()))
     assert [row["solver"] for row in rows] == [p.solver for p in POINTS]
     assert rows[1]["ratio"] == "1.0"
     assert rows[6]["standing"] == "false success"
