@@ -11,6 +11,7 @@ from builders.caused_rows import RIGID, Array, Law, rigid, titles
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
 from taylor_verify.exact.route import solution
+from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.words.causes import steps_in_words
@@ -142,16 +143,27 @@ def test_steps_between_uneven_rows_have_no_one_length(
     assert steps_in_words(spans, count) == words
 
 
-def test_of_rows_far_beyond_a_scene_the_near_ones_are_judged_first(tmp_path: Path) -> None:
-    """A clock in frames goes 25 spans: its first rows show the factor, and a note says which they are."""
-    scene = "euler/constant-moment"
+def counted(scene: str, units: float, file: Path) -> FileJudgement:
+    """The judgement of the right omega at other times than it has."""
     times = [Fraction(k, 5) for k in range(61)]
     omega = solution(load(scene)).motion(times, 20)["omega"].astype(float)
     columns = {
-        "t": [25.0 * float(t) for t in times],
+        "t": [units * float(t) for t in times],
         **dict(zip(VECTORS["omega"], omega.T.tolist(), strict=True)),
     }
-    judged = file_judgement(write_csv(tmp_path / "mine.csv", columns), scene)
+    return file_judgement(write_csv(file, columns), scene)
+
+
+def test_of_rows_far_beyond_a_scene_the_near_ones_are_judged_first(tmp_path: Path) -> None:
+    """A clock in frames goes 25 spans: its first rows show the factor, and a note says which they are."""
+    judged = counted("euler/constant-moment", 25, tmp_path / "mine.csv")
     assert [verdict.verdict for verdict in judged.verdicts].count(Status.FAIL) > 1
     assert any("clock = 0.04" in cause.sentence for cause in judged.causes)
     assert any("are far beyond the scene" in note for note in judged.notes)
+
+
+def test_milliseconds_are_named_where_damping_leaves_no_floor(tmp_path: Path) -> None:
+    """So late nothing is known of an error of the damped body, but the unit of its times is."""
+    judged = counted("euler/damped", 1000, tmp_path / "mine.csv")
+    assert [verdict.verdict for verdict in judged.verdicts] == [Status.FAIL]
+    assert "t counts thousandths" in judged.conventions[0].sentence

@@ -424,7 +424,7 @@ def test_far_beyond_a_scene_without_closed_form_is_undecided(tmp_path: Path) -> 
     file = write_csv(tmp_path / "mine.csv", columns, str)
     (verdict,) = file_judgement(file, "euler/constant-moment").verdicts
     assert verdict.verdict is Status.UNDECIDED
-    assert "no closed form" in verdict.because
+    assert "100 times as far as the scene" in verdict.because
 
 
 def test_columns_of_the_other_model_are_refused(tmp_path: Path) -> None:

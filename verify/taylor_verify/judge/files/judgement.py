@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.exact.conditioning.condition import MOST_DECAY
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, Explained, causes_of_file
@@ -57,10 +58,7 @@ from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
-FAR_ROWS: Final = (
-    "the rows after t = {:.6g} are not judged: they are far beyond the scene, which has no closed form, "
-    "and the rows before are wrong already"
-)
+FAR_ROWS: Final = "the rows after t = {:.6g} are far beyond the scene; they are not judged, as those before are wrong"
 NO_CONVENTIONS: Final = (
     "no convention and no shift of time is corrected under the loads of this scene, which may read the "
     "time and the axes; causes are looked for"
@@ -68,7 +66,7 @@ NO_CONVENTIONS: Final = (
 _NO_JUDGEMENT: Final = (NotRepresentable, Unsettled)
 # So few rows are not judged in place of all.
 _FEWEST: Final = 8
-# For a file the Taylor route goes at most this many times the scene's span.
+# A file goes at most this many times the scene's span where it is dear, or no floor is known.
 _FURTHEST: Final = 100
 
 
@@ -363,13 +361,13 @@ def _gravity(verdict: Verdict) -> tuple[int, float]:
 def _judged_within_reach(
     examined: _Examined, tolerances: Tolerances
 ) -> tuple[Judgement, _Examined]:
-    """Judge the rows, those near the scene's end first where it has no closed form and others are far."""
+    """Judge the rows, those near the scene's end first where others are far."""
     answer, world = examined.rows, examined.known.world
     is_far = _is_far(answer)
     if is_far and world.scale != 1:
         why = (
-            f"{world.words}; as it stands the file asks for times far beyond the scene, "
-            "which has no closed form, and they are not computed: the rows near the start are wrong already"
+            f"{world.words}; as it stands the file asks for times far beyond the scene, and they are not "
+            "computed: the rows near the start are wrong already"
         )
         return _alone(answer, Status.FAIL, why, Cause.TOO_FAR), examined
     if is_far and len((near := examined.near).rows.times) >= _FEWEST:
@@ -378,19 +376,20 @@ def _judged_within_reach(
             return judged, near
     if _is_far(answer, _FURTHEST):
         why = (
-            f"the file goes more than {_FURTHEST} times as far as the scene, which has no closed "
-            "form: its exact motion is not computed up to there"
+            f"the file goes more than {_FURTHEST} times as far as the scene: its exact motion is not "
+            "computed up to there"
         )
         return _alone(answer, Status.UNDECIDED, why, Cause.TOO_FAR), examined
     return _judged(answer, tolerances), examined
 
 
 def _is_far(answer: FileRows, spans: int = MOST_SPANS) -> bool:
-    """Return True if the Taylor route would have to go more than ``spans`` spans to reach these rows."""
-    clock, times = answer.scene.clock, answer.times
-    span = max(abs(t) for t in clock.elapsed)
-    reach = max(abs(t - clock.start) for t in (times[0], times[-1]))
-    return reach > spans * span and solution(answer.scene).route == "taylor"
+    """Return True for rows more than ``spans`` spans away that the Taylor route, or no floor, reaches."""
+    scene, times = answer.scene, answer.times
+    reach = max(abs(t - scene.clock.start) for t in (times[0], times[-1]))
+    if reach <= spans * max(abs(t) for t in scene.clock.elapsed):
+        return False
+    return abs(scene.body.damping) * reach > MOST_DECAY or solution(scene).route == "taylor"
 
 
 def _alone(answer: FileRows, status: Status, why: str, cause: Cause) -> Judgement:
