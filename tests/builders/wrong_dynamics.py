@@ -13,7 +13,7 @@ from builders import integrators
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.float_answer import Motion, steady_signs
-from taylor_verify.judge.causes.likely import explained
+from taylor_verify.judge.causes.likely import Explained, explained
 from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
@@ -169,12 +169,26 @@ def causes(scene: Scene, columns: Columns) -> dict[str, str]:
     v, q = (np.array([columns[name] for name in names]).T for names in (vectors, QUATERNION))
     given = adopt(scene, rung("f64"), [Fraction(t) for t in columns["t"]]).given
     noise = (2.0**-53 * np.max(np.abs(v), axis=0), 2.0**-53, 0.0)
-    failures = [failure(scene, name) for name in ("omega", "impulse", "attitude")]
+    answer = _explained(given, Motion(v, steady_signs(q)), noise, len(v[0]) == 6)
+    return {} if answer is None else {cause.name: cause.sentence for cause in answer.causes}
+
+
+def explained_motion(scene: Scene, file: Motion, noise: float = 0.5e-10) -> Explained:
+    """What is found of rows at the times of a scene, all of which failed, with so much noise."""
+    given = adopt(scene, rung("f64"), list(scene.clock.instants)).given
+    of_columns = np.full(file.v.shape[1], noise)
+    answer = _explained(given, file, (of_columns, 0.0 if file.q is None else noise, 0.0))
+    assert answer is not None
+    return answer
+
+
+def _explained(
+    given: Scene, file: Motion, noise: Any, has_momenta: bool = False
+) -> Explained | None:
+    failures = [failure(given, name) for name in ("omega", "impulse", "attitude")]
     with np.errstate(all="ignore"):
-        answer = material(given, Motion(v, steady_signs(q)), len(v[0]) == 6, noise, failures)
-        if answer is None:
-            return {}
-        return {cause.name: cause.sentence for cause in explained(answer).causes}
+        answer = material(given, file, has_momenta, noise, failures)
+        return None if answer is None else explained(answer)
 
 
 def failure(scene: Scene, quantity: str) -> Verdict:

@@ -472,21 +472,6 @@ def test_command_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     assert document["file"]["columns"][:4] == ["t", *OMEGA]
 
 
-def test_command_reports_faults_of_scene_and_file(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Exit 2, every fault on stderr, nothing on stdout."""
-    scene = tmp_path / "scene.toml"
-    scene.write_text('title = "x"\nmodel = "newton"\n')
-    (tmp_path / "mine.csv").write_text("t,w1\n1,2\n0,2\n")
-    assert main(["check", str(tmp_path / "mine.csv"), "--scene", str(scene)]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert "got no w2 w3" in err
-    assert "newton" in err
-    assert "Traceback" not in err
-
-
 def test_scene_that_the_rung_cannot_hold_is_refused(tmp_path: Path) -> None:
     """A body whose numbers overflow float32 is a refused row, as in a run."""
     scene = tmp_path / "huge.toml"

@@ -24,12 +24,9 @@ from taylor_verify import check
 from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR
 from taylor_verify.judge.files.judgement import NO_CONVENTIONS
 from taylor_verify.judge.load_notes import NOTHING_CONSERVED
-from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
 from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.scene import Scene
-from taylor_verify.tradeoff.setting import setting
-from taylor_verify.tradeoff.trade_off import trade_off
 
 GROUPS = {"euler": ("w",), "kirchhoff": ("x", "y")}
 ROWS = 6
@@ -211,15 +208,6 @@ def test_a_wrong_load_fails_the_state_and_the_gate_that_names_it(twin: str, tmp_
     assert named <= failed
     assert "H_along" not in failed
     assert causes == CAUSES.get(twin, [])
-
-
-def test_work_and_precision_are_measured_under_loads() -> None:
-    """A finer tolerance has a smaller error, and what the loads conserve has a drift as small."""
-    settings = [setting(f"scipy:DOP853?rtol={t}&atol={t}", rung("f64")) for t in ("1e-5", "1e-9")]
-    coarse, fine = trade_off(TOP, settings, repeats=1).points
-    assert 0 < fine.error < coarse.error / 100
-    assert fine.accuracy.drift is not None
-    assert fine.accuracy.drift < 100 * fine.error
 
 
 def test_work_and_impulse_without_arcs_are_those_of_the_exact_motion(tmp_path: Path) -> None:

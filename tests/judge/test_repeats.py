@@ -14,7 +14,7 @@ from builders.turns import by_turns
 
 from taylor_verify import check
 from taylor_verify.exact.conditioning.condition import path
-from taylor_verify.judge.floor.repeats import _squares, with_repeats
+from taylor_verify.judge.floor.repeats import with_repeats
 from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import CONSERVED_QUANTITIES
 from taylor_verify.records.status import Status
@@ -51,26 +51,6 @@ def repeated(scene: Scene, steps: int, bits: int) -> Rows:
     steps_at[0] = 1.0
     single = np.ones((len(times), 3 * len(orbit.blocks)))
     return with_repeats(single, orbit, steps_at, steps, bits)
-
-
-# The number of squares.
-
-
-def total(change: float, steps: int) -> float:
-    """The squares that all steps add together, where the increment changes by so many units."""
-    steps_at = np.full(101, steps / 100)
-    steps_at[0] = 1.0
-    squares = _squares(np.full(101, change), steps_at)
-    return float(np.sum((steps_at * squares)[1:]))
-
-
-@pytest.mark.parametrize(
-    ("change", "alike"), [(0.0, 10**4), (1 / 20, 20), (1 / 5, 5), (1.0, 1), (1e3, 1)]
-)
-def test_steps_count_in_runs_of_those_that_add_the_same(change: float, alike: int) -> None:
-    """If the increment passes through a unit in m steps, n steps count as n/m runs of m^2; at most n^2."""
-    # The first run has fewer steps before it.
-    assert total(change, 10**4) == pytest.approx(10**4 * alike, rel=0.02)
 
 
 # Motions.

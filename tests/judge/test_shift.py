@@ -25,7 +25,6 @@ from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Solution
 from taylor_verify.judge.causes.quick_motion import QuickMotion
 from taylor_verify.judge.errors.shift import Shift, time_shifts
-from taylor_verify.judge.errors.shifted import Run
 from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import Problem, pose
@@ -346,16 +345,6 @@ def test_an_exactly_known_impulse_is_not_undecided_beside_an_inexact_attitude() 
     assert {v.quantity: v.verdict for v in verdicts}["impulse"] is Status.PASS
 
 
-@pytest.mark.parametrize("route", ["arb", "mpmath", "taylor"])
-def test_every_route_knows_the_width_of_each_quantity(route: str) -> None:
-    """The row's radius is the largest of them, and each is what its own quantity has."""
-    scene = load("euler/with-attitude")
-    motion = solution(scene, route).motion([Fraction(1), Fraction(7)], 20)
-    widths = [motion.radius_of(name) for name in ("omega", "attitude")]
-    assert all(max(pair) == r for *pair, r in zip(*widths, motion.radius, strict=True))
-    assert any(a != b for a, b in zip(*widths, strict=True))
-
-
 MILLI = Fraction(1, 1000)
 
 
@@ -404,26 +393,6 @@ def test_a_shift_is_exact_where_the_motion_was_searched_in_float64() -> None:
     assert shift.time_shift == pytest.approx(0.4, rel=1e-14)
     # The shift is a double, and 2/5 is none.
     assert shift.remains < 1e-15
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity"), [(NO_CLOSED_FORM, "impulse"), ("euler/generic", "omega")]
-)
-def test_where_the_motion_passes_too_far_no_exact_motion_is_asked(
-    name: str, quantity: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """States twice as large are near no point of the exact motion, and float64 tells that alone."""
-    asked_for, motion = list[Run](), Run.motion
-
-    def noted(run: Run, elapsed: Any, digits: int) -> Any:
-        asked_for.append(run)
-        return motion(run, elapsed, digits)
-
-    monkeypatch.setattr(Run, "motion", noted)
-    shift = of_all(name, Fraction(0), 2.0)[quantity]
-    assert shift is not None
-    assert shift.kind is Kind.NONE
-    assert not asked_for
 
 
 def test_where_float64_does_not_follow_the_enclosure_is_asked(

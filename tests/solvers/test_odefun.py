@@ -29,6 +29,7 @@ def short(scene: str, end: Fraction = Fraction(2)) -> Scene:
     [
         ("euler/with-attitude", "f64"),
         ("euler/constant-moment", "f64"),
+        ("euler/damped", "f64"),
         ("kirchhoff/whole-motion", "f64"),
         ("euler/generic", "mp120"),
     ],

@@ -47,27 +47,6 @@ SCENES = [
 # Their names.
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("outside:cvode-bdg", "did you mean cvode-bdf"),
-        ("outside:cvode-bdf?tol=1", "expected a setting"),
-        ("outside:cvode-bdf?rtol=0", "expected a positive number"),
-        ("outside:cvode-bdf?atol=small", "@ atol"),
-        (
-            "outside:cvode-bdf?version=latest",
-            "expected a version such as .*, got 'latest' @ version",
-        ),
-        ("outside:cvode-bdf?version=1.0 ; evil", "@ version"),
-        ("outside:cvode-bdf?version=", "@ version"),
-    ],
-)
-def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
-    """An engine that there is not, a tolerance and a version that are none, are wrong calls."""
-    with pytest.raises(ValueError, match=words):
-        solver_named(name)
-
-
 def test_a_version_replaces_the_pin_of_its_package() -> None:
     """The metadata differ in the version of the library alone, and without one not at all."""
     as_pinned = named("outside:diffrax-tsit5")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
-from taylor_verify.solvers.straight_line import _Code, straight_line
+from taylor_verify.solvers.straight_line import straight_line
 
 SCENES = (
     *("euler/full-tensor", "euler/with-attitude", "euler/constant-moment", "euler/spherical"),
@@ -49,14 +49,3 @@ def test_any_arithmetic_passes_through(scene: str) -> None:
     # A rate that is absent is the integer 0, which is a rational too.
     assert rates == exact
     assert all(isinstance(value, Fraction | int) for value in rates)
-
-
-@pytest.mark.parametrize("scene", SCENES)
-def test_no_operation_is_done_twice(scene: str) -> None:
-    """There are as many lines as the form has distinct operations."""
-    form = problem_of(scene).form
-    code = _Code()
-    for rate in form.symbolic():
-        code.word(rate)
-    assert len(code.lines) == sum(form.operations().values())
-    assert len({line.partition(" = ")[2] for line in code.lines}) == len(code.lines)
