@@ -20,8 +20,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -43,14 +42,11 @@ class Numbers:
         self.rotor = np.zeros(3)
         self.damping = float(body.damping)
         if isinstance(body, RigidBody):
-            assert isinstance(start, Spin)
             self.tensor = np.array(body.inertia, dtype=float)
             self.load = np.array(body.moment, dtype=float)
             self.state = np.array(start.omega, dtype=float)
             self.rotor = np.array(body.rotor, dtype=float)
         else:
-            assert isinstance(body, ImmersedBody)
-            assert isinstance(start, Impulse)
             self.tensor = np.array(body.energy_matrix, dtype=float)
             self.load = np.array([*body.force, *body.couple], dtype=float)
             self.state = np.array([*start.linear, *start.angular], dtype=float)
@@ -178,7 +174,6 @@ def explained_motion(scene: Scene, file: Motion, noise: float = 0.5e-10) -> Expl
     given = adopt(scene, rung("f64"), list(scene.clock.instants)).given
     of_columns = np.full(file.v.shape[1], noise)
     answer = _explained(given, file, (of_columns, 0.0 if file.q is None else noise, 0.0))
-    assert answer is not None
     return answer
 
 

@@ -417,8 +417,6 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
         ) as process:
-            assert process.stdout is not None
-            assert process.stderr is not None
             process.stdout.close()
             assert process.stderr.read() == b""
             assert process.wait(timeout=PATIENCE) == 0

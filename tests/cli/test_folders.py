@@ -66,7 +66,6 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path: Path) -> None:
     )
     command = [sys.executable, "-c", script, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as holder:
-        assert holder.stdout is not None
         holder.stdout.readline()
         with pytest.raises(Occupied, match=f"process {holder.pid} "), alone_in(tmp_path):
             pass

@@ -21,11 +21,9 @@ from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor import attainable, rounded_input
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.floor.loads import Along
-from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.rounded_input import InputRounding, input_rounding
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
-from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import power_of_two, rung
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -57,45 +55,6 @@ def scene(
 RIGID = scene(RigidBody(TENSOR), Spin(vector("0.3", 1, "0.2")), 4, 5, "attitude")
 LOADED = scene(SOLID, IMPULSE, 4, 5, "attitude", "centre")
 REVOLVED = scene(CLEBSCH, IMPULSE, 4, 5, "attitude", "centre")
-
-
-# The magnitude of terms.
-
-
-@pytest.mark.parametrize("start", [(0.25, 1.0, -0.5), (0.0, 0.0, 2.0), (-3.0, 0.125, 0.0)])
-def test_terms_of_a_full_tensor_are_added_up(start: tuple[float, ...]) -> None:
-    """S is the sum of |deviation_ij H_j H_k| over the terms of H x K H, written out by hand."""
-    asked = replace(RIGID, initial=Spin(tuple(Fraction(w) for w in start)), track=frozenset())
-    rounded = _rounded(asked, steps=4)
-    momentum = np.array(TENSOR, dtype=float) @ start
-    K = np.array(tensors.inverse(TENSOR), dtype=float)
-    terms = np.abs(K - K[2, 2] * np.eye(3)) @ np.abs(momentum)
-    H = np.abs(momentum)
-    S = np.array([H[j] * terms[k] + H[k] * terms[j] for j, k in ((1, 2), (2, 0), (0, 1))])
-    along = [np.linalg.norm(H), np.linalg.norm(S)]
-    # One length of a step for all components, and at most the span over the steps.
-    h = (rounded[0] - H) @ S / (S @ S)
-    assert 0 < h <= 1
-    assert np.abs(rounded[0] - H - h * S).max() <= 1e-12 * (along[0] + along[1])
-
-
-def _rounded(asked: Scene, steps: int) -> Array:
-    """r of every component in the scene's own units."""
-    orbit = path(asked)
-    units = [float(orbit.units[block]) for block in orbit.blocks for _ in range(3)]
-    return roundings(asked, orbit, 53, steps) * units
-
-
-def test_what_cancels_in_the_data_alone_is_known() -> None:
-    """In principal axes a rate is one product: beside an axis all that is small stays small."""
-    body = RigidBody(tensors.diagonal(vector(1, 2, 3)))
-    tiny = Fraction(1, 10**9)
-    asked = scene(body, Spin((tiny, Fraction(1), Fraction(0))), 10, 3)
-    rounded = _rounded(asked, steps=40)
-    # H1' = -H2 H3/6, H3' = -H1 H2/2 with steps of 1/4: never more than both components added up.
-    momenta = np.abs(solution(asked).motion(path(asked).elapsed, 20)["omega"].astype(float))
-    assert (rounded[:, [0, 2]] <= 3 * momenta[:, [0, 2]].sum(axis=1, keepdims=True)).all()
-    assert (rounded[:, 1] >= 1).all()
 
 
 # How errors add up.

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import RIGID, Array, Law, rigid, titles
-from builders.scenes import THREE_INSTANTS
+from builders.scenes import THREE_INSTANTS, text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, file_judgement, named, write_csv
 
 from taylor_verify.exact.route import solution
@@ -98,20 +98,9 @@ def test_on_a_line_every_velocity_is_that_of_another_time(
     assert titles(tmp_path, STRAIGHT, made) == words
 
 
-SWUNG = """
-title = "Spring of the heading"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [1, 1, 1]
-moment = ["0", "0", "-0.1*atan2(r21, r11)"]
-[initial]
-omega = [0, 0, 0]
-attitude = [0.4, 0, 0, 0.9]
-[time]
-end = 1
-samples = 11
-"""
+SPRING = {"inertia": [1, 1, 1], "moment": ["0", "0", "-0.1*atan2(r21, r11)"]}
+HEADING = {"omega": [0, 0, 0], "attitude": [0.4, 0, 0, 0.9]}
+SWUNG = text_of(SPRING, HEADING, 1, 11, "omega", "attitude")
 
 
 def heading(angles: Array) -> Array:

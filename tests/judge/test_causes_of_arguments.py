@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from builders.integrators import step
+from builders.scenes import text_of
 from builders.turns import by_turns
 from builders.wrong_dynamics import explained_motion
 
@@ -64,32 +65,15 @@ WHOLE = (
     .replace("0.1*u", "b*u")
     .replace("[initial]", '[define]\ns = "norm(u1, u2, u3)"\na = "0.3"\nb = "0.1"\n[initial]')
 )
-TOP = """
-title = "Heavy top"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [2, 2.5, 1.5]
-weight = { force = [0, 0, -3], at = [0.2, 0.1, 0.5] }
-[initial]
-omega = [0.5, 0.4, 2]
-attitude = [0.8, 0.4, 0.2, 0.4]
-[time]
-end = 4
-samples = 31
-"""
-TIMED = """
-title = "A moment by the clock, and one that damps"
-model = "euler"
-[body]
-inertia = [2.6, 3.4, 1.9]
-moment = ["0.3*sin(0.7*t)", "-0.15*w2", "0.12"]
-[initial]
-omega = [0.4, -0.3, 0.5]
-[time]
-end = 15
-samples = 61
-"""
+TOP = text_of(
+    {"inertia": [2, 2.5, 1.5], "weight": {"force": [0, 0, -3], "at": [0.2, 0.1, 0.5]}},
+    {"omega": [0.5, 0.4, 2], "attitude": [0.8, 0.4, 0.2, 0.4]},
+    *(4, 31, "omega", "attitude"),
+)
+BY_TIME = ["0.3*sin(0.7*t)", "-0.15*w2", "0.12"]
+TIMED = text_of(
+    {"inertia": [2.6, 3.4, 1.9], "moment": BY_TIME}, {"omega": [0.4, -0.3, 0.5]}, 15, 61
+)
 CONSTANT = TIMED.replace('"0.3*sin(0.7*t)", "-0.15*w2", "0.12"', '"0.3", "-0.1", "0.2"')
 
 
@@ -102,7 +86,6 @@ def of_motion(changed: str, text: str, clock: Fraction = Fraction(1)) -> Explain
     """What is found of the exact motion of a changed scene, printed in ten digits."""
     elapsed = [clock * t for t in scene(text).clock.elapsed]
     moved = ExactMotion(scene(changed), has_centre=False).at(elapsed, False)
-    assert moved.q is not None
     return explained_motion(scene(text), Motion(np.round(moved.v, 10), np.round(moved.q, 10)))
 
 

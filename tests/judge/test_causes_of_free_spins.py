@@ -11,6 +11,7 @@ import pytest
 from builders.caused_rows import RIGID, TENSOR, TIMES, Array, Law, Q, columns, rigid, rows, titles
 from builders.integrators import rk4, turned
 from builders.numbers import cross
+from builders.scenes import text_of
 from builders.trajectories import VECTORS, Columns
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned as rate_of_turn
@@ -141,19 +142,8 @@ def test_body_rates_taken_for_rates_of_angles_are_named(
 
 
 INERTIA = np.array([1.0, 2.2, 2.9])
-RACKET = """
-title = "A racket that flips"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [1, 2.2, 2.9]
-[initial]
-omega = [0.4, 3, 0.2]
-attitude = [1, 0, 0, 0]
-[time]
-end = 8
-samples = 81
-"""
+FLIPPING = {"omega": [0.4, 3, 0.2], "attitude": [1, 0, 0, 0]}
+RACKET = text_of({"inertia": [1, 2.2, 2.9]}, FLIPPING, 8, 81, "omega", "attitude")
 
 
 def racket(w: Array) -> Array:

@@ -8,46 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, titles
+from builders.scenes import text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from builders.turns import by_turns
 from scipy.spatial.transform import Rotation
 
-DECAY = """
-title = "Spin with linear drag"
-model = "euler"
-[body]
-inertia = [2, 1.5, 1.2]
-moment = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
-[initial]
-omega = [0, 0, 1]
-[time]
-end = 10
-samples = 51
-"""
-PRECESSION = """
-title = "Free body of revolution"
-model = "euler"
-[body]
-inertia = [2, 2, 0.7]
-[initial]
-omega = [0.6, 0.1, 1.2]
-[time]
-end = 10
-samples = 51
-"""
-STEADY = """
-title = "Steady spin"
-model = "euler"
-track = ["attitude"]
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [0, 0, 1.3]
-attitude = [0.8, 0.2, -0.4, 0.4]
-[time]
-end = 10
-samples = 51
-"""
+DRAG = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
+DECAY = text_of({"inertia": [2, 1.5, 1.2], "moment": DRAG}, {"omega": [0, 0, 1]}, 10, 51)
+PRECESSION = text_of({"inertia": [2, 2, 0.7]}, {"omega": [0.6, 0.1, 1.2]}, 10, 51)
+START = [0.8, 0.2, -0.4, 0.4]
+STEADY = text_of(
+    {"inertia": [1, 2, 3]}, {"omega": [0, 0, 1.3], "attitude": START}, 10, 51, "attitude"
+)
 TIMES, EVERY = np.round(np.arange(51) * 0.2, 6), 0.2
 # The factor by which a step multiplies what decays or turns, of z = h lambda.
 Factor = Callable[[complex], complex]
@@ -130,7 +102,7 @@ def test_what_dies_away_from_the_start_is_no_jump(tmp_path: Path) -> None:
 
 
 SPIN = Rotation.from_rotvec(np.outer(TIMES, [0, 0, 1.3]))
-FIRST = Rotation.from_quat([0.8, 0.2, -0.4, 0.4], scalar_first=True)
+FIRST = Rotation.from_quat(START, scalar_first=True)
 
 
 def spun(rate: Array) -> Columns:

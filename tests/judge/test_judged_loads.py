@@ -87,14 +87,12 @@ def by_steps(scene: Scene, rates: Rates) -> list[list[Any]]:
 def with_moment(scene: Scene, texts: Sequence[str]) -> Scene:
     """The scene with other texts of the moment."""
     loads = scene.body.loads
-    assert loads is not None
     other = replace(loads, vectors=(("moment", tuple(texts)),))
     return replace(scene, body=scene.body.with_loads(other))
 
 
 def in_space(scene: Scene) -> Scene:
     """The scene with its moment taken for one in space axes: M becomes R^T M."""
-    assert scene.body.loads is not None
     ((_, m),) = scene.body.loads.vectors
     return with_moment(
         scene, [" + ".join(f"r{i}{j}*({m[i - 1]})" for i in (1, 2, 3)) for j in (1, 2, 3)]
@@ -102,7 +100,6 @@ def in_space(scene: Scene) -> Scene:
 
 
 def wrong_sign(scene: Scene) -> Scene:
-    assert scene.body.loads is not None
     ((_, m),) = scene.body.loads.vectors
     return with_moment(scene, [f"-({m[0]})", str(m[1]), str(m[2])])
 
@@ -131,7 +128,6 @@ def once_a_step(scene: Scene) -> Rates:
 
 def twice(scene: Scene) -> Scene:
     """The scene with twice its moment, as where a weight is in the loads and in the energy."""
-    assert scene.body.loads is not None
     ((_, m),) = scene.body.loads.vectors
     return with_moment(scene, [f"2*({entry})" for entry in m])
 

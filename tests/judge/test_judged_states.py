@@ -94,7 +94,6 @@ UNMOVED = satellite(SPUN_UP, 'moment = ["h2*w3 - h3*w2", "h3*w1 - h1*w3", "h1*w2
 
 def written(path: Path, scene: Scene, ends: Sequence[End], names: Sequence[str]) -> Path:
     """A file of these states, with the columns of some of the scene's own states."""
-    assert scene.body.loads is not None
     columns = {s.name: s.components for s in scene.body.loads.states}
     header = ["t", *OMEGA, *QUATERNION, *(column for name in names for column in columns[name])]
     rows = [

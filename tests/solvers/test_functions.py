@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import text_of
 
 import taylor_verify
 from taylor_verify.judge.judgement import Judgement
@@ -25,16 +26,7 @@ from taylor_verify.solvers.callback import Callback
 from taylor_verify.solvers.solver import Solver
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
-TOP = """title = "A top that spins about axis 3"
-model = "euler"
-[body]
-inertia = [1, 1, 2]
-[initial]
-omega = [0.5, 0, 2]
-[time]
-end = 1
-samples = 5
-"""
+TOP = text_of({"inertia": [1, 1, 2]}, {"omega": [0.5, 0, 2]}, 1, 5)
 
 
 @cache

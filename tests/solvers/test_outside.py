@@ -25,7 +25,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import python
-from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.engines.script import scripts as read_scripts
@@ -45,15 +45,6 @@ SCENES = [
 
 
 # Their names.
-
-
-def test_a_version_replaces_the_pin_of_its_package() -> None:
-    """The metadata differ in the version of the library alone, and without one not at all."""
-    as_pinned = named("outside:diffrax-tsit5")
-    solver = named("outside:diffrax-tsit5?version=0.7.0")
-    assert as_pinned.block == as_pinned.engine.script.block
-    assert solver.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
-    assert solver.block != as_pinned.block
 
 
 def test_the_command_line_lists_them_all() -> None:

@@ -72,17 +72,6 @@ def legend() -> tuple[set[str], set[str]]:
     return words[0], words[1] & {"remark", "steps", "evaluations", "seconds", "compile_seconds"}
 
 
-def test_every_kind_of_question_is_asked() -> None:
-    """Both models, with and without attitude, centre, loads, and loads that change with time."""
-    kinds = one_of_each_kind()
-    assert len(kinds) >= 8
-    for place in (0, 2, 3):
-        assert len({one[place] for one in kinds}) == 2
-    assert {frozenset(), frozenset({"attitude"}), frozenset({"attitude", "centre"})} <= {
-        track for _, track, *_ in kinds
-    }
-
-
 @pytest.mark.parametrize("name", one_of_each_kind().values())
 def test_no_key_occurs_twice(name: str) -> None:
     """No key but `text` and `hex` occurs twice, before the lists of what a scene writes down."""

@@ -371,7 +371,6 @@ def test_an_interrupt_is_heard_in_the_middle_of_a_long_run() -> None:
             text=True,
         )
     with running:
-        assert running.stdout is not None
         assert running.stdout.readline() == "posed\n"
         time.sleep(1.5)
         running.send_signal(signal.SIGINT)
