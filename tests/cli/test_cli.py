@@ -375,6 +375,7 @@ def test_a_name_that_means_nothing_is_a_wrong_call(capsys: Captured, arguments: 
     [
         ("run nono --tolerance -1 --rung f99,g1 --solver x --jobs 0", 6),
         ("check no.csv --scene nono --tolerance -1 --rung f99", 4),
+        ("check no.csv --scene nono --steps 0.1", 3),
         ("exact nono --at x,1,y --digits 0", 4),
         ("explain nono --rung f99", 2),
         ("question nono --rung f99 --csv --json", 3),

@@ -208,6 +208,25 @@ def test_a_new_row_counts_if_it_fails() -> None:
     assert status_alone([ordinary()], [ordinary(), ordinary(quantity="T")]) == 3
 
 
+def test_a_row_that_is_named_already_is_not_named_again() -> None:
+    """Without the gates a row is lost once, or shows nothing; a row that passes is neither."""
+    failed = row(50.0, verdict=Status.FAIL)
+    lost = row(verdict=Status.FAIL, max=math.nan)
+    empty = row(verdict=Status.VACUOUS)
+    for was, now, failures, undecided in (
+        (row(), row(), 0, 0),
+        (row(), failed, 2, 0),
+        (row(), lost, 2, 0),
+        (failed, failed, 0, 0),
+        (lost, lost, 1, 0),
+        (empty, empty, 0, 1),
+    ):
+        comparison = Earlier("before.json", (was,)).compare_as_baseline(
+            Judgement((now,), None), decides=True
+        )
+        assert (len(comparison.failures), len(comparison.undecided)) == (failures, undecided)
+
+
 # What a CI is shown.
 
 

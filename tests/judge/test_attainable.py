@@ -21,9 +21,11 @@ from taylor_verify.judge.errors.state import state_errors
 from taylor_verify.judge.floor import attainable, rounded_input
 from taylor_verify.judge.floor.attainable import Floor, floor
 from taylor_verify.judge.floor.loads import Along
+from taylor_verify.judge.floor.magnitude import roundings
 from taylor_verify.judge.floor.rounded_input import InputRounding, input_rounding
 from taylor_verify.judge.judgement import judgement
 from taylor_verify.models.problem import adopt
+from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import power_of_two, rung
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
@@ -58,6 +60,30 @@ REVOLVED = scene(CLEBSCH, IMPULSE, 4, 5, "attitude", "centre")
 
 
 # How errors add up.
+
+
+@pytest.mark.parametrize("start", [(0.25, 1.0, -0.5), (0.0, 0.0, 2.0), (-3.0, 0.125, 0.0)])
+def test_terms_of_a_full_tensor_are_added_up(start: tuple[float, ...]) -> None:
+    """S is the sum of |deviation_ij H_j H_k| over the terms of H x K H, written out by hand."""
+    asked = replace(RIGID, initial=Spin(tuple(Fraction(w) for w in start)), track=frozenset())
+    rounded = _rounded(asked, steps=4)
+    momentum = np.array(TENSOR, dtype=float) @ start
+    K = np.array(tensors.inverse(TENSOR), dtype=float)
+    terms = np.abs(K - K[2, 2] * np.eye(3)) @ np.abs(momentum)
+    H = np.abs(momentum)
+    S = np.array([H[j] * terms[k] + H[k] * terms[j] for j, k in ((1, 2), (2, 0), (0, 1))])
+    along = [np.linalg.norm(H), np.linalg.norm(S)]
+    # One length of a step for all components, and at most the span over the steps.
+    h = (rounded[0] - H) @ S / (S @ S)
+    assert 0 < h <= 1
+    assert np.abs(rounded[0] - H - h * S).max() <= 1e-12 * (along[0] + along[1])
+
+
+def _rounded(asked: Scene, steps: int) -> Array:
+    """r of every component in the scene's own units."""
+    orbit = path(asked)
+    units = [float(orbit.units[block]) for block in orbit.blocks for _ in range(3)]
+    return roundings(asked, orbit, 53, steps) * units
 
 
 def test_squares_of_independent_errors_are_added() -> None:
@@ -305,9 +331,48 @@ def test_a_time_that_the_rung_holds_is_not_moved() -> None:
     assert "time" not in response.moved
 
 
+def test_times_are_one_number_more() -> None:
+    """The squares of their response are added to those of body and start."""
+    t = Fraction(17, 10)
+    both, late = input_rounding(asked_at("euler/generic", t), F64), times_alone(t)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(F64), "holds", lambda self, number: True)
+        given = input_rounding(asked_at("euler/generic", t), F64)
+    assert both.moved == f"{given.moved}, and every time"
+    for name, sizes in both.at_samples.items():
+        expected = np.hypot(given.at_samples[name], late.at_samples[name])
+        assert sizes == pytest.approx(expected, rel=1e-9)
+
+
 def test_what_symmetry_makes_equal_counts_once() -> None:
     """A full tensor is six numbers; of a body of revolution axes 1 and 2 have one p, one q and one r."""
     # The coupling of the general one has no symmetry, and two zeros.
     bodies = {RigidBody(TENSOR): 6 + 3, CLEBSCH: 6 + 5, GENERAL: 6 + 7 + 6 + 5}
     for body, count in bodies.items():
         assert len(rounded_input._numbers(sample_scene(body))) == count
+
+
+def changes(scene: Scene) -> list[list[int]]:
+    """What each move does to each number that is not zero, in roundings upwards."""
+
+    def read(given: Scene) -> list[Fraction]:
+        assert isinstance(given.body, RigidBody)
+        assert isinstance(given.initial, Spin)
+        entries = [given.body.inertia[i][k] for i in range(3) for k in range(i, 3)]
+        return [n for n in (*entries, *given.initial.omega) if n]
+
+    here, u = read(scene), F64.unit_roundoff
+    return [
+        [int((b / a - 1) / u) for a, b in zip(here, read(there), strict=True)]
+        for there in rounded_input._moved(scene, F64)
+    ]
+
+
+def test_up_to_eight_numbers_are_moved_one_at_a_time() -> None:
+    """Every draw of more numbers moves all of them, each up or down, no two draws alike."""
+    spin = Spin((Fraction(1, 2), Fraction(1), Fraction(0)))
+    few = changes(sample_scene(RigidBody(TENSOR), start=spin))
+    assert sorted(few) == sorted([int(i == k) for i in range(8)] for k in range(8))
+    many = changes(sample_scene(RigidBody(TENSOR)))
+    assert {abs(step) for draw in many for step in draw} == {1}
+    assert len({tuple(draw) for draw in many}) == len(many) == 8

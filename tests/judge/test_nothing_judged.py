@@ -124,6 +124,7 @@ def test_a_missing_number_format_is_exit_0_and_said(
     ("name", "on"),
     [
         ("scipy:DOP853", "f32"),
+        ("scipy:DOP853", "f80"),
         ("geometric:splitting?step=0.1", "f128"),
         ("outside:cvode-bdf", "f80"),
         ("taylor?tol=1e-60", "f32"),
