@@ -8,10 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from builders.sweeps import FAILING, SOLVER, TEMPLATE, rows, swept
 
 from taylor_verify.batch.sweeps import chunk as chunks
+from taylor_verify.batch.sweeps.sizes import Sizes
 from taylor_verify.cli import main
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.records.faults import Refused
@@ -114,3 +116,34 @@ def test_a_sweep_is_resumed_with_its_own_tolerance(template: str, tmp_path: Path
     with pytest.raises(Refused, match=r"expected tolerance 0\.01 .* got none @ resume"):
         swept(template, tmp_path / "out", count=1, resume=True)
     swept(template, tmp_path / "out", count=1, tolerance=1e-2, resume=True)
+
+
+# Quantiles of sizes, counted part by part.
+
+
+def test_quantiles_are_sizes_that_occurred() -> None:
+    """Counted in parts, each quantile is at most a thousandth above the exact one; the largest is exact."""
+    drawn = np.exp(np.random.default_rng(1).normal(0, 3, 5000))
+    sizes = Sizes()
+    for part in np.array_split(drawn, 7):
+        sizes.add(part)
+    quantiles = sizes.quantiles()
+    for share, size in (
+        (0.5, quantiles.median),
+        (0.9, quantiles.p90),
+        (0.99, quantiles.p99),
+    ):
+        exact = np.sort(drawn)[int(np.ceil(share * len(drawn))) - 1]
+        assert size in drawn
+        assert exact <= size <= exact * 1.001
+    assert quantiles.largest == drawn.max()
+
+
+def test_nan_is_beyond_every_number() -> None:
+    """One NaN among a hundred is the largest, and no number."""
+    sizes = Sizes()
+    sizes.add(np.array([*np.linspace(0, 1, 99), np.nan]))
+    quantiles = sizes.quantiles()
+    assert quantiles.largest is None
+    assert quantiles.p90 is not None
+    assert Sizes().quantiles() is None

@@ -80,7 +80,6 @@ def causes(path: Path, scene: str, made: Columns) -> tuple[LikelyCause, ...]:
     failures = [failure(asked, quantity) for quantity in known]
     with np.errstate(all="ignore"):
         answer = material_of_file(file, rung("f64"), plain, failures)
-        assert answer is not None
         return explained(answer).causes
 
 

@@ -10,8 +10,6 @@ import numpy as np
 from builders.integrators import turned
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
-from taylor_verify.scenes.bodies import RigidBody
-from taylor_verify.scenes.motion import Spin
 from taylor_verify.scenes.reading.reader import load
 
 Array = np.ndarray[Any, Any]
@@ -42,8 +40,6 @@ def implicit(inertia: Array, rotor: Array, w: Array, moment: Array, h: float) ->
 def engine(scene: str, kick: Kick, h: float, rows: int, every: int = 1) -> Columns:
     """Rows of t, omega in body axes and a unit quaternion; a row after every so many steps."""
     given = load(scene)
-    assert isinstance(given.body, RigidBody)
-    assert isinstance(given.initial, Spin)
     inertia = np.array(given.body.inertia, dtype=float)
     moment = np.array(given.body.moment, dtype=float)
     rotor = np.array(given.body.rotor, dtype=float)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.numbers.tensors import Matrix, Vector
 from taylor_verify.scenes.bodies import Body, Clebsch, ImmersedBody, RigidBody
+from taylor_verify.scenes.families.toml_text import toml
 from taylor_verify.scenes.instants import EquallySpaced
 from taylor_verify.scenes.motion import Clock, Impulse, Quaternion, Spin, State
 from taylor_verify.scenes.reading.reader import load, read
@@ -92,6 +94,16 @@ def spun(omega: Sequence[float], end: float, samples: int) -> Scene:
     clock = Clock(Fraction(0), tuple(elapsed))
     spin = Spin(tuple(Fraction(value) for value in omega))
     return Scene("spun", "spun", "euler", frozenset(), body, spin, clock)
+
+
+def text_of(
+    body: Mapping[str, Any], initial: Mapping[str, Any], end: float, samples: int, *track: str
+) -> str:
+    """The text of a scene from its parts, their keys as a file has them."""
+    model = "euler" if "omega" in initial else "kirchhoff"
+    head = {"title": "Made", "model": model, "track": [*track]}
+    time = {"end": end, "samples": samples}
+    return toml({**head, "body": body, "initial": initial, "time": time}, repr)
 
 
 # Scenes that are judged in a moment: three instants, the start among them, and three without it.

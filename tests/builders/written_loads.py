@@ -111,7 +111,6 @@ class Evaluated:
 
     def __init__(self, scene: Scene) -> None:
         body, loads = scene.body, scene.body.loads
-        assert loads is not None
         self._scene, self._loads = scene, loads
         self._is_euler = scene.model == "euler"
         self._matrix = [[value(c) for c in row] for row in body.energy_matrix]
@@ -333,7 +332,6 @@ def end_of(
 def instants(scene: Scene, time: Fraction) -> list[Fraction]:
     """The times of the scene after its start at which values are taken, up to an elapsed one."""
     loads = scene.body.loads
-    assert loads is not None
     return [
         scene.clock.start + elapsed
         for state in loads.states

@@ -13,15 +13,14 @@ from builders import integrators
 from builders.numbers import cross
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from taylor_verify.judge.causes.float_answer import Motion, steady_signs
-from taylor_verify.judge.causes.likely import explained
+from taylor_verify.judge.causes.likely import Explained, explained
 from taylor_verify.judge.causes.material import material
 from taylor_verify.models.problem import adopt
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.reason import Cause, stated
 from taylor_verify.records.status import Status
 from taylor_verify.records.verdict import Verdict
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Impulse, Spin
+from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.scene import Scene
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
@@ -43,14 +42,11 @@ class Numbers:
         self.rotor = np.zeros(3)
         self.damping = float(body.damping)
         if isinstance(body, RigidBody):
-            assert isinstance(start, Spin)
             self.tensor = np.array(body.inertia, dtype=float)
             self.load = np.array(body.moment, dtype=float)
             self.state = np.array(start.omega, dtype=float)
             self.rotor = np.array(body.rotor, dtype=float)
         else:
-            assert isinstance(body, ImmersedBody)
-            assert isinstance(start, Impulse)
             self.tensor = np.array(body.energy_matrix, dtype=float)
             self.load = np.array([*body.force, *body.couple], dtype=float)
             self.state = np.array([*start.linear, *start.angular], dtype=float)
@@ -169,12 +165,25 @@ def causes(scene: Scene, columns: Columns) -> dict[str, str]:
     v, q = (np.array([columns[name] for name in names]).T for names in (vectors, QUATERNION))
     given = adopt(scene, rung("f64"), [Fraction(t) for t in columns["t"]]).given
     noise = (2.0**-53 * np.max(np.abs(v), axis=0), 2.0**-53, 0.0)
-    failures = [failure(scene, name) for name in ("omega", "impulse", "attitude")]
+    answer = _explained(given, Motion(v, steady_signs(q)), noise, len(v[0]) == 6)
+    return {} if answer is None else {cause.name: cause.sentence for cause in answer.causes}
+
+
+def explained_motion(scene: Scene, file: Motion, noise: float = 0.5e-10) -> Explained:
+    """What is found of rows at the times of a scene, all of which failed, with so much noise."""
+    given = adopt(scene, rung("f64"), list(scene.clock.instants)).given
+    of_columns = np.full(file.v.shape[1], noise)
+    answer = _explained(given, file, (of_columns, 0.0 if file.q is None else noise, 0.0))
+    return answer
+
+
+def _explained(
+    given: Scene, file: Motion, noise: Any, has_momenta: bool = False
+) -> Explained | None:
+    failures = [failure(given, name) for name in ("omega", "impulse", "attitude")]
     with np.errstate(all="ignore"):
-        answer = material(given, Motion(v, steady_signs(q)), len(v[0]) == 6, noise, failures)
-        if answer is None:
-            return {}
-        return {cause.name: cause.sentence for cause in explained(answer).causes}
+        answer = material(given, file, has_momenta, noise, failures)
+        return None if answer is None else explained(answer)
 
 
 def failure(scene: Scene, quantity: str) -> Verdict:

@@ -19,7 +19,6 @@ from taylor_verify.cli.console import EscapingConsole, Page
 from taylor_verify.records.escapes import escaped
 from taylor_verify.report import csv_tables as sheets
 
-ROOT = Path(__file__).resolve().parents[2]
 # Clear the screen, ring, a title for the window, the same in C1, and a turn of the direction.
 STEERING = "\x1b[2J\x07\x1b]0;x\x07\x9b31m\u202e"
 CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2028\u2029]")

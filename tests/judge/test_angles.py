@@ -72,7 +72,6 @@ def test_each_meaning_of_three_numbers_is_found_and_mended(
     wanted = [f"{form}=2:4"] if form else []
     asked = of_columns("a b c" if form else "yaw pitch roll", numbers, wanted)
     file, finding = with_angles(asked, load(SCENE), rung("f64"))
-    assert finding is not None
     assert finding.is_certain
     assert finding.words.endswith(words)
     R, right = (rotations(f.groups["quaternion"].doubles()) for f in (file, plain()))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
@@ -38,7 +37,6 @@ from builders.wrong_dynamics import (
 from scipy.spatial.transform import Rotation
 
 import taylor_verify
-from taylor_verify.cli import main
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
@@ -453,23 +451,3 @@ def test_an_answer_that_runs_away_has_no_cause(value: float, tmp_path: Path) -> 
     for name in (*VECTORS["omega"], *QUATERNION):
         columns[name] = columns[name][:1] + [value] * (len(columns["t"]) - 1)
     assert names(tmp_path, FREE, columns) == set()
-
-
-# Solvers.
-
-
-def test_run_prints_the_cause(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """`run` of a program names the cause with its scene and rung, in its text and in JSON."""
-    program = tmp_path / "mine.py"
-    program.write_text(
-        "import json, sys\n"
-        "asked = json.load(sys.stdin)\n"
-        "times = asked['time']['times']['hex']\n"
-        "w = asked['initial']['omega']['hex']\n"
-        "rows = {n: [v] * len(times) for n, v in zip(('w1', 'w2', 'w3'), w)}\n"
-        "json.dump({'t': times, **rows}, sys.stdout)\n"
-    )
-    solver = f"process:{sys.executable} {program}"
-    assert main(["run", "euler/generic", "--solver", solver]) == 1
-    printed = capsys.readouterr().out
-    assert "likely cause: no gyroscopic term; " in printed

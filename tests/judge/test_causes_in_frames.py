@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, columns, rows, titles
+from builders.scenes import text_of
 from builders.trajectories import Columns, file_judgement, named, write_csv
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
@@ -235,20 +236,9 @@ def test_impulses_of_the_rigid_body_alone_are_named(
 
 
 TENSOR = np.array([2.3, 1.7, 3.1])
-RIGID = """
-title = "Body"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [2.3, 1.7, 3.1]
-moment = ["0.3*sin(2*t) - 0.2*q1", "-0.1*w2", "0.2*step(t - 2)"]
-[initial]
-omega = [0.8, -0.5, 1.1]
-attitude = [0.8, 0.2, -0.4, 0.4]
-[time]
-end = 4
-samples = 41
-"""
+LOADS = ["0.3*sin(2*t) - 0.2*q1", "-0.1*w2", "0.2*step(t - 2)"]
+SPIN = {"omega": [0.8, -0.5, 1.1], "attitude": [0.8, 0.2, -0.4, 0.4]}
+RIGID = text_of({"inertia": TENSOR.tolist(), "moment": LOADS}, SPIN, 4, 41, "omega", "attitude")
 RATES = ("w1", "w2", "w3")
 SPAN = np.round(np.arange(0, 41) * 0.1, 6)
 

@@ -1,4 +1,4 @@
-"""Likely causes of answers whose loads read something else than the scene's, and near misses."""
+"""Likely causes of loads that read something else than the scene's, or at other times, and near misses."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from functools import cache
 
 import numpy as np
 import pytest
+from builders.integrators import step
+from builders.scenes import text_of
 from builders.turns import by_turns
-from builders.wrong_dynamics import failure
+from builders.wrong_dynamics import explained_motion
 
 from taylor_verify.judge.causes.float_answer import Motion
-from taylor_verify.judge.causes.likely import explained
-from taylor_verify.judge.causes.material import ExactMotion, material
-from taylor_verify.models.problem import adopt
-from taylor_verify.numbers.precision import rung
+from taylor_verify.judge.causes.likely import Explained
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.judge.causes.material import ExactMotion
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 
@@ -64,32 +65,15 @@ WHOLE = (
     .replace("0.1*u", "b*u")
     .replace("[initial]", '[define]\ns = "norm(u1, u2, u3)"\na = "0.3"\nb = "0.1"\n[initial]')
 )
-TOP = """
-title = "Heavy top"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [2, 2.5, 1.5]
-weight = { force = [0, 0, -3], at = [0.2, 0.1, 0.5] }
-[initial]
-omega = [0.5, 0.4, 2]
-attitude = [0.8, 0.4, 0.2, 0.4]
-[time]
-end = 4
-samples = 31
-"""
-TIMED = """
-title = "A moment by the clock, and one that damps"
-model = "euler"
-[body]
-inertia = [2.6, 3.4, 1.9]
-moment = ["0.3*sin(0.7*t)", "-0.15*w2", "0.12"]
-[initial]
-omega = [0.4, -0.3, 0.5]
-[time]
-end = 15
-samples = 61
-"""
+TOP = text_of(
+    {"inertia": [2, 2.5, 1.5], "weight": {"force": [0, 0, -3], "at": [0.2, 0.1, 0.5]}},
+    {"omega": [0.5, 0.4, 2], "attitude": [0.8, 0.4, 0.2, 0.4]},
+    *(4, 31, "omega", "attitude"),
+)
+BY_TIME = ["0.3*sin(0.7*t)", "-0.15*w2", "0.12"]
+TIMED = text_of(
+    {"inertia": [2.6, 3.4, 1.9], "moment": BY_TIME}, {"omega": [0.4, -0.3, 0.5]}, 15, 61
+)
 CONSTANT = TIMED.replace('"0.3*sin(0.7*t)", "-0.15*w2", "0.12"', '"0.3", "-0.1", "0.2"')
 
 
@@ -98,19 +82,15 @@ def scene(text: str) -> Scene:
     return read(text, "loads")
 
 
-def names(changed: str, text: str, clock: Fraction = Fraction(1)) -> list[str]:
-    """The names of the causes of the exact motion of a changed scene, printed in ten digits."""
-    given = adopt(scene(text), rung("f64"), list(scene(text).clock.instants)).given
-    elapsed = [clock * t for t in given.clock.elapsed]
+def of_motion(changed: str, text: str, clock: Fraction = Fraction(1)) -> Explained:
+    """What is found of the exact motion of a changed scene, printed in ten digits."""
+    elapsed = [clock * t for t in scene(text).clock.elapsed]
     moved = ExactMotion(scene(changed), has_centre=False).at(elapsed, False)
-    assert moved.q is not None
-    file = Motion(np.round(moved.v, 10), np.round(moved.q, 10))
-    noise = (np.full(moved.v.shape[1], 0.5e-10), 0.5e-10, 0.0)
-    verdicts = [failure(scene(text), name) for name in ("omega", "impulse", "attitude")]
-    answer = material(given, file, False, noise, verdicts)
-    assert answer is not None
-    with np.errstate(all="ignore"):
-        return [cause.name for cause in explained(answer).causes]
+    return explained_motion(scene(text), Motion(np.round(moved.v, 10), np.round(moved.q, 10)))
+
+
+def names(changed: str, text: str, clock: Fraction = Fraction(1)) -> list[str]:
+    return [cause.name for cause in of_motion(changed, text, clock).causes]
 
 
 def swapped(text: str, *pairs: tuple[str, str]) -> str:
@@ -331,3 +311,77 @@ def test_what_several_texts_have_in_common_is_named(
 def test_a_part_of_these_texts_has_another_name(pairs: list[tuple[str, str]], name: str) -> None:
     """Weight alone, some of the drag or one of the points is no fault of all of them."""
     assert name not in asked(VEHICLE, pairs)
+
+
+# Loads that begin or end at another time.
+
+PULSE = """
+title = "A thruster"
+model = "euler"
+[body]
+inertia = [3.1, 2.2, 1.4]
+moment = [
+  "0.25*(step(t-1)-step(t-3))", "-0.1*(step(t-1)-step(t-3))", "0.15*(step(t-1)-step(t-3))"
+]
+[initial]
+omega = [0.2, 0.3, -0.4]
+[time]
+end = 6
+samples = 61
+"""
+
+
+def sentences(changed: str) -> list[str]:
+    return [cause.sentence for cause in of_motion(changed, PULSE).causes]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("t-3", "t-2.25", "switch at t = 3 comes at t = 2.25"),
+        ("t-3", "t-3.73", "switch at t = 3 comes at t = 3.73"),
+        ("t-1", "t-0.5", "switch at t = 1 comes at t = 0.5"),
+        ("step(t-", "step(t-0.3-", "loads late = 0.3"),
+    ],
+)
+def test_a_load_that_begins_or_ends_at_another_time_is_named(
+    old: str, new: str, words: str
+) -> None:
+    """A switch at another time has its name, however far it is; so have all that are late together."""
+    (sentence,) = sentences(PULSE.replace(old, new))
+    assert sentence.startswith(words)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    by_turns(
+        [
+            [("t-3", "t-2.25"), ("0.15*", "0.2*")],
+            [("t-1", "t-1.4"), ("t-3", "t-3.3")],
+            [("-0.1*(step(t-1)-step(t-3))", "-0.1*(step(t-1)-step(t-2))"), ("0.25", "0.3")],
+        ]
+    ),
+)
+def test_two_times_or_a_time_and_a_gain_have_no_one_time(changes: list[tuple[str, str]]) -> None:
+    """A pulse with two other numbers is not one whose switch comes at another time."""
+    text = PULSE
+    for old, new in changes:
+        text = text.replace(old, new)
+    assert not any("comes at" in each or "late" in each for each in sentences(text))
+
+
+def pulsed(t: float, w: Floats) -> Floats:
+    inertia = np.array([3.1, 2.2, 1.4])
+    moment = np.array([0.25, -0.1, 0.15]) if 1 - 1e-9 <= t < 3 - 1e-9 else np.zeros(3)
+    rate: Floats = (np.cross(inertia * w, w) + moment) / inertia
+    return rate
+
+
+def test_the_stages_of_a_method_at_a_switch_are_no_loads_of_another_time() -> None:
+    """RK4 with a switch at the end of a step is off by a sixth of the step's load: nothing is early."""
+    rows, h = [np.array([0.2, 0.3, -0.4])], 0.1 / 3
+    for k in range(180):
+        rows.append(step(pulsed, k * h, rows[-1], h))
+    file = Motion(np.round(np.array(rows[::3]), 12))
+    causes = explained_motion(scene(PULSE), file, 0.5e-12).causes
+    assert not any("late" in cause.sentence for cause in causes)

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from builders.caused_rows import RIGID as BODY
 from builders.caused_rows import rigid, titles
-from builders.integrators import turned
-from builders.numbers import cross
+from builders.first_order import Kick, engine, implicit, none
 from builders.turns import by_turns
 from builders.wrong_dynamics import (
     Array,
@@ -19,7 +18,6 @@ from builders.wrong_dynamics import (
     Numbers,
     Rate,
     causes,
-    columns_of,
     runge_kutta,
     simulated,
 )
@@ -171,47 +169,21 @@ def test_damping_in_the_rates_is_no_damping_of_steps(scene: str) -> None:
     assert not any("damping" in name for name in coarse)
 
 
-def engine(free: Callable[[Array, Array], Array], factor: float, every: int = 10) -> Columns:
+def stepping(kick: Kick, factor: float) -> Columns:
     """Rows of an engine: a step of H/10 moves omega, takes a factor of it, and turns by the new omega."""
-    scene = load(FREE)
-    n, h = Numbers(scene), H / 10
-    w, q, rows = n.state, n.q, []
-    for step in range(round((n.times[-1] - n.start) / h) + 1):
-        if step % every == 0:
-            rows.append([*w, *q])
-        w = factor * free(n.tensor, w)
-        q = turned(q, h * w)
-    return columns_of(n.start + h * every * np.arange(len(rows)), np.array(rows))
-
-
-def coasting(_: Array, w: Array) -> Array:
-    return w
-
-
-def newton(tensor: Array, w: Array) -> Array:
-    """One Newton step of backward Euler for I (z - w) + h z x I z = 0, as engines take it."""
-    h, momentum = H / 10, tensor @ w
-    slope = tensor + h * (crossing(w) @ tensor - crossing(momentum))
-    return w - np.linalg.solve(slope, h * cross(w, momentum))
-
-
-def crossing(a: Array) -> Array:
-    """The matrix of b -> a x b."""
-    return np.array([cross(a, unit) for unit in np.eye(3)]).T
+    return engine(FREE, lambda *given: factor * kick(*given), H / 10, 401, 10)
 
 
 @pytest.mark.parametrize(
-    ("free", "words"),
+    ("kick", "words"),
     [
-        (coasting, "without the gyroscopic term"),
-        (newton, "beside one Newton step of backward Euler"),
+        (none, "without the gyroscopic term"),
+        (implicit, "beside one Newton step of backward Euler"),
     ],
 )
-def test_damping_beside_the_gyroscopic_terms_of_engines_is_named(
-    free: Callable[[Array, Array], Array], words: str
-) -> None:
+def test_damping_beside_the_gyroscopic_terms_of_engines_is_named(kick: Kick, words: str) -> None:
     """Engines leave the gyroscopic term out, or take it by one Newton step, and damp by default."""
-    sentences = causes(load(FREE), engine(free, 1 - C * H / 10))
+    sentences = causes(load(FREE), stepping(kick, 1 - C * H / 10))
     law = f"explicit damping step: omega times 1 - c h after the motion of each step of h = {H / 10:g}"
     assert any(each.startswith(f"{law}, {words}, with c = {C:g};") for each in sentences.values())
     assert any("turned by the rate at the end" in each for each in sentences.values())
@@ -219,7 +191,7 @@ def test_damping_beside_the_gyroscopic_terms_of_engines_is_named(
 
 def test_a_free_coast_with_a_factor_of_no_law_has_no_step() -> None:
     """The step of a body that coasts shows by a short number alone: without one, none is said."""
-    sentences = causes(load(FREE), engine(coasting, 1 - 0.0512345 * H / 10))
+    sentences = causes(load(FREE), stepping(none, 1 - 0.0512345 * H / 10))
     assert not any("of each step" in each for each in sentences.values())
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, columns, rows, titles
+from builders.integrators import step
 from builders.trajectories import Columns
 from builders.turns import by_turns
 from builders.wrong_dynamics import turned
@@ -45,10 +46,7 @@ def rates(z: Array) -> Array:
 
 
 def classical(z: Array, h: float) -> Array:
-    a = rates(z)
-    b = rates(z + h / 2 * a)
-    c = rates(z + h / 2 * b)
-    return np.asarray(z + h / 6 * (a + 2 * b + 2 * c + rates(z + h * c)))
+    return step(lambda _, state: rates(state), 0.0, z, h)
 
 
 class AdamsBashforth:

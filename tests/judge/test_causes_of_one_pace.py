@@ -8,45 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.caused_rows import Array, titles
+from builders.scenes import text_of
 from builders.trajectories import QUATERNION, VECTORS, Columns, named
 from builders.turns import by_turns
+from scipy.spatial.transform import Rotation
 
-DECAY = """
-title = "Spin with linear drag"
-model = "euler"
-[body]
-inertia = [2, 1.5, 1.2]
-moment = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
-[initial]
-omega = [0, 0, 1]
-[time]
-end = 10
-samples = 51
-"""
-PRECESSION = """
-title = "Free body of revolution"
-model = "euler"
-[body]
-inertia = [2, 2, 0.7]
-[initial]
-omega = [0.6, 0.1, 1.2]
-[time]
-end = 10
-samples = 51
-"""
-STEADY = """
-title = "Steady spin"
-model = "euler"
-track = ["attitude"]
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [0, 0, 1.3]
-attitude = [0.8, 0.2, -0.4, 0.4]
-[time]
-end = 10
-samples = 51
-"""
+DRAG = ["-0.1*w1", "-0.1*w2", "0.08 - 0.1*w3"]
+DECAY = text_of({"inertia": [2, 1.5, 1.2], "moment": DRAG}, {"omega": [0, 0, 1]}, 10, 51)
+PRECESSION = text_of({"inertia": [2, 2, 0.7]}, {"omega": [0.6, 0.1, 1.2]}, 10, 51)
+START = [0.8, 0.2, -0.4, 0.4]
+STEADY = text_of(
+    {"inertia": [1, 2, 3]}, {"omega": [0, 0, 1.3], "attitude": START}, 10, 51, "attitude"
+)
 TIMES, EVERY = np.round(np.arange(51) * 0.2, 6), 0.2
 # The factor by which a step multiplies what decays or turns, of z = h lambda.
 Factor = Callable[[complex], complex]
@@ -128,37 +101,19 @@ def test_what_dies_away_from_the_start_is_no_jump(tmp_path: Path) -> None:
     assert titles(tmp_path, DECAY, made) == []
 
 
+SPIN = Rotation.from_rotvec(np.outer(TIMES, [0, 0, 1.3]))
+FIRST = Rotation.from_quat(START, scalar_first=True)
+
+
 def spun(rate: Array) -> Columns:
     """The steady spin, its attitude relative to a frame that turns at a rate, space axes."""
-    first = np.array([0.8, 0.2, -0.4, 0.4])
-    turn, frame = (half_turns(omega) for omega in (np.array([0, 0, 1.3]), -rate))
-    q = product(frame, product(first[None], turn))
+    turns = Rotation.from_rotvec(-np.outer(TIMES, rate)) * FIRST * SPIN
     omega = of_omega(np.outer(np.ones(51), [0, 0, 1.3]))
-    return omega | named(QUATERNION, q)
-
-
-def half_turns(omega: Array) -> Array:
-    angle = np.linalg.norm(omega) * TIMES[:, None] / 2
-    return np.hstack([np.cos(angle), np.sin(angle) * omega / np.linalg.norm(omega)])
-
-
-def product(p: Array, q: Array) -> Array:
-    (a, b, c, d), (s, x, y, z) = p.T, q.T
-    rows = [
-        a * s - b * x - c * y - d * z,
-        a * x + b * s + c * z - d * y,
-        a * y - b * z + c * s + d * x,
-        a * z + b * y - c * x + d * s,
-    ]
-    return np.array(rows).T
+    return omega | named(QUATERNION, turns.as_quat(scalar_first=True))
 
 
 def test_the_error_of_a_steady_turn_is_no_frame_that_turns(tmp_path: Path) -> None:
     """A method turns such a body at another rate about the same axis; a frame may turn about any."""
-    first = np.array([0.8, 0.2, -0.4, 0.4])
-    axis = product(
-        product(first[None], np.array([[0, 0, 0, 1.0]])), (first * [1, -1, -1, -1])[None]
-    )
-    assert titles(tmp_path, STEADY, spun(1e-4 * axis[0, 1:])) == []
+    assert titles(tmp_path, STEADY, spun(1e-4 * FIRST.apply([0, 0, 1]))) == []
     (title,) = titles(tmp_path, STEADY, spun(np.array([0, 1e-4, 0])))
     assert title.startswith("attitude is relative to a frame that turns")

@@ -62,8 +62,6 @@ def test_what_a_file_lacks_is_undecided(
     """A single row says all that was not judged, and names both ways out; --partial makes it vacuous."""
     file = file_of(tmp_path, rows, names)
     verdict, part = complete(file), complete(file, partial=True)
-    assert verdict is not None
-    assert part is not None
     assert part.verdict is Status.VACUOUS
     assert lack in part.because
     assert verdict.verdict is Status.UNDECIDED
@@ -90,7 +88,6 @@ def test_a_motion_backwards_has_an_end_too(tmp_path: Path) -> None:
     last = len(load("euler/backward").clock.instants) - 1
     assert complete(file_of(tmp_path, [0, last], scene="euler/backward"), "euler/backward") is None
     verdict = complete(file_of(tmp_path, [0, last // 2], scene="euler/backward"), "euler/backward")
-    assert verdict is not None
     assert "the last " in verdict.because
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,12 +36,15 @@ from taylor_verify.judge.conventions.axis_orders import AXES, Frames
 from taylor_verify.judge.conventions.convention_search import conventions
 from taylor_verify.judge.conventions.fits import EXPLAINS, Conventions
 from taylor_verify.judge.conventions.meanings import readings, rotations
+from taylor_verify.judge.conventions.worlds import worlds
+from taylor_verify.judge.files import judgement as judging
+from taylor_verify.judge.files.coverage import Extent
 from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import rung
 from taylor_verify.records.status import Status
-from taylor_verify.scenes.bodies import ImmersedBody, RigidBody
-from taylor_verify.scenes.motion import Spin
+from taylor_verify.scenes.bodies import RigidBody
+from taylor_verify.scenes.motion import Clock
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 
@@ -164,7 +168,6 @@ def test_impulses_have_conventions_too(tmp_path: Path) -> None:
 def test_products_of_inertia_with_the_other_sign_are_seen(tmp_path: Path) -> None:
     """A body with +int xy dm for its products is named, and judged as that body when accepted."""
     scene = load("euler/full-tensor")
-    assert isinstance(scene.body, RigidBody)
     K = scene.body.inertia
     turned = tuple(tuple(K[i][k] * (1 if i == k else -1) for k in range(3)) for i in range(3))
     other = replace(scene, body=RigidBody(turned))
@@ -180,13 +183,24 @@ def test_products_of_inertia_with_the_other_sign_are_seen(tmp_path: Path) -> Non
 def test_transposed_coupling_is_seen(tmp_path: Path) -> None:
     """A coupling whose rows go with y is named."""
     scene = load("kirchhoff/general-body")
-    assert isinstance(scene.body, ImmersedBody)
     body = replace(scene.body, coupling=tensors.transpose(scene.body.coupling))
     spoiled = columns_at(replace(scene, body=body), scene.clock.instants[:20])
     del spoiled["w1"], spoiled["w2"], spoiled["w3"]
     (finding,) = searched(tmp_path, scene.name, spoiled).findings
     assert finding.subject == "body"
     assert "coupling B transposed" in finding.words
+
+
+def test_a_right_file_is_searched_for_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Conventions and causes are searched for where a row fails, and nowhere else."""
+    scene = "euler/with-attitude"
+    for search in ("conventions", "causes_of_file"):
+        monkeypatch.setattr(judging, search, lambda *_: pytest.fail("it was searched"))
+    assert statuses(judged(tmp_path, scene, exact_columns(scene))) == {Status.PASS}
+    with pytest.raises(pytest.fail.Exception, match="it was searched"):
+        judged(tmp_path, scene, scalar_last(exact_columns(scene)))
 
 
 @pytest.mark.parametrize("accept", [False, True])
@@ -280,7 +294,6 @@ def test_a_turned_start_is_no_late_clock(with_attitude: bool, angle: float, tmp_
     name = tmp_path / "symmetric.toml"
     name.write_text(SYMMETRIC)
     scene = load(str(name))
-    assert isinstance(scene.initial, Spin)
     c, s = np.cos(angle), np.sin(angle)
     w1, w2, w3 = map(float, scene.initial.omega)
     turned = tuple(Fraction(v) for v in (float(c * w1 - s * w2), float(s * w1 + c * w2), w3))
@@ -330,10 +343,6 @@ SPOILT: list[tuple[Callable[[Sound], Columns], list[str]]] = [
     [
         *[("euler/with-attitude", 5, *spoilt) for spoilt in SPOILT],
         *by_turns([("euler/nesc-brick", 1001, *spoilt) for spoilt in SPOILT[::-1]], len(SPOILT)),
-        *[
-            pytest.param("euler/with-attitude", 1001, *spoilt, marks=pytest.mark.slow)
-            for spoilt in SPOILT
-        ],
     ],
 )
 def test_the_first_rows_of_an_engine_decide(
@@ -376,16 +385,6 @@ def test_readings_agree_in_floats_and_in_mpf(group: str) -> None:
             assert np.allclose(reading.read(rows, R), exact, rtol=1e-13, atol=1e-13)
 
 
-def test_first_reading_is_the_scenes_own() -> None:
-    """The one reading without cost leaves columns as they are, quaternions with their length."""
-    for group in ("omega", "quaternion", "attitude", "centre", "angular_impulse"):
-        costs = [reading.cost for reading in readings(group)]
-        assert costs.count(0) == 1
-        assert costs[0] == 0
-    q = np.array([[2.0, 0.0, 0.0, 0.0]])
-    assert np.array_equal(readings("quaternion")[0].read(q, q), q)
-
-
 @pytest.mark.usefixtures("without_causes")
 def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
     """A shift of 1/8192 is found to the last digit, so that the corrected file passes."""
@@ -397,3 +396,59 @@ def test_shift_is_the_shortest_decimal_that_explains(tmp_path: Path) -> None:
     (finding,) = judgement.conventions
     assert finding.words == "t is late by 0.0001220703125"
     assert statuses(judgement) == {Status.PASS}
+
+
+# Shifts and units, part by part.
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize(("instants", "rows"), [((5, 6, 7), (7, 8, 9)), ((5, 3, 1), (7, 6, 4))])
+def test_a_file_is_late_against_the_start_of_its_scene(
+    instants: tuple[int, ...], rows: tuple[int, ...], order: int
+) -> None:
+    """A row at 7 is late by 2 where the scene starts at 5, forwards or back, first or last in the file."""
+    plain = load("euler/generic")
+    scene = replace(plain, clock=Clock(Fraction(5), tuple(map(Fraction, instants))))
+    words = [world.words for world in worlds(scene, tuple(map(Fraction, rows[::order])))]
+    assert "t is late by 2" in words
+
+
+def test_the_slack_of_a_clock_grows_with_its_start() -> None:
+    """A late clock is rounded as its own size is."""
+    slacks = []
+    for start in map(Fraction, (0, 990)):
+        times = tuple(start + k for k in range(11))
+        scene = replace(load("euler/generic"), clock=Clock(start, times))
+        slacks.append(Extent.of(scene, times, rung("f64")).slack)
+    assert slacks[1] == 100 * slacks[0] > 0
+
+
+@pytest.mark.parametrize("number", [float, mpf])
+def test_units_of_angular_velocity(number: Any) -> None:
+    """A turn is 2 pi, a degree its 360th part; a turn in a minute is a 60th of it in a second."""
+    parts = {
+        "": 1 / (2 * np.pi),
+        "in degrees per unit of time": 1 / 360,
+        "in turns per unit of time": 1,
+        "in turns per minute, the unit of time being the second": 1 / 60,
+    }
+    rows, R = np.array([[number(0), number(3), number(0)]]), np.eye(3)[None]
+    other = ("space", "rates")
+    plain = [r for r in readings("omega") if not any(word in "".join(r.words) for word in other)]
+    assert len(plain) == len(parts)
+    for reading, (unit, part) in zip(plain, parts.items(), strict=True):
+        assert "".join(reading.words) == f"w1 w2 w3 are {unit}" * bool(unit)
+        assert float(reading.read(rows, R)[0, 1]) == pytest.approx(3 * 2 * np.pi * part)
+
+
+def test_units_of_time_are_as_long_as_their_names() -> None:
+    """A file may count time in any of these units, for a scene in seconds."""
+    scene = load("euler/generic")
+    lengths = {
+        world.time_words[0].partition("(")[2].partition(" for")[0]: world.scale
+        for world in worlds(scene, scene.clock.instants)
+        if world.scale != 1 and not world.shift
+    }
+    names = ("milli", "micro", "nano")
+    parts = {f"{name}seconds": Fraction(1, 1000**k) for k, name in enumerate(names, 1)}
+    assert lengths == parts | {"minutes": 60, "hours": 3600, "days": 86400}

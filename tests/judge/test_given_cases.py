@@ -183,7 +183,6 @@ def test_a_key_that_two_faults_change_is_printed_once() -> None:
     text = (CASES / "bluerov.toml").read_text()
     dragged = text.replace("[body]\n", '[body]\nforce = ["-4*u1", 0, 0]\n')
     right = compared("br_linear_drag", read_scene(dragged, "dragged"), STATES).right
-    assert right.loads is not None
     first = numbers(right.loads)[0]
     changes = first.changes(right, np.array([2 * first.value]))
     changes["extra"] = right.basis.factors(products=coriolis_of(right.mass))

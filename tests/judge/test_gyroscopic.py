@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from builders.first_order import Kick, engine, explicit, implicit, none, without_wheels
 from builders.trajectories import (
-    VECTORS,
     Columns,
     exact_columns,
     file_judgement,
@@ -17,7 +16,6 @@ from builders.trajectories import (
 )
 from builders.turns import by_turns
 
-OMEGA = VECTORS["omega"]
 FREE, FULL = "euler/with-attitude", "euler/full-tensor"
 WORDS = {
     none: "no gyroscopic term",

@@ -21,7 +21,7 @@ from taylor_verify.numbers import tensors
 from taylor_verify.records.quantities import GATE_FACTOR
 from taylor_verify.records.reason import Reason
 from taylor_verify.records.status import Status
-from taylor_verify.records.verdict import Verdict, exit_status
+from taylor_verify.records.verdict import exit_status
 from taylor_verify.run import run
 from taylor_verify.scenes.bodies import RigidBody
 from taylor_verify.scenes.motion import Clock, Motion, Spin
@@ -106,29 +106,6 @@ def test_what_left_the_orbit_does_not_come_back() -> None:
     assert finding.status is Status.VACUOUS
     assert (finding.ratio, finding.ratio_at) == (pytest.approx(2), 0)
     assert judge(errors_of([2e-14, 0.9, 0.9]), attainable, TERMS).status is Status.FAIL
-
-
-# Verdicts.
-
-
-def verdict_of(status: Status, **numbers: float) -> Verdict:
-    return Verdict("s", "taylor", "f64", "", "omega", status, "reached the last sample", **numbers)
-
-
-@pytest.mark.parametrize(
-    ("statuses", "status"),
-    [
-        ([Status.PASS], 0),
-        ([Status.PASS, Status.UNAVAILABLE], 0),
-        ([Status.PASS, Status.UNDECIDED], 3),
-        ([Status.VACUOUS], 3),
-        ([Status.REFUSED], 3),
-        ([Status.UNDECIDED, Status.FAIL], 1),
-    ],
-)
-def test_exit_status_is_green_for_passes_alone(statuses: list[Status], status: int) -> None:
-    """0 if all that could run passed, 1 if anything failed, 3 if something is open."""
-    assert exit_status([verdict_of(s) for s in statuses]) == status
 
 
 # Errors.

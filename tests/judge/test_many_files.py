@@ -485,12 +485,6 @@ def test_a_file_given_twice_is_refused(
     assert "@ none.csv" in errors
 
 
-def test_steps_are_of_several_files(scene: Path, files: list[str], capsys: Captured) -> None:
-    """Steps are refused with one file."""
-    status, _, errors = called(capsys, files[0], "--scene", scene, "--steps", "0.1")
-    assert (status, "expected several files with --steps" in errors) == (2, True)
-
-
 def test_files_of_another_start_are_named(scene: Path, files: list[str], tmp_path: Path) -> None:
     """A file that does not begin as the scene does is named: it may be of another scene."""
     rows = rows_of(scene, rk4, 0.5)[:, :3] * math.sqrt(2)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders.acted import acted
+from builders.engine import ENGINE
 
 from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import pose
@@ -33,36 +34,26 @@ TWIN = """\
 # loads = false
 # {data}
 # ///
-from equations import attitude_rate
-from free_body import answer, principal, stepped
+from engine import Engine
+from free_body import answer, pushed_body, stepped
 
 STEP = 0.0625 / 8
 
 
 def solve(body, settings):
-    A, B, C = body.moments
-
-    def rates(s):
-        p, q, r = s[:3]
-        gyration = ((B - C) / A * q * r, (C - A) / B * r * p, (A - B) / C * p * q)
-        return (*gyration, *attitude_rate(*s[3:], p, q, r))
-
-    def ahead(s, h, k):
-        return [a + h * b for a, b in zip(s, k)]
+    def moment(t, s):
+        is_pushed = getattr(body, "is_pushed", False)
+        return body.moment(s[:3], s[3:], t) if is_pushed else [0, 0, 0]
 
     def start():
-        state = [*body.omega, *body.attitude]
+        engine, done = Engine(body.inertia, body.omega, body.attitude), 0
 
         def advance(steps):
-            for _ in range(steps):
-                k1 = rates(state)
-                k2 = rates(ahead(state, STEP / 2, k1))
-                k3 = rates(ahead(state, STEP / 2, k2))
-                k4 = rates(ahead(state, STEP, k3))
-                for i in range(7):
-                    state[i] += STEP / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
+            nonlocal done
+            for done in range(done + 1, done + steps + 1):
+                engine.step((done - 1) * STEP, STEP, moment)
 
-        return advance, lambda: body.row(state[:3], state[3:])
+        return advance, lambda: body.row(engine.s[:3], engine.s[3:])
 
     return stepped(body, STEP, start)
 
@@ -73,25 +64,6 @@ answer(solve)
 PUSHED = (
     TWIN.replace("loads = false", 'loads = "written"')
     .replace('["f32"]', '["f64"]')
-    .replace("STEP = 0.0625 / 8", "STEP = 0.0625 / 4")
-    .replace("principal, stepped", "pushed_body, stepped")
-    .replace("def rates(s):", "def rates(s, later):")
-    .replace(
-        "        return (*gyration,",
-        "        time = done * STEP + later\n"
-        "        moment = body.moment(s[:3], s[3:], time) if body.is_pushed else (0, 0, 0)\n"
-        "        gyration = [g + M / I for g, M, I in zip(gyration, moment, body.moments)]\n"
-        "        return (*gyration,",
-    )
-    .replace("rates(state)", "rates(state, 0)")
-    .replace("STEP / 2, k1))", "STEP / 2, k1), STEP / 2)")
-    .replace("STEP / 2, k2))", "STEP / 2, k2), STEP / 2)")
-    .replace("STEP, k3))", "STEP, k3), STEP)")
-    .replace(
-        "def start():", "done = 0\n\n    def start():\n        nonlocal done\n        done = 0"
-    )
-    .replace("def advance(steps):", "def advance(steps):\n            nonlocal done")
-    .replace("+ k4[i])", "+ k4[i])\n                done += 1")
     .replace("answer(solve)", "answer(solve, pushed_body)")
 )
 FLOAT32 = 2.0**-24
@@ -162,6 +134,7 @@ def twin(folder: Path, data: str, monkeypatch: pytest.MonkeyPatch, text: str = T
     monkeypatch.setattr(python, "interpreter", lambda *_: sys.executable)
     for module in ("acting.py", "axes.py", "equations.py", "free_body.py", "question.py"):
         shutil.copy(SCRIPTS / module, folder)
+    (folder / "engine.py").write_text(ENGINE)
     path = folder / "with_twin.py"
     path.write_text(text.replace("{data}", data), encoding="utf-8")
     script = read_script(path)

@@ -218,14 +218,3 @@ def test_a_cache_that_is_a_file_is_told(script: Script, cache: Path) -> None:
     trajectory = solver_named(NAME).solve(three_instants())
     assert trajectory.outcome is Outcome.NO_PACKAGE
     assert str(cache) in trajectory.detail
-
-
-@pytest.mark.slow
-def test_a_python_that_does_not_fit_is_told(script: Script) -> None:
-    """A script for a Python that is not there cannot have its environment, and the reason names it."""
-    script(text=TINY.replace(">=3.11", ">=3.99"))
-    trajectory = solver_named(NAME).solve(three_instants())
-    assert trajectory.outcome is Outcome.NO_PACKAGE
-    assert ">=3.99" in trajectory.detail
-    with pytest.raises(NotMade, match=r">=3\.99"):
-        prepare("tiny-still")

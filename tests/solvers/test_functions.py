@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,26 +13,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders.scenes import text_of
 
 import taylor_verify
+from taylor_verify.judge.judgement import Judgement
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.numbers.precision import rung
+from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.callback import Callback
-from taylor_verify.solvers.registry import solver_named
-from taylor_verify.solvers.trajectory import Outcome
+from taylor_verify.solvers.solver import Solver
+from taylor_verify.solvers.trajectory import Outcome, Trajectory
 
-TOP = """title = "A top that spins about axis 3"
-model = "euler"
-[body]
-inertia = [1, 1, 2]
-[initial]
-omega = [0.5, 0, 2]
-[time]
-end = 1
-samples = 5
-"""
+TOP = text_of({"inertia": [1, 1, 2]}, {"omega": [0.5, 0, 2]}, 1, 5)
 
 
 @cache
@@ -105,7 +102,6 @@ WRONG: dict[str, tuple[Callable[[Problem], Any], Outcome, str]] = {
         "without a mask",
     ),
     "None": (lambda p: None, Outcome.MISSHAPEN, "expected states of shape (5, 3), got ()"),
-    "sys.exit": (lambda p: exit(0), Outcome.RAISED, "SystemExit"),
 }
 
 
@@ -157,22 +153,6 @@ def test_a_name_finds_a_function_in_the_current_folder(
     assert {v.solver for v in wrong.verdicts} == {"python:top_of_a_test:top?rate=2.5"}
 
 
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [
-        ("python:", "expected python:package.module:function, got python:"),
-        ("python:nowhere_at_all:f", "No module named 'nowhere_at_all'"),
-        ("python:math:nothing", "has no attribute 'nothing'"),
-        ("python:math:pi", "expected a callable, got a float"),
-        ("python:math:sin?step", "expected KEY=VALUE behind"),
-    ],
-)
-def test_a_name_of_no_function_is_refused(name: str, sentence: str) -> None:
-    """The sentence says what was looked for, and where."""
-    with pytest.raises(ValueError, match=sentence):
-        solver_named(name)
-
-
 def test_several_scenes_are_judged_by_a_function_in_one_call() -> None:
     """`check` of a list is `run_many`, whose solver may be an object."""
     judged = taylor_verify.check([scene()], rows, tolerance=1e-9)
@@ -181,9 +161,58 @@ def test_several_scenes_are_judged_by_a_function_in_one_call() -> None:
     assert judged.solver == "rows"
 
 
-@pytest.mark.slow
-def test_a_function_without_a_name_goes_to_every_process() -> None:
-    """A lambda is sent by cloudpickle; a script needs no guard, because no process imports it."""
-    judged = taylor_verify.check([scene(), read(TOP, "again")], lambda p: rows(p), tolerance=1e-9)
-    assert judged.passed
-    assert [each.verdicts[0].scene for each in judged] == ["top", "again"]
+# A function that ends the program has failed: its caller lives on, and says so.
+
+
+CODES = [0, None, "no licence"]
+
+
+@dataclass(frozen=True)
+class Leaving(Solver):
+    """A Solver of one's own, which may break its contract."""
+
+    leave: Callable[[Problem], Any]
+    name: str = "leaving"
+
+    def solve(self, problem: Problem) -> Trajectory:
+        self.leave(problem)
+        raise AssertionError("it left")
+
+
+WAYS: dict[str, Callable[[Callable[[Problem], Any]], Judgement]] = {
+    "check": lambda solve: taylor_verify.check("euler/rest", solve),
+    "run": lambda solve: taylor_verify.run("euler/rest", Callback(solve)),
+    "solver": lambda solve: taylor_verify.run("euler/rest", Leaving(solve)),
+}
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
+@pytest.mark.parametrize("code", CODES)
+def test_sys_exit_is_a_failed_solver(way: Any, code: Any) -> None:
+    """The verdict is a fail whose reason names the exit, whatever the code."""
+    (verdict,) = way(lambda problem: sys.exit(code)).verdicts
+    assert verdict.verdict is Status.FAIL
+    assert verdict.outcome == Outcome.RAISED.value
+    sentence = "SystemExit" if code is None else f"SystemExit: {code}"
+    assert f"({sentence})" in verdict.because
+
+
+@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
+def test_an_interrupt_stays_an_interrupt(way: Any) -> None:
+    """Ctrl-C in the middle of a callable is heard by its caller."""
+
+    def interrupted(problem: Problem) -> Any:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        way(interrupted)
+
+
+def test_a_script_whose_solver_leaves_comes_to_its_end() -> None:
+    """The exit status of a script is its own, and not that of the solver it judges."""
+    script = (
+        "import sys, taylor_verify\n"
+        "judged = taylor_verify.check('euler/rest', lambda problem: sys.exit(0))\n"
+        "sys.exit(0 if judged.verdicts[0].verdict == 'pass' else 7)\n"
+    )
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 7

@@ -5,15 +5,11 @@ from __future__ import annotations
 import operator
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mp, mpf
 
-from taylor_verify.exact.invariants import invariants
-from taylor_verify.exact.route import solution
-from taylor_verify.scenes.mpfr import in_mpfr, precision, sqrt, to_mpf, to_mpfr
-from taylor_verify.scenes.reading.reader import load
+from taylor_verify.scenes.mpfr import precision, sqrt, to_mpf, to_mpfr
 
 OPERATIONS = (operator.add, operator.sub, operator.mul, operator.truediv)
 
@@ -60,20 +56,3 @@ def test_what_is_not_finite_stays_so() -> None:
     nan, up, down = to_mpf(to_mpfr(column(mp.nan, mp.inf, -mp.inf)))
     assert mp.isnan(nan)
     assert (up, down) == (mp.inf, -mp.inf)
-
-
-@pytest.mark.parametrize("name", ["euler/with-attitude", "kirchhoff/whole-motion"])
-def test_the_conserved_quantities_are_the_same_in_both(name: str) -> None:
-    """Value, scale and sensitivity of a motion do not depend on the numbers it is held in."""
-    scene = load(name)
-    motion = solution(scene).motion(scene.clock.elapsed[:3], 40)
-    for invariant in invariants(scene):
-        with mp.workprec(200):
-            slow = [invariant.value(motion), column(invariant.scale(motion))]
-            slow += invariant.sensitivity(motion).values()
-            with precision():
-                converted = in_mpfr(motion)
-                quick = [invariant.value(converted), column(invariant.scale(converted))]
-                quick += invariant.sensitivity(converted).values()
-        for one, other in zip(slow, quick, strict=True):
-            assert (one == to_mpf(other)).all()

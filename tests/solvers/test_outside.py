@@ -25,7 +25,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.engines import python
-from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, named, prepare
+from taylor_verify.solvers.engines.engine import SCRIPTS, Engine, engines, prepare
 from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.solvers.engines.script import read_script
 from taylor_verify.solvers.engines.script import scripts as read_scripts
@@ -45,36 +45,6 @@ SCENES = [
 
 
 # Their names.
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("outside:cvode-bdg", "did you mean cvode-bdf"),
-        ("outside:cvode-bdf?tol=1", "expected a setting"),
-        ("outside:cvode-bdf?rtol=0", "expected a positive number"),
-        ("outside:cvode-bdf?atol=small", "@ atol"),
-        (
-            "outside:cvode-bdf?version=latest",
-            "expected a version such as .*, got 'latest' @ version",
-        ),
-        ("outside:cvode-bdf?version=1.0 ; evil", "@ version"),
-        ("outside:cvode-bdf?version=", "@ version"),
-    ],
-)
-def test_a_name_that_is_none_is_refused(name: str, words: str) -> None:
-    """An engine that there is not, a tolerance and a version that are none, are wrong calls."""
-    with pytest.raises(ValueError, match=words):
-        solver_named(name)
-
-
-def test_a_version_replaces_the_pin_of_its_package() -> None:
-    """The metadata differ in the version of the library alone, and without one not at all."""
-    as_pinned = named("outside:diffrax-tsit5")
-    solver = named("outside:diffrax-tsit5?version=0.7.0")
-    assert as_pinned.block == as_pinned.engine.script.block
-    assert solver.block == as_pinned.block.replace('"diffrax==0.7.2"', '"diffrax==0.7.0"')
-    assert solver.block != as_pinned.block
 
 
 def test_the_command_line_lists_them_all() -> None:

@@ -136,26 +136,6 @@ def test_an_engine_is_given_loads_and_states(name: str, monkeypatch: pytest.Monk
     assert errors[0] < 0.1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [n for n in WITHOUT_GYROSCOPIC_TERM if n[:4] != "brax"])
-def test_an_engine_without_the_gyroscopic_term_keeps_omega_in_space(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Omega in space axes stays where it was, whatever the moments."""
-    monkeypatch.setenv("npm_config_offline", "true")
-    try:
-        prepare(f"outside:{name}")
-    except NotMade as reason:
-        pytest.skip(str(reason))
-    solver: Any = solver_named(f"outside:{name}{'&' if '?' in name else '?'}step=0.01")
-    on = rung(solver.engine.script.about.rungs[0])
-    rows = solver.solve(solver.problem(oblique(), on)).quantities
-    q, w = (np.array(rows[key], dtype=float) for key in ("quaternion", "omega"))
-    twice = 2 * np.cross(q[:, 1:], w)
-    in_space = w + q[:, :1] * twice + np.cross(q[:, 1:], twice)
-    assert np.max(np.abs(in_space - in_space[0])) <= 400 * 2.0**-on.bits
-
-
 # What the scripts do themselves.
 
 

@@ -8,6 +8,8 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -70,17 +72,6 @@ def legend() -> tuple[set[str], set[str]]:
     return words[0], words[1] & {"remark", "steps", "evaluations", "seconds", "compile_seconds"}
 
 
-def test_every_kind_of_question_is_asked() -> None:
-    """Both models, with and without attitude, centre, loads, and loads that change with time."""
-    kinds = one_of_each_kind()
-    assert len(kinds) >= 8
-    for place in (0, 2, 3):
-        assert len({one[place] for one in kinds}) == 2
-    assert {frozenset(), frozenset({"attitude"}), frozenset({"attitude", "centre"})} <= {
-        track for _, track, *_ in kinds
-    }
-
-
 @pytest.mark.parametrize("name", one_of_each_kind().values())
 def test_no_key_occurs_twice(name: str) -> None:
     """No key but `text` and `hex` occurs twice, before the lists of what a scene writes down."""
@@ -134,11 +125,25 @@ def test_what_is_tracked_includes_states_of_the_scenes_own(name: str) -> None:
         assert any(column.startswith(own) for column in document["columns"])
 
 
-def test_a_key_with_two_meanings_is_caught() -> None:
-    """The broken twin: a table that has a key of another table."""
-    document = protocol.question(pose(load("euler/generic"), rung("f64")))
-    document["initial"]["start"] = document["initial"]["omega"]
-    assert Counter(keys(document))["start"] == 2
+@pytest.mark.parametrize(
+    ("name", "others", "version"),
+    [
+        ("euler/damped", set(), 1),
+        ("kirchhoff/damped", set(), 1),
+        ("euler/gyrostat", {"rotor"}, 3),
+    ],
+)
+def test_damping_has_a_version_of_its_own(name: str, others: set[str], version: int) -> None:
+    """Programs are asked by version 4, also with wheels; the damping is a text and a float."""
+    scene = load(name)
+    damped, plain = (
+        protocol.question(pose(replace(scene, body=replace(scene.body, damping=c)), rung("f64")))
+        for c in (Fraction(1, 8), Fraction(0))
+    )
+    assert (damped["protocol"], plain["protocol"]) == (4, version)
+    assert {"damping", *others} <= set(damped["body"])
+    assert damped["body"]["damping"] == {"text": "0.125", "hex": "0x1p-3"}
+    assert "damping" not in plain["body"]
 
 
 @pytest.mark.parametrize("name", by_turns(one_of_each_kind().values(), 10))

@@ -303,11 +303,6 @@ def test_the_question_has_the_steps_of_each_piece() -> None:
     assert document["loads"]["text"]["moment"][0] == "0.3 if t < 1 else 0"
 
 
-def test_all_pieces_are_one_span() -> None:
-    """The switches are those of the rounded numbers, elapsed and sorted."""
-    assert pose(SMOOTH["thrusters"], rung("f64")).switches == [Fraction(1, 4), Fraction(3, 4)]
-
-
 STAIRS = {end: euler(("0.1*floor(3*t)", "0", "0"), end) for end in ("9/4", "-3/4")}
 
 

@@ -11,7 +11,6 @@ import pytest
 from builders.integrators import step
 from mpmath import mp, mpf
 
-from taylor_verify.models import evaluated, own
 from taylor_verify.models.frame import rotation
 from taylor_verify.models.problem import Problem, pose
 from taylor_verify.models.registry import natural_units
@@ -131,15 +130,6 @@ def test_a_rotor_may_be_any_text_in_time_and_states() -> None:
         assert max(abs(a - b) for row in rows for a, b in zip(row, rows[0], strict=True)) < 1e-13
 
 
-def test_the_momentum_of_wheels_is_known_before_numbers_are_rounded() -> None:
-    """Units are chosen by it, of numbers such as 1/20, which no rung has."""
-    loads = wheels('["h1/10", 0.05, 0]').scene.body.loads
-    assert loads is not None
-    turning = evaluated.wheels(loads, Fraction(0), own.starts(loads), 53)
-    for value, expected in zip(turning, (Fraction(1, 100), Fraction(1, 20), 0), strict=True):
-        assert abs(value - expected) < Fraction(1, 2**100)
-
-
 def test_the_unit_of_time_is_the_same_in_every_unit_of_mass() -> None:
     """Wheels a thousand times as heavy turn a body as fast that is a thousand times as heavy."""
     units = []
@@ -212,16 +202,6 @@ def test_without_stops_all_instants_count_and_digits_are_lost() -> None:
             pairs = zip(answer["omega"], exact["w"], strict=True)
             errors.append(max(abs(float(row[0] - w)) for row, w in pairs))
         assert errors[1] > 1e4 * errors[0]
-
-
-def test_taken_together_they_read_what_was_before() -> None:
-    """At one instant no value sees another that is taken there; a row on it is read after it."""
-    problem = sampled("-w1/2")
-    assert problem.instants[:3] == [0, Fraction(1, 8), Fraction(1, 4)]
-    after = problem.taken(0, [1.5, 0, 0], [0, 0.25, 7])
-    np.testing.assert_array_equal(after, [-0.75, 0.25, 7])
-    after = problem.taken(4, [1, 0, 0], after)
-    np.testing.assert_array_equal(after, [-0.5, 0.25, 8])
 
 
 @pytest.mark.parametrize("name", ["f64", "mp237"])

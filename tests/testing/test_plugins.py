@@ -45,6 +45,31 @@ def add(parser):
 def run(arguments):
     return "x"
 """
+# Verbs: one that answers, one that raises when it is asked, and one that raises before.
+VERBS = {
+    "echo": """
+from taylor_verify.cli.answer import Answer
+help = "say a word"
+def add(parser):
+    parser.add_argument("word")
+def run(arguments):
+    return Answer(0, {"word": arguments.word}, lambda: arguments.word)
+""",
+    "late": """
+def add(parser):
+    parser.add_argument("word")
+def run(arguments):
+    raise KeyError(arguments.word)
+""",
+    "early": """
+def add(parser):
+    raise ZeroDivisionError("no arguments")
+def run(arguments):
+    return 0
+""",
+    "broken": "import no_such_module",
+    "half": "def add(parser): pass",
+}
 SOURCE = """
 missing = "/nowhere/with_none.py"
 class Csv:
@@ -78,6 +103,15 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     monkeypatch.syspath_prepend(str(tmp_path))
     yield installed
     forget()
+
+
+@pytest.fixture
+def verbs(install: Install, tmp_path: Path) -> None:
+    """A package with these verbs, and with one of a name of ours."""
+    for name, source in VERBS.items():
+        (tmp_path / f"tv_{name}.py").write_text(source)
+    lines = [*(f"{name} = tv_{name}" for name in VERBS), "run = tv_echo"]
+    install("tv-verbs", {"verbs": "\n".join(lines)})
 
 
 @pytest.fixture
@@ -230,6 +264,40 @@ def test_of_two_packages_with_one_name_the_first_counts(
     assert "same" in remarks()
     assert type(solver_named("taylor")).__name__ == "Taylor"
     assert "the solver taylor of tv-one is left out" in caplog.text
+
+
+@pytest.mark.usefixtures("verbs")
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ("broken", "expected the verb broken of tv-verbs, got ModuleNotFoundError: No module"),
+        ("half", "expected the verb half of tv-verbs to have run, got none"),
+        ("late x", "expected an answer of the verb late of tv-verbs, got KeyError: 'x'"),
+        ("early", "expected arguments of the verb early of tv-verbs, got ZeroDivisionError: no"),
+    ],
+)
+def test_a_verb_that_is_broken_is_named_in_one_line(words: str, why: str, capsys: Captured) -> None:
+    """Exit status 2, with the verb, its package and the fault; another verb answers all the same."""
+    assert main(words.split()) == 2
+    *_, line = capsys.readouterr().err.splitlines()
+    assert why in line
+    assert main(["echo", "hello"]) == 0
+    assert capsys.readouterr().out == "hello\n"
+
+
+@pytest.mark.usefixtures("verbs")
+def test_nobody_takes_our_verbs(capsys: Captured) -> None:
+    """A verb of a name that is taken is left out, help and `list` say so in a line, and ours answers."""
+    assert main(["run", "euler/rest"]) == 0
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    out, error = capsys.readouterr()
+    assert "a verb of the package tv-verbs" in out
+    assert "the verb run of tv-verbs is left out" in error
+    assert main(["list", "--json"]) == 0
+    out, error = capsys.readouterr()
+    assert "the verb run of tv-verbs is left out" in error
+    assert "run" not in json.loads(out)["plugins"]["verbs"]
 
 
 @pytest.mark.slow

@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 from builders import recordings
 from builders.recordings import OMEGA, QUATERNION, WRITERS
+from builders.scenes import text_of
 from builders.trajectories import Columns, columns_at, write_csv
 
 import taylor_verify
@@ -38,18 +39,7 @@ from taylor_verify.records.faults import Refused
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import TrajectoryFile, read
 
-SCENE = """
-title = "a body that turns about all axes"
-model = "euler"
-track = ["omega", "attitude"]
-[body]
-inertia = [1, 2, 3]
-[initial]
-omega = [1, "2/5", "3/10"]
-[time]
-end = 2
-samples = 3
-"""
+SCENE = text_of({"inertia": [1, 2, 3]}, {"omega": [1, "2/5", "3/10"]}, 2, 3, "omega", "attitude")
 GROUPS = {"omega": OMEGA, "quaternion": QUATERNION}
 TOLERANCE = 1e-9
 # What the gates of that tolerance let pass.

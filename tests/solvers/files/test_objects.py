@@ -18,7 +18,6 @@ from scipy.optimize import OptimizeResult
 from scipy.spatial.transform import Rotation
 
 import taylor_verify
-from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.faults import Refused
 from taylor_verify.records.quantities import COLUMNS
 from taylor_verify.records.status import Status
@@ -193,7 +192,6 @@ def test_judgement_is_that_of_the_file() -> None:
     table = frame().rename(columns={"w1": "rate about 1", "w2": "w.2", "w3": "w.3", "t": "time"})
     mapping = {"w1": "rate about 1", "w2": "w.2", "w3": "w.3"}
     judgement = taylor_verify.check(SCENE, table, columns=mapping)
-    assert isinstance(judgement, FileJudgement)
     assert {v.verdict for v in judgement.verdicts} == {Status.PASS}
     assert judgement.file.name == "the DataFrame"
     assert "`time` taken as t" in judgement.notes

@@ -8,24 +8,22 @@ import sys
 from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
+import h5py
+import numpy as np
 import pytest
+import scipy.io
 from builders import recordings
 from builders.lacking import lacking
 from builders.recordings import CLOCK, OMEGA, QUATERNION, WRITERS, Columns
-from builders.trajectories import columns_at, write_csv
-from builders.turns import by_turns
+from builders.trajectories import columns_at
 from builders.worked import DOCS
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
 from rosbags import rosbag1, rosbag2
 
-import taylor_verify
-from taylor_verify.judge.files.judgement import FileJudgement
 from taylor_verify.records.faults import Refused
-from taylor_verify.records.status import Status
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.solvers.files.file import read
 from taylor_verify.solvers.files.formats.reading import FORMATS, read_table
@@ -43,52 +41,7 @@ def columns() -> Columns:
     return columns_at(scene, [Fraction(k, 4) for k in (0, 1, 7, 22, 100, 239, 400)])
 
 
-def hexadecimal(value: float) -> str:
-    return float(value).hex()
-
-
-def verdict_rows(scene: str, file: Path) -> list[dict[str, Any]]:
-    """All of the verdicts but what names the file, the time it took and the machine."""
-    judged = taylor_verify.check(scene, file, partial=True)
-    assert isinstance(judged, FileJudgement)
-    own = ("setting", "seconds", "provenance")
-    return [{k: v for k, v in one.row().items() if k not in own} for one in judged.verdicts]
-
-
 # The same motion.
-
-
-@pytest.fixture(scope="module")
-def of_csv(columns: Columns, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The rows of the motion as CSV, in decimals and with all bits of its doubles."""
-    file = tmp_path_factory.mktemp("csv") / "run.csv"
-    spelled = {"decimal": repr, "binary": hexadecimal}
-    return {
-        name: verdict_rows(SCENE, Path(write_csv(file, columns, spell)))
-        for name, spell in spelled.items()
-    }
-
-
-@pytest.mark.parametrize("name", WRITERS)
-def test_verdicts_are_those_of_the_csv(
-    name: str, columns: Columns, of_csv: dict[str, Any], tmp_path: Path
-) -> None:
-    """A motion in any format gives the rows that it gives as CSV, and passes."""
-    WRITERS[name](tmp_path / name, columns)
-    rows = verdict_rows(SCENE, tmp_path / name)
-    assert rows == of_csv["decimal" if name in DECIMAL else "binary"]
-    assert {row["verdict"] for row in rows if row["quantity"] != "complete"} == {"pass"}
-
-
-@pytest.mark.parametrize("name", by_turns(WRITERS, 5))
-def test_a_spoiled_row_is_seen_in_every_format(name: str, columns: Columns, tmp_path: Path) -> None:
-    """A twin with one number changed by 1e-9 fails, at the time of that number."""
-    spoiled = {key: list(values) for key, values in columns.items()}
-    spoiled["w2"][4] += 1e-9
-    WRITERS[name](tmp_path / name, spoiled)
-    rows = {row["quantity"]: row for row in verdict_rows(SCENE, tmp_path / name)}
-    assert (rows["omega"]["verdict"], rows["omega"]["at"]) == (Status.FAIL.value, 25.0)
-    assert rows["attitude"]["verdict"] == Status.PASS.value
 
 
 DOUBLES = st.floats(-1e300, 1e300)
@@ -266,15 +219,6 @@ LACKED: Mapping[str, tuple[str, str]] = {
 }
 
 
-def test_a_missing_package_is_exit_2(columns: Columns, tmp_path: Path) -> None:
-    """Without its package a file is refused by the command in one line, with the command to install it."""
-    WRITERS["run.h5"](tmp_path / "run.h5", columns)
-    done = lacking(tmp_path, ["h5py"], "-m", "taylor_verify", "check", "run.h5", "--scene", SCENE)
-    assert done.returncode == 2, done.stderr
-    assert "pip install 'taylor-verify[hdf5]'" in done.stderr
-    assert len(done.stderr.splitlines()) == 1
-
-
 @pytest.mark.parametrize("name", LACKED)
 def test_a_missing_package_is_named_in_the_message(
     name: str, columns: Columns, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -288,3 +232,81 @@ def test_a_missing_package_is_named_in_the_message(
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(Exception, match=rf"pip install 'taylor-verify\[{extra}\]'"):
         read(tmp_path / name)
+
+
+# Arrays in HDF5, MATLAB and Parquet files: how they are called, and which of them are columns.
+
+
+def names_of(file: str | Path) -> list[str]:
+    return [column.name for column in read_table(file).columns]
+
+
+def test_groups_and_structs_are_dotted_names(tmp_path: Path) -> None:
+    """Arrays in groups and structs are named by them; a part of the file is named without it."""
+    omega = np.arange(12.0).reshape(4, 3)
+    with h5py.File(tmp_path / "run.h5", "w") as content:
+        content["t"] = np.arange(4.0)
+        content["imu/omega"] = omega
+        content["other/R"] = np.zeros((4, 3, 3))
+    scipy.io.savemat(
+        tmp_path / "run.mat", {"t": np.arange(4.0), "imu": {"omega": omega, "deep": {"q": omega.T}}}
+    )
+    omegas = [f"imu.omega[{i}]" for i in range(3)]
+    matrix = [f"other.R[{i}][{k}]" for i in range(3) for k in range(3)]
+    assert sorted(names_of(tmp_path / "run.h5")) == sorted(["t", *omegas, *matrix])
+    deep = [f"imu.deep.q[{i}]" for i in range(3)]
+    assert sorted(names_of(tmp_path / "run.mat")) == sorted(["t", *omegas, *deep])
+    table = read_table(tmp_path / "run.mat")
+    by_name = {column.name: list(column.values) for column in table.columns}
+    assert by_name["imu.omega[1]"] == by_name["imu.deep.q[1]"] == [1, 4, 7, 10]
+
+
+@pytest.mark.parametrize("clock", ["t", "simTime", "n"])
+def test_a_matrix_of_few_rows_may_be_wider_than_long(clock: str, tmp_path: Path) -> None:
+    """Its rows are those of a vector beside it, whatever that is called."""
+    matrix = np.arange(48.0).reshape(4, 12)
+    np.savez(tmp_path / "run.npz", simData=matrix, **{clock: np.arange(4.0)})
+    by_name = {
+        column.name: list(column.values) for column in read_table(tmp_path / "run.npz").columns
+    }
+    assert by_name == {clock: [0, 1, 2, 3]} | {
+        f"simData[{k}]": list(column) for k, column in enumerate(matrix.T)
+    }
+
+
+def test_several_trajectories_in_groups_are_asked_for(tmp_path: Path) -> None:
+    """Times in two groups are two trajectories, and one of them has to be named."""
+    with h5py.File(tmp_path / "run.h5", "w") as content:
+        for group in ("a", "b/c"):
+            for name in ("t", *OMEGA):
+                content[f"{group}/{name}"] = np.arange(3.0)
+    with pytest.raises(Refused, match=r"got times in the groups a, b\.c @ "):
+        read(tmp_path / "run.h5")
+    for part in ("a", "b/c", "/b.c"):
+        assert len(read(f"{tmp_path / 'run.h5'}#{part}").times) == 3
+    with pytest.raises(
+        Refused, match=r"expected one of the groups in the file \(a, b.c\), got `#d`"
+    ):
+        read(f"{tmp_path / 'run.h5'}#d")
+
+
+def test_matlab_7_3_has_its_axes_reversed(tmp_path: Path) -> None:
+    """A file of version 7.3 is HDF5 with the axes the other way round; SciPy ships one of MATLAB's."""
+    data = Path(scipy.io.matlab.__file__).parent / "tests" / "data" / "testhdf5_7.4_GLNX86.mat"
+    with h5py.File(data) as content:
+        expected = content["testdouble"][:, 0].tolist()
+    table = read_table(data)
+    assert [(c.name, list(c.values)) for c in table.columns] == [("testdouble", expected)]
+    file = tmp_path / "run.mat"
+    with h5py.File(file, "w", userblock_size=512) as content:
+        for name, values in {
+            "t": np.arange(4.0)[:, None],
+            "q": np.arange(16.0).reshape(4, 4).T,
+        }.items():
+            content[f"log/{name}"] = values
+            content[f"log/{name}"].attrs["MATLAB_class"] = np.bytes_("double")
+    with file.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    by_name = {c.name: list(c.values) for c in read_table(file).columns}
+    assert by_name["t"] == [0, 1, 2, 3]
+    assert by_name["q[1]"] == [1, 5, 9, 13]
