@@ -25,6 +25,7 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.records.json_text import converted
 from taylor_verify.records.status import Status
 from taylor_verify.run import run
+from taylor_verify.scenes.library import names
 from taylor_verify.scenes.reading.reader import load, read
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.engines.engine import SCRIPTS as OUTSIDE
@@ -33,6 +34,11 @@ from taylor_verify.solvers.trajectory import Outcome
 from taylor_verify_reports.studies.engines.entry import EntryList, entry_list
 
 PAGE = (DOCS / "bring-your-engine.md").read_text(encoding="utf-8")
+SCENES = [
+    name
+    for name in names()
+    if name.split("/")[0] in ("euler", "engines", "loads") and load(name).model == "euler"
+]
 TOLERANCE = 1e-3
 
 # The engine of builders.engine in two other languages.
@@ -199,6 +205,14 @@ def test_a_template_answers_each_kind_of_scene(command: str) -> None:
     assert verdict is Status.UNAVAILABLE
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_a_template_answers_every_scene(command: str, name: str) -> None:
+    """Its answer to each shipped scene of a rigid body passes, or the scene is unsuited."""
+    right = {Status.PASS}, {Status.UNAVAILABLE}
+    assert {v.verdict for v in judged(name, command, 50).verdicts} in right
+
+
 @pytest.mark.parametrize("end", by_turns([8, -5]))
 def test_a_template_evaluates_loads(command: str, end: int) -> None:
     """Texts, a table, a switch, damping and wheels reach the engine, forwards and backwards in time."""
@@ -224,6 +238,18 @@ def largest_error(scene: Scene, command: str, step: str) -> float:
     assert answered.outcome is Outcome.FINISHED, answered.detail
     names = ("omega", "quaternion", "m", "h")
     return max(float(np.abs(answered.quantities[n] - exact.quantities[n]).max()) for n in names)
+
+
+@pytest.mark.parametrize("left_out", ["self._damping * H", "_cross(self._wheels, omega)"])
+def test_what_a_template_leaves_out_is_caught(left_out: str, tmp_path: Path) -> None:
+    """The broken twin: without damping, or without wheels, the judgement fails."""
+    command = in_python(tmp_path)
+    text = (tmp_path / "acting.py").read_text(encoding="utf-8")
+    assert left_out in text
+    zero = "[0.0] * 3" if "cross" in left_out else "0.0"
+    (tmp_path / "acting.py").write_text(text.replace(left_out, zero), encoding="utf-8")
+    scene = read(LOADED.replace("END", "8"), "all")
+    assert Status.FAIL in {v.verdict for v in judged(scene, command).verdicts}
 
 
 def test_the_row_for_the_board_is_one() -> None:
