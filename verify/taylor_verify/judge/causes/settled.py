@@ -34,6 +34,8 @@ NOTHING: Final = 1e-9
 # digits: a law of another form fits nearly, and with numbers of no short form.
 FAIR: Final = 1e-6
 _SHORT: Final = 2
+# Replayed updates of the attitude go with rates that have errors of their own.
+_REPLAYED: Final = 1e-5
 # Defects that noise may make, and how many candidates are tried that leave no more.
 _NOISY: Final = 0.1
 _TRIED: Final = 3
@@ -173,13 +175,13 @@ class Choice:
 
         It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. Two
         faults imitate so nearly that a rounding hides it: they leave nothing. An update of the attitude
-        is replayed: it is exact, or another one.
+        is nearly exact, or another one.
         """
         candidate, is_pair = proven.candidate, proven.candidate.kind == "pair"
         if proven.worst <= (NOTHING if is_pair else max(self._least, FAIR)):
             return True
         if not candidate.count:
-            return candidate.kind != "attitude step"
+            return candidate.kind != "attitude step" or proven.worst <= _REPLAYED
         numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
         short = self._left(replace(candidate, numbers=numbers))
         are_short = short is not None and short.worst <= max(proven.worst, self._least)
