@@ -58,7 +58,9 @@ from taylor_verify.scenes.doubles import within_doubles
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.files.file import Recorded, TrajectoryFile
 
-FAR_ROWS: Final = "the rows after t = {:.6g} are far beyond the scene; they are not judged, as those before are wrong"
+FAR_ROWS: Final = (
+    "rows after t = {:.6g} are far beyond the scene and not judged: those before are wrong"
+)
 NO_CONVENTIONS: Final = (
     "no convention and no shift of time is corrected under the loads of this scene, which may read the "
     "time and the axes; causes are looked for"
