@@ -60,7 +60,7 @@ end = 4
 samples = 31
 """
 # Of a neutral vehicle the couple turns its sign if the points are exchanged.
-HEAVY = VEHICLE.replace("[0, 0, -20]", "[0, 0, -19]")
+SINKING = VEHICLE.replace("[0, 0, -20]", "[0, 0, -19]")
 WHOLE = VEHICLE.replace("abs(u1)", "s").replace("abs(u2)", "s").replace("abs(u3)", "s")
 WHOLE = (
     WHOLE.replace("0.3*s", "a*s")
@@ -226,7 +226,7 @@ def asked(text: str, pairs: list[tuple[str, str]]) -> list[str]:
                 "the loads have abs(u1) or abs(w1), where the scene has the whole speed",
             ),
             (WHOLE, [('"0.3"', '"0.1"'), ('"0.1"', '"0.3"')], "a and b exchanged"),
-            (HEAVY, EXCHANGED, "points of weight and buoyancy exchanged"),
+            (SINKING, EXCHANGED, "points of weight and buoyancy exchanged"),
             (VEHICLE, ADDED, "factor of the added mass"),
             (VEHICLE, LATE, "loads taken every 0.133333 and held in between"),
         ],
