@@ -346,6 +346,14 @@ def test_a_program_that_does_not_end_is_ended(tmp_path: Path, text: str) -> None
     assert trajectory.detail == f"1 seconds, settable by {LIMIT_VARIABLE}"
 
 
+def test_a_child_that_holds_the_pipes_is_not_waited_for(tmp_path: Path) -> None:
+    """The answer is whole when the program ends, whatever it leaves in its session."""
+    forks = "if not os.fork():\n    time.sleep(600)\n"
+    began = time.monotonic()
+    assert solve(tmp_path, SOUND + forks + TELL).outcome is Outcome.FINISHED
+    assert time.monotonic() - began < 300
+
+
 def test_neither_side_waits_for_the_other(tmp_path: Path) -> None:
     """A program may fill its output before it reads a question that fills the pipe as well."""
     talkative = "import sys\nsys.stderr.write('x' * 10**6)\nsys.stdout.write(' ' * 10**6)\n"

@@ -1,19 +1,14 @@
-"""A session with a running program, which answers line by line and ends with this process at the latest.
-
-The same supervisor as for single questions stands between the program and this process. It ends the
-program, and all processes that the program started, as soon as the session is closed.
-"""
+"""A session with a running program, which answers line by line until it is closed."""
 
 from __future__ import annotations
 
 import atexit
 import json
-import subprocess
 from collections.abc import Mapping, Sequence
 from time import monotonic
 from typing import Any, Final
 
-from taylor_verify.solvers.process.conversation import Talk, supervised
+from taylor_verify.solvers.process.conversation import Talk
 from taylor_verify.solvers.trajectory import Outcome
 
 # Bytes of an answer: a million states take less.
@@ -35,7 +30,7 @@ class Session:
     """A running program."""
 
     def __init__(self, command: Sequence[str]) -> None:
-        self._talk = Talk(*supervised(command, subprocess.PIPE))
+        self._talk = Talk(command)
 
     def ask(self, request: Mapping[str, Any], limit: float) -> dict[str, Any]:
         """Return the answer to a request within ``limit`` seconds; Broken where there is none."""

@@ -1,10 +1,8 @@
 """A user's program in any language as a solver: `--solver "process:./my_simulator"`.
 
 Question and answer follow protocol.py. The program is stopped when its time is up or when its output is
-longer than any answer. So every run ends with an outcome. All processes that the program started end with
-it, also those that left its session: supervisor.py sees to that, even if this process is killed. Linux
-can do this. On other systems a process that left the session may go on, and the detail of the outcome
-says so.
+longer than any answer. So every run ends with an outcome. All processes of the program's session end with
+it.
 """
 
 from __future__ import annotations
@@ -68,10 +66,7 @@ class Process(Solver):
         if ended.outcome is not Outcome.FINISHED:
             return Trajectory(ended.outcome, detail=ended.detail(), seconds=seconds)
         try:
-            trajectory = _trajectory(ended.answer, problem, ended.seconds)
-            return replace(
-                trajectory, detail="; ".join(filter(None, (trajectory.detail, ended.left)))
-            )
+            return _trajectory(ended.answer, problem, ended.seconds)
         except protocol.Unsuited as reason:
             return Trajectory(Outcome.UNSUITED, detail=str(reason), seconds=seconds)
         except protocol.Misanswer as fault:
@@ -101,7 +96,7 @@ def together(
     text = "".join(f"{line}\n" for line in lines).encode()
     ended = converse([*words, _MANY], text, limit, longest, folder)
     # Text after the last line end is not a complete answer.
-    answers = [] if ended.left else ended.answer.split(b"\n")[:-1]
+    answers = ended.answer.split(b"\n")[:-1]
     trajectories: list[Trajectory | None] = [None] * len(asked)
     for place, (answer, (_, problem)) in enumerate(zip(answers, asked, strict=False)):
         with suppress(protocol.Misanswer, protocol.NotFinite, protocol.Unsuited):
