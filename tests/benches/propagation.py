@@ -57,7 +57,7 @@ def plain(problem: Problem) -> Callable[[], object]:
     numbers = arithmetic(problem.rung)
     integrator = compiled(problem.form, problem.rung, None, pays(problem))
     start, parameters = map(numbers.array, (problem.initial_momenta, problem.parameters))
-    grid = numbers.times(problem.times)
+    grid = numbers.array(problem.times)
     assert grid[0] == 0
 
     def propagate() -> object:
@@ -76,7 +76,7 @@ def users(problem: Problem) -> Callable[[], Callable[[], object]]:
     """
     numbers = [float(value) for value in problem.parameters]
     start = [float(value) for value in problem.initial_momenta]
-    grid = arithmetic(problem.rung).times(problem.times)
+    grid = arithmetic(problem.rung).array(problem.times)
 
     def compile_anew() -> Callable[[], object]:
         import heyoka as hy

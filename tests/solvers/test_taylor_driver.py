@@ -20,7 +20,6 @@ from mpmath import mp
 
 from taylor_verify.exact.route import solution
 from taylor_verify.models.problem import Problem, pose
-from taylor_verify.models.times import rounded_times
 from taylor_verify.numbers import tensors
 from taylor_verify.numbers.precision import power_of_two, rung
 from taylor_verify.records.precisions import LADDER
@@ -291,31 +290,6 @@ def test_two_bodies_of_one_form_share_one_compiled_integrator() -> None:
     Taylor().solve(problems[1])
     after = driver.compiled.cache_info()
     assert (after.misses, after.hits) == (before.misses, before.hits + 1)
-
-
-@given(
-    first=st.fractions(-1000, 1000, max_denominator=10**6),
-    step=st.fractions("1/1000000", 1000, max_denominator=10**9),
-    sign=st.sampled_from([-1, 1]),
-    exponent=st.integers(-2000, 2000),
-    name=st.sampled_from(["f32", "f64", "f80", "f128", "mp237"]),
-)
-def test_equally_spaced_times_are_rounded_once_each(
-    first: Fraction, step: Fraction, sign: int, exponent: int, name: str
-) -> None:
-    """All at once or one by one, in any unit: the nearest number of the rung, or out of its range."""
-    clock = Clock(first, EquallySpaced(first, sign * step, 20))
-    unit, onto = power_of_two(exponent), rung(name)
-    try:
-        expected = tuple(onto.round(t / unit) for t in clock.elapsed)
-    except OverflowError:
-        with pytest.raises(OverflowError, match="outside the range"):
-            rounded_times(clock, unit, onto)
-        return
-    rounded = rounded_times(clock, unit, onto)
-    assert tuple(rounded) == expected
-    typed = arithmetic(onto)
-    assert [typed.exact(value) for value in typed.times(rounded)] == list(expected)
 
 
 def test_equally_spaced_instants_are_a_sequence_of_rationals() -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
-from taylor_verify.models.times import are_distinct, rounded_times
 from taylor_verify.models.units import Units
 from taylor_verify.numbers.precision import Rung, floor_log2
 from taylor_verify.scenes.motion import IDENTITY, Clock, Quaternion
@@ -55,9 +55,10 @@ class Rounding:
 def distinct_times(clock: Clock, units: Units, rung: Rung) -> Sequence[Fraction]:
     """Return the sample times rounded once each. Raises NotRepresentable where two become one."""
     try:
-        times = rounded_times(clock, units.time, rung)
+        shift = -floor_log2(units.time)
+        times = tuple(rung.round_scaled(t, shift) for t in clock.elapsed)
     except OverflowError as error:
         raise NotRepresentable(str(error)) from error
-    if not are_distinct(times):
+    if any(before == after for before, after in pairwise(times)):
         raise NotRepresentable(f"two sample times round to the same number of {rung.name}")
     return times

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
 from typing import Any, Final
 
 # A sequence of at most so many stores its rationals; a longer one forms each whenever it is read.
@@ -79,12 +78,6 @@ class EquallySpaced(Instants):
         if is_alone and isinstance(place, int) and -len(self) <= place < len(self):
             return self._at(place % len(self))
         return super().__getitem__(place)
-
-    def over_common_denominator(self, origin: Fraction) -> tuple[int, int, int]:
-        """Return integers a, b, d, with which instant k less the origin is (a + k b)/d exactly."""
-        offset = self.first - origin
-        d = lcm(offset.denominator, self.step.denominator)
-        return int(offset * d), int(self.step * d), d
 
     def __reduce__(self) -> tuple[Any, ...]:
         return EquallySpaced, (self.first, self.step, len(self))

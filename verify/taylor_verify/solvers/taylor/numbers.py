@@ -6,7 +6,7 @@ run would be a double first, so numbers pass as integers and powers of two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -16,7 +16,6 @@ from typing import Any, Final
 import numpy as np
 from mpmath import libmp
 
-from taylor_verify.models.times import TypedTimes
 from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung, exact_value, power_of_two
 from taylor_verify.solvers.solver import Lack
@@ -55,12 +54,6 @@ class Arithmetic:
             # A quotient of integers is rounded once, and is exact where a double holds it.
             return np.array([value.numerator / value.denominator for value in values])
         return np.array([self.number(value) for value in values], dtype=self.fp_type)
-
-    def times(self, times: Sequence[Fraction]) -> np.ndarray[Any, Any]:
-        """Return the array of sample times, by the form in which they were rounded."""
-        if isinstance(times, TypedTimes):
-            return times.typed
-        return self.array(times)
 
 
 # Straight-line code is optimised for ways of more than one or two thousand steps.

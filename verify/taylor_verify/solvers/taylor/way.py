@@ -106,7 +106,7 @@ class Way:
         self._longest = longest_step(self.order)
         self._parameters = numbers.array(problem.parameters)
         self._start = numbers.array(problem.initial_momenta)
-        self._times = numbers.times(problem.times)
+        self._times = numbers.array(problem.times)
         is_double = self._parameters.dtype == float
         self._is_loaded = problem.given.body.loads is not None
         self._linearised = (
