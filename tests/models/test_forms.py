@@ -273,8 +273,6 @@ def test_fastest_rate_is_a_close_bound_of_the_spectral_radius(name: str) -> None
         assert linearised.fastest(state) <= (1 + 1e-6) * max(
             expected, fourth_root(np.array(ends).T)
         )
-        assert linearised.is_within(state[None], 1.35 * expected)
-        assert not linearised.is_within(state[None], (1 - 1e-6) * radius) or radius == 0
     each = [linearised.fastest(state) for state in states]
     assert max(each) <= linearised.fastest(states) * (1 + 1e-12)
 
@@ -285,9 +283,7 @@ def test_rate_that_is_not_finite_is_infinite(bad: float) -> None:
     for name in ("euler/generic", "euler/with-attitude", "kirchhoff/screw"):
         problem = pose(load(name), rung("f64"))
         state = [bad, *[1.0] * (len(problem.initial_momenta) - 1)]
-        linearised = Linearised(problem)
-        assert linearised.fastest(state) == np.inf
-        assert not linearised.is_within(np.array([state]), 1e300)
+        assert Linearised(problem).fastest(state) == np.inf
 
 
 def test_equations_under_loads_take_no_hash_to_another_process() -> None:

@@ -5,7 +5,6 @@ s  state, in the problem's units       J(s)  the Jacobian of the rates
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import inf, isfinite
 from typing import Any, Final
 
@@ -16,11 +15,7 @@ from taylor_verify.models.problem import Problem
 
 SLOWEST = 2.0**-10  # keeps a step finite for a body that is (almost) at rest
 _SQUARINGS: Final = 4
-# The 16th root of what underflows is smaller.
-_UNDERFLOW: Final = 2.0**-60
 _NEARLY: Final = 1.2
-# Numbers whose squares add up to this have fourth powers far below the largest double.
-_MODERATE: Final = 2.0**400
 # A step so small that its square is nothing beside one.
 _ASIDE: Final = 2.0**-300
 
@@ -33,22 +28,21 @@ class Linearised:
     The rates of the momenta are quadratic in them, so that J(s) = J(0) + sum_k s_k dJ/ds_k exactly.
     Doubles suffice, because the rate is needed to some per cent only. The momenta do not depend on the
     attitude. The attitude turns at |omega|/2, which is linear in the momenta. The centre enters no rate.
-    ``doubles`` are the problem's parameters as such, from whoever has them.
     """
 
-    def __init__(self, problem: Problem, doubles: Floats | None = None) -> None:
+    def __init__(self, problem: Problem) -> None:
         self._momenta = momenta(problem.form)
-        given = list(map(float, problem.parameters)) if doubles is None else doubles
-        self._table = _table(problem.form, np.asarray(given))
-        self._square = float(np.vdot(self._table, self._table))
+        self._table = _table(problem.form, np.array([float(v) for v in problem.parameters]))
         self._turns = "e0" in problem.form.states
 
-    def fastest(self, states: Any) -> float:
+    def fastest(self, states: Any, times: Any = ()) -> float:
         """Return the fastest rate at a state, or at all rows of an array; infinite where not finite.
 
         The unit is radians per unit of time. A component that is too small for the error control grows or
-        turns at an eigenvalue of J, in any units. The attitude turns at |omega|/2.
+        turns at an eigenvalue of J, in any units. The attitude turns at |omega|/2. No equation reads the
+        ``times``.
         """
+        del times
         n = self._momenta
         with np.errstate(all="ignore"):
             entries = self._augmented(np.asarray(states)).dot(self._table)
@@ -62,33 +56,6 @@ class Linearised:
             bound = max(bound, omega * float(turns.max()))
         return max(bound, SLOWEST)
 
-    def is_within(self, states: Any, rate: float) -> bool:
-        """Return True if no row of an array of states has a faster rate.
-
-        Most rows are decided by a cheap bound, |J^2|^(1/2) in Frobenius's norm.
-        """
-        augmented, square = self._augmented(states), rate * rate
-        numbers = augmented.ravel()
-        # NumPy's dot never warns, and what follows cannot overflow. NaN is not moderate.
-        if numbers.dot(numbers) * self._square <= _MODERATE:
-            entries = self._squares(augmented)
-            entries *= entries
-            sums = entries.dot(_sums(self._momenta, entries.shape[1])).ravel()
-            if sums[sums.argmax()] <= square * square:
-                return True
-        return self.fastest(states) <= rate
-
-    def _squares(self, augmented: Floats) -> Floats:
-        """Return the entries of J^2 and, where an attitude turns, |omega|^2/4 at each row."""
-        n = self._momenta
-        rates = augmented.dot(self._table)
-        J, omega = rates[:, :-4].reshape(-1, n, n), rates[:, -4:]
-        entries = np.empty((len(rates), n * n + self._turns))
-        entries[:, : n * n] = (J @ J).reshape(-1, n * n)
-        if self._turns:
-            entries[:, -1] = (omega * omega).sum(axis=1)
-        return entries
-
     def _augmented(self, states: Any) -> Floats:
         """Return 1 and the momenta of a state, or of each row of an array."""
         augmented = np.empty((*states.shape[:-1], self._momenta + 1))
@@ -97,34 +64,21 @@ class Linearised:
         return augmented
 
 
-def largest_eigenvalue(J: Floats, enough: float = 0.0) -> float:
+def largest_eigenvalue(J: Floats) -> float:
     """Return a bound of the eigenvalues of all matrices of an array, some tenths too large.
 
     It is |J^16|^(1/16); if that is worse, the eigenvalues are computed. Infinite where J is not finite.
-    A bound that is at most ``enough`` is not made better.
     """
     n = J.shape[-1]
     bound = size = n * _largest(J)
     if not isfinite(size):
         return inf
     power, before = J / size if size else J, bound
-    # What underflows in the powers is then nothing beside what is enough.
-    is_moderate = size * _UNDERFLOW <= enough
     for k in range(_SQUARINGS):
         power, before = power @ power, bound
         bound = size * (n * _largest(power)) ** (0.5 / 2**k)
-        if is_moderate and bound <= enough:
-            return float(bound)
     # A norm may exceed the spectral radius by a factor, of which only the N-th root remains.
     return bound if before <= _NEARLY * bound else float(np.abs(np.linalg.eigvals(J)).max())
-
-
-@lru_cache
-def _sums(n: int, count: int) -> Floats:
-    """Return the matrix that adds the first n^2 of so many numbers, and leaves those after them alone."""
-    sums = np.zeros((count, 1 + count - n * n))
-    sums[: n * n, 0], sums[n * n :, 1:] = 1.0, 1.0
-    return sums
 
 
 def _largest(numbers: Floats) -> float:

@@ -31,16 +31,15 @@ class Differenced:
         begin, end = float(problem.begin), float(problem.times[-1])
         self._early = [begin + part * (end - begin) for part in _LOOKS]
 
-    def fastest(self, states: Any, times: Any = (), enough: float = 0.0) -> float:
+    def fastest(self, states: Any, times: Any = ()) -> float:
         """Return the fastest rate at all rows of an array, each at its time; infinite where not finite.
 
-        A state without a time is looked at in several. The unit is radians per unit of time. Where no rate
-        exceeds ``enough``, any bound up to it may be returned.
+        A state without a time is looked at in several. The unit is radians per unit of time.
         """
         at = np.asarray(times if len(times) else self._early, dtype=float)
         rows = np.atleast_2d(np.asarray(states, dtype=float))
         with np.errstate(all="ignore"):
-            bound = largest_eigenvalue(self._jacobians(rows.T, at), enough)
+            bound = largest_eigenvalue(self._jacobians(rows.T, at))
         return max(bound, SLOWEST) if isfinite(bound) else inf
 
     def _jacobians(self, columns: Floats, times: Floats) -> Floats:

@@ -107,12 +107,9 @@ class Way:
         self._parameters = numbers.array(problem.parameters)
         self._start = numbers.array(problem.initial_momenta)
         self._times = numbers.array(problem.times)
-        is_double = self._parameters.dtype == float
         self._is_loaded = problem.given.body.loads is not None
         self._linearised = (
-            Differenced(looked_at or problem)
-            if self._is_loaded
-            else Linearised(problem, self._parameters if is_double else None)
+            Differenced(looked_at or problem) if self._is_loaded else Linearised(problem)
         )
         self._rate = self._linearised.fastest(self._start)
         # In these units the motion is of size one, also one that is at rest when it begins.
@@ -151,7 +148,10 @@ class Way:
         ran = self._went(course)
         if not self._was_too_fast(ran, course):
             return course, ran
-        fastest, watched = self._fastest(*_some(ran, course.grid)), self._instants(self._look_count)
+        fastest, watched = (
+            self._linearised.fastest(*_some(ran, course.grid)),
+            self._instants(self._look_count),
+        )
         if ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate:
             course = _Course(*watched, self._calls, fastest)
             ran = self._went(course)
@@ -169,13 +169,8 @@ class Way:
     def fastest(self) -> float:
         """Return the fastest rate at the instants; infinite where the way does not reach its end."""
         ran = self.run()
-        return self._fastest(ran.rows, self._times) if ran.outcome is Outcome.FINISHED else inf
-
-    def _fastest(self, rows: Rows, times: np.ndarray[Any, Any], enough: float = 0.0) -> float:
-        """Return the fastest rate at some rows, of which loads may read the times."""
-        if isinstance(self._linearised, Differenced):
-            return self._linearised.fastest(rows, times, enough)
-        return self._linearised.fastest(rows)
+        is_whole = ran.outcome is Outcome.FINISHED
+        return self._linearised.fastest(ran.rows, self._times) if is_whole else inf
 
     def _went(self, course: _Course) -> Ran:
         """Go from the first instant of each stretch of a course to its last."""
@@ -190,7 +185,7 @@ class Way:
             if leg.outcome is not Outcome.FINISHED:
                 break
             if course.is_watched:
-                rate = max(rate, self._fastest(leg.rows[-1:], instants[-1:]))
+                rate = max(rate, self._linearised.fastest(leg.rows[-1:], instants[-1:]))
         return legs[0] if len(legs) == 1 else _joined(legs)
 
     def _leg(self, instants: np.ndarray[Any, Any], rate: float) -> Ran:
@@ -212,7 +207,7 @@ class Way:
         outcome = outcome_of(status)
         if callback is not None and callback.stands_still:
             outcome = Outcome.NON_FINITE
-        if outcome is Outcome.FINISHED and not _is_finite(rows):
+        if outcome is Outcome.FINISHED and not np.isfinite(rows).all():
             outcome = Outcome.NON_FINITE
         # Steps that were cut to the cap are left out of heyoka's longest.
         step = float(uncut)
@@ -225,9 +220,7 @@ class Way:
             return False
         (rows, times), is_whole = _some(ran, course.grid), ran.outcome is Outcome.FINISHED
         allowed = _SLACK * self._longest / ran.longest if is_whole else course.rate
-        if is_whole and isinstance(self._linearised, Linearised):
-            return not self._linearised.is_within(rows, allowed)
-        return not self._fastest(rows, times, allowed) <= allowed
+        return not self._linearised.fastest(rows, times) <= allowed
 
     @property
     def _callback(self) -> _Advance | None:
@@ -301,17 +294,6 @@ def _outcomes() -> dict[Any, Outcome]:
         hy.taylor_outcome.err_nf_state: Outcome.NON_FINITE,
         hy.taylor_outcome.step_limit: Outcome.STEP_LIMIT,
     }
-
-
-def _is_finite(rows: Rows) -> bool:
-    """Return True if all numbers of the rows are finite."""
-    if rows.dtype == float:
-        # A finite sum of squares has no other terms, and a sum that is not may have overflowed.
-        numbers = rows.ravel()
-        with np.errstate(over="ignore"):
-            if isfinite(numbers.dot(numbers)):
-                return True
-    return bool(np.isfinite(rows).all())
 
 
 def _calls(radians: float, rung: Rung) -> int:
