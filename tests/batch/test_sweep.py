@@ -290,7 +290,7 @@ def test_scenes_of_the_user_beside_the_worst_cases_stay(template: str, tmp_path:
 
 def test_a_grid_beyond_the_largest_sweep_is_refused_at_once(tmp_path: Path) -> None:
     """The bodies are counted before anything is drawn or written."""
-    axis = "{ linspace = [1, 2, 5000] }"
+    axis = f"{{ grid = {[*range(1, 5001)]} }}"
     text = TEMPLATE.replace("{ uniform = [1, 2] }, 2, 3", ", ".join([axis] * 3))
     file = tmp_path / "grid.toml"
     file.write_text(text)

@@ -6,7 +6,7 @@ All but `normal` is computed in decimals, correctly rounded, so that every machi
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -24,16 +24,14 @@ _WRITTEN_OUT: Final = 10**15
 # No part of a longer number, of a text in quotation marks, or of a number that was cut short.
 _FRACTION: Final = re.compile(r'(?<![\w"./-])-?\d+/[1-9]\d*(?![\w"/.])')
 
-Share = float | Decimal
 
-
-def uniform(share: Share, low: Decimal, high: Decimal) -> Decimal:
+def uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
     """Return the number at a share of the way from ``low`` to ``high``."""
     width = _WORKING.subtract(high, low)
     return _WORKING.add(low, _WORKING.multiply(Decimal(share), width))
 
 
-def log_uniform(share: Share, low: Decimal, high: Decimal) -> Decimal:
+def log_uniform(share: float, low: Decimal, high: Decimal) -> Decimal:
     """Return the number at a share of the way from ``low`` to ``high`` by their logarithms."""
     start, end = _WORKING.ln(low), _WORKING.ln(high)
     return _WORKING.exp(uniform(share, start, end))
@@ -77,27 +75,6 @@ class Grid:
     """A number that takes each of its values in turn."""
 
     values: tuple[Decimal, ...]
-
-
-def linspace(low: Decimal, high: Decimal, count: int, digits: int) -> Grid:
-    """Return the grid of ``count`` equally spaced numbers, both ends included."""
-    return Grid(tuple(_spaced(uniform, low, high, count, digits)))
-
-
-def logspace(low: Decimal, high: Decimal, count: int, digits: int) -> Grid:
-    """Return the grid of ``count`` numbers in equal ratios, both ends included."""
-    return Grid(tuple(_spaced(log_uniform, low, high, count, digits)))
-
-
-def _spaced(
-    between: Callable[[Share, Decimal, Decimal], Decimal],
-    low: Decimal,
-    high: Decimal,
-    count: int,
-    digits: int,
-) -> Sequence[Decimal]:
-    shares = [_WORKING.divide(Decimal(k), Decimal(count - 1)) for k in range(1, count - 1)]
-    return [low, *(rounded(between(share, low, high), digits) for share in shares), high]
 
 
 def rounded(value: Decimal, digits: int) -> Decimal:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final
@@ -14,8 +14,6 @@ from taylor_verify.scenes.families.distributions import (
     DISTRIBUTIONS,
     Draw,
     Grid,
-    linspace,
-    logspace,
     rounded,
 )
 from taylor_verify.scenes.families.formula import Formula, formula
@@ -23,8 +21,7 @@ from taylor_verify.scenes.loads.steps import NoStep
 from taylor_verify.scenes.reading.table import exact_number
 
 UNIT: Final = "unit"
-_GRIDS: Final[Mapping[str, Callable[..., Grid]]] = {"linspace": linspace, "logspace": logspace}
-KINDS: Final = (*DISTRIBUTIONS, "grid", *_GRIDS, "formula")
+KINDS: Final = (*DISTRIBUTIONS, "grid", "formula")
 _MOST_VALUES: Final = 100_000
 _MOST_DIGITS: Final = 60
 
@@ -86,16 +83,10 @@ class _Parameters:
             if values is None:
                 return None
             return Grid(values) if kind == "grid" else Draw(kind, values, _MOST_DIGITS)
-        numbers = self._numbers(least=3, most=3) if kind in _GRIDS else self._numbers(2, 2)
-        if numbers is None or not self._is_sound(kind, *numbers[:2]):
+        numbers = self._numbers(least=2, most=2)
+        if numbers is None or not self._is_sound(kind, *numbers):
             return None
-        if kind not in _GRIDS:
-            return Draw(kind, numbers, self._digits)
-        count = numbers[2]
-        if count != int(count) or not 2 <= count <= _MOST_VALUES:
-            self._fault(f"a whole number of values from 2 to {_MOST_VALUES} as the third")
-            return None
-        return _GRIDS[kind](*numbers[:2], int(count), self._digits)
+        return Draw(kind, numbers, self._digits)
 
     def _is_sound(self, kind: str, first: Decimal, second: Decimal) -> bool:
         if kind == "normal":
@@ -109,7 +100,7 @@ class _Parameters:
         if kind.startswith("log") and not first > 0:
             self._fault("two positive numbers")
             return False
-        if kind not in _GRIDS and any(rounded(n, self._digits) != n for n in (first, second)):
+        if any(rounded(n, self._digits) != n for n in (first, second)):
             # A number rounded to fewer digits than its bounds have could lie outside of them.
             self._fault(f"bounds of at most {self._digits} digits (`digits` in [sweep])")
             return False
