@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from typing import Final
-from unittest import mock
 
 from builders.scenes import sampled
 
@@ -18,10 +15,10 @@ from taylor_verify.numbers.precision import rung
 from taylor_verify.scenes.reading.reader import load
 from taylor_verify.scenes.scene import Scene
 from taylor_verify.solvers.taylor import driver
-from taylor_verify.solvers.taylor.cache import CACHE_VARIABLE, heyoka_cache_off
 from taylor_verify.solvers.taylor.driver import Taylor, compiled, pays
 from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic
+from taylor_verify.solvers.taylor.package import heyoka_cache_off
 from taylor_verify_reports.studies.tradeoff.measurement import SCENES, UNTIL, scene_named
 
 _RUNG: Final = rung("f64")
@@ -105,17 +102,15 @@ def _user_over(name: str, solver: Taylor) -> tuple[Side, Side]:
 def _cold_over_user(name: str) -> tuple[Side, Side]:
     problem = pose(load(name), _RUNG)
 
-    def cold(folder: str) -> object:
+    def cold() -> object:
         import heyoka as hy
 
         hy.llvm_state.clear_memcache()
         for cached in (compiled, driver.prepared_once):
             cached.cache_clear()
-        with mock.patch.dict(os.environ, {CACHE_VARIABLE: folder}):
-            return Taylor().solve(problem)
+        return Taylor().solve(problem)
 
-    with_empty_cache = Action(cold, partial(tempfile.mkdtemp, prefix="taylor-verify-"))
-    return with_empty_cache, _call(lambda: users(problem)()())
+    return _call(cold), _call(lambda: users(problem)()())
 
 
 def _call(work: Callable[[], object]) -> Action:

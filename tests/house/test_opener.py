@@ -37,7 +37,6 @@ OTHERS = {
     "solvers/files/formats/memory.py": "the memory of its own process, by Linux",
     "solvers/files/formats/binary.py": "members of an archive that is open",
     "solvers/files/columns/programs.py": "a table of this package",
-    "solvers/taylor/cache.py": "files of the user's cache, whose kind and owner it checks by itself",
 }
 
 

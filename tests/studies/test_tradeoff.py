@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -34,7 +33,7 @@ from taylor_verify.tradeoff.point import Point, point
 from taylor_verify.tradeoff.random_starts import STARTS, nearby
 from taylor_verify.tradeoff.recommendation import MARGIN, OutOfReach, recommend, recommended
 from taylor_verify.tradeoff.setting import Setting, settings
-from taylor_verify.tradeoff.solves import Timed, cold_caches
+from taylor_verify.tradeoff.solves import Timed
 from taylor_verify.tradeoff.trade_off import (
     front,
     trade_off,
@@ -245,18 +244,6 @@ def test_a_setting_that_fails_from_a_near_start_is_passed_over(scene: Scene) -> 
     recommendation = recommended(trade, 1e-10)
     assert recommendation.solver.name == "steady"
     assert recommendation.starts == 1 + STARTS
-
-
-def test_cold_caches_leave_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    """heyoka's cache is an empty folder inside the context, and the earlier one after it."""
-    monkeypatch.setenv("HEYOKA_CACHE_DIR", "before")
-    with cold_caches():
-        assert list(Path(os.environ["HEYOKA_CACHE_DIR"]).iterdir()) == []
-    assert os.environ["HEYOKA_CACHE_DIR"] == "before"
-    monkeypatch.delenv("HEYOKA_CACHE_DIR")
-    with cold_caches():
-        assert "HEYOKA_CACHE_DIR" in os.environ
-    assert "HEYOKA_CACHE_DIR" not in os.environ
 
 
 def test_a_target_below_roundoff_is_out_of_reach(scene: Scene) -> None:

@@ -40,7 +40,6 @@ from taylor_verify.solvers.engines.launcher import NotMade
 from taylor_verify.tradeoff.document import label_of
 from taylor_verify.tradeoff.recommendation import OutOfReach, recommended
 from taylor_verify.tradeoff.setting import RUNGS, Setting, chosen, outside, settings, toleranced
-from taylor_verify.tradeoff.solves import cold_caches
 from taylor_verify.tradeoff.trade_off import trade_off
 
 _NOT_RUN: Final = "not run"
@@ -69,7 +68,7 @@ def answer(options: argparse.Namespace) -> Answer:
                 prepare(name, say)
     documents: list[dict[str, Any]] = []
     missed: list[str] = []
-    with alone_in(place), cold_caches():
+    with alone_in(place):
         for scene in scenes:
             with working(f"tradeoff {scene.name}"):
                 trade = trade_off(scene, asked(scene), options.repeats, options.seed)

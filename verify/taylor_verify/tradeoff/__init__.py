@@ -44,14 +44,13 @@ def tradeoff(
         If ``repeats`` is below 1.
     """
     from taylor_verify.scenes.reading.reader import as_scene
-    from taylor_verify.tradeoff.solves import REPEATS, SEED, cold_caches
+    from taylor_verify.tradeoff.solves import REPEATS, SEED
     from taylor_verify.tradeoff.trade_off import trade_off
 
     repeats, seed = REPEATS if repeats is None else repeats, SEED if seed is None else seed
     if not repeats >= 1:
         raise ValueError(f"expected repeats of at least 1, got {repeats}")
-    with cold_caches():
-        return trade_off(as_scene(scene), asked, repeats, seed)
+    return trade_off(as_scene(scene), asked, repeats, seed)
 
 
 def recommend(

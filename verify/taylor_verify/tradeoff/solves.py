@@ -5,10 +5,7 @@ A time is the solver's own propagation, as its trajectory states it.
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
@@ -25,7 +22,6 @@ SEED: Final = 1
 # If a setting takes more seconds, finer ones of its family are not run. Every setting is repeated once, and
 # then only while all its solves have taken fewer seconds together.
 PATIENCE: Final = 2.0
-_HEYOKA_CACHE: Final = "HEYOKA_CACHE_DIR"
 
 # The explanation that stands with all times.
 WHAT_IS_TIMED: Final = (
@@ -125,20 +121,3 @@ def _first_solves(problems: Mapping[Setting, Problem | str], patience: float) ->
         if not trajectory.seconds <= patience:
             slow.add(setting.family)
     return solves
-
-
-@contextmanager
-def cold_caches() -> Iterator[None]:
-    """Give heyoka an empty cache, so that systems are compiled anew, and remove it afterwards.
-
-    Code that this process has compiled before stays in memory; a cold start needs a process of its own.
-    """
-    before = os.environ.get(_HEYOKA_CACHE)
-    with tempfile.TemporaryDirectory() as empty:
-        os.environ[_HEYOKA_CACHE] = empty
-        try:
-            yield
-        finally:
-            del os.environ[_HEYOKA_CACHE]
-            if before is not None:
-                os.environ[_HEYOKA_CACHE] = before

@@ -29,10 +29,10 @@ from taylor_verify.numbers.precision import Rung
 from taylor_verify.numbers.precision import rung as rung_named
 from taylor_verify.solvers.between_switches import piece_by_piece
 from taylor_verify.solvers.solver import Solver, refused
-from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.crossings import Lengths, crossings, missed, smoothed
 from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
+from taylor_verify.solvers.taylor.package import heyoka_cache_off
 from taylor_verify.solvers.taylor.way import Way
 from taylor_verify.solvers.trajectory import Outcome, Postponed, Trajectory
 
@@ -147,13 +147,14 @@ def compiled(
     }
     if events := crossings(form, kinks, coefficients, rung):
         options["t_events"] = events
-    return stored(hy.taylor_adaptive, system, **options)
+    heyoka_cache_off()
+    return hy.taylor_adaptive(system, **options)
 
 
 def pays(problem: Problem) -> bool:
     """Return True where optimised code is worth its compiling: of small systems, and on long ways.
 
-    All legs of a way have one code. Code that was stored is optimised once.
+    All legs of a way have one code.
     """
     numbers, size = arithmetic(problem.rung), len(problem.form.states)
     if numbers.is_quick_plain and size <= _LARGEST_STRAIGHT_LINE:

@@ -25,11 +25,12 @@ import numpy as np
 from taylor_verify.models.fastest_rate import Linearised
 from taylor_verify.models.form import Form
 from taylor_verify.models.problem import Problem
+from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung
-from taylor_verify.solvers.taylor.cache import stored
 from taylor_verify.solvers.taylor.driver import compiled
 from taylor_verify.solvers.taylor.heyoka_equations import equations
 from taylor_verify.solvers.taylor.numbers import arithmetic, unavailable
+from taylor_verify.solvers.taylor.package import heyoka_cache_off
 from taylor_verify.solvers.taylor.way import MOST_RADIANS, longest_step, most_steps, outcome_of
 from taylor_verify.solvers.trajectory import Outcome
 
@@ -230,6 +231,7 @@ def _check(problems: Sequence[Problem], tolerance: Fraction | None) -> None:
 
 
 @lru_cache(maxsize=32)
+@decimal_point()
 def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> Any:
     """Return one compiled integrator of so many lanes."""
     if width == 1:
@@ -242,8 +244,8 @@ def _stepper(form: Form, rung: Rung, tolerance: Fraction | None, width: int) -> 
     def empty(*shape: int) -> Array:
         return np.zeros((*shape, width), dtype=numbers.fp_type)
 
-    return stored(
-        hy.taylor_adaptive_batch,
+    heyoka_cache_off()
+    return hy.taylor_adaptive_batch(
         system,
         state=empty(len(system)),
         time=empty(),

@@ -28,6 +28,18 @@ def lack() -> Lack | None:
     return None
 
 
+@decimal_point()
+def heyoka_cache_off() -> None:
+    """Switch heyoka's own disk cache off, and its warnings, which it prints on stdout.
+
+    Its database has no checksum: a damaged one raises, or ends the process by a signal.
+    """
+    import heyoka as hy
+
+    hy.set_logger_level_error()
+    hy.llvm_state.set_diskcache_enabled(False)
+
+
 def sentence(error: ImportError) -> str:
     """Return the message for an import of heyoka that failed with this error."""
     is_absent = isinstance(error, ModuleNotFoundError) and error.name == NAME

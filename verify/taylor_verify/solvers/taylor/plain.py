@@ -16,8 +16,8 @@ from taylor_verify.models.problem import Problem
 from taylor_verify.numbers.decimal_point import decimal_point
 from taylor_verify.numbers.precision import Rung, exact_value, held_exactly
 from taylor_verify.solvers.solver import Solver, float64_alone, refused
-from taylor_verify.solvers.taylor.cache import heyoka_cache_off
 from taylor_verify.solvers.taylor.numbers import unavailable
+from taylor_verify.solvers.taylor.package import heyoka_cache_off
 from taylor_verify.solvers.taylor.way import outcome_of
 from taylor_verify.solvers.trajectory import Outcome, Trajectory
 

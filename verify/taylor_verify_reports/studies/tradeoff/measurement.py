@@ -39,7 +39,7 @@ from taylor_verify.tradeoff.setting import (
     setting,
     taylor,
 )
-from taylor_verify.tradeoff.solves import SEED, cold_caches
+from taylor_verify.tradeoff.solves import SEED
 from taylor_verify.tradeoff.trade_off import (
     TradeOff,
     sound_points,
@@ -195,14 +195,13 @@ def _for_short_scenes(scene: Scene) -> Iterator[Setting]:
 def one_process(work: tuple[Sequence[Asked], int, int]) -> dict[str, dict[Name, Measured]]:
     """Return the measurements of this process by scene; ``work`` has the scenes, a seed and the rounds.
 
-    The order of the scenes is random too. It is called in a new process, with an empty cache, so that
-    everything is compiled anew.
+    The order of the scenes is random too. It is called in a new process, so that everything is
+    compiled anew.
     """
     asked, seed, rounds = work
     scenes = list(asked)
     random.Random(seed).shuffle(scenes)
-    with cold_caches():
-        answers = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
+    answers = {scene.name: measured(scene, names, seed, rounds) for scene, names in scenes}
     end_sessions()
     return answers
 

@@ -48,12 +48,12 @@ _HOW: Final = (
     "want of another.",
     "diffrax is compiled as a whole by XLA (`jit`).",
     "The time of taylor includes its driver's work in Python around heyoka's compiled steps.",
-    "Optimised code is `taylor?code=optimised`: it compiles for seconds, and is read from disk later.",
+    "Optimised code is `taylor?code=optimised`: it compiles for seconds.",
 )
 _SET_UP: Final = (
     "The times above exclude the set-up: the processor's seconds before the first solve of a process, "
     "mainly of compiling, the longest of all processes. taylor compiles once for each tolerance and "
-    "form. Later processes would read its code from disk, which was switched off here. The others "
+    "form. The others "
     "compile once for a body, in every process anew."
 )
 
