@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import os
-from decimal import Decimal
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from taylor_verify.records.faults import Faults, Refused, refusal
-from taylor_verify.records.json_text import exact_document
 from taylor_verify.solvers.files.formats.reading import read_table
 from taylor_verify.solvers.values import exact
 
@@ -24,7 +21,7 @@ def read_events(file: str | os.PathLike[str]) -> list[Fraction]:
         if entry is None or entry == "" or entry != entry:
             continue
         try:
-            time = exact(str(entry) if isinstance(entry, Decimal) else entry)
+            time = exact(entry)
         except ValueError as error:
             faults.add(str(error), repr(entry), f"{file}, {_NAME}[{k}]")
             continue
@@ -38,13 +35,7 @@ def read_events(file: str | os.PathLike[str]) -> list[Fraction]:
 
 
 def _entries(file: str | os.PathLike[str]) -> list[Any]:
-    path = Path(file)
-    if path.suffix.lower() == ".json" and path.is_file():
-        document = exact_document(path)
-        if isinstance(document, dict) and isinstance(document.get(_NAME), list):
-            return list(document[_NAME])
-        raise refusal(f"a list `{_NAME}`", "none", path)
     for column in read_table(file).columns:
         if column.name.strip().lower() == _NAME:
             return list(column.values)
-    raise refusal(f"a column `{_NAME}`", "none", path)
+    raise refusal(f"a column or list `{_NAME}`", "none", os.fspath(file))
