@@ -225,21 +225,58 @@ def refusal_of(body: str, sweep: str = "", rest: str = REST) -> tuple[str, ...]:
     return refused.value.faults
 
 
+def test_a_template_of_which_no_point_is_a_scene_is_refused() -> None:
+    """The only fault says how many trial bodies were refused, shows one in decimals, and how to mend it."""
+    (fault,) = refusal_of("inertia = [{ uniform = [-2, -1] }, 1, 1]")
+    assert re.fullmatch(
+        r"expected numbers of which some make a body, got 512 refused trial bodies, for example: "
+        r"expected a positive moment of inertia, got -1\.\d+ @ body\.inertia\[0\] "
+        r"\(widen or move the range\)",
+        fault,
+    )
+
+
 def test_a_template_with_rare_bodies_is_accepted() -> None:
-    """Whether numbers make a body is a matter of each body, not of the template."""
+    """A template of which 2 % of the points are bodies is accepted, because there are many trial bodies."""
     drawn = template("inertia = [{ uniform = [-2, 0.05] }, 1, 1]")
     assert drawn.scene([0.99])
     with pytest.raises(Refused, match="positive moment of inertia"):
         drawn.scene([0.5])
 
 
-def test_a_fault_of_the_scene_is_one_of_the_template() -> None:
+def test_all_points_of_a_small_grid_are_tried() -> None:
+    """A grid of which only the last point is a body is accepted; a grid without a body names its size."""
+    values = ", ".join(map(str, range(-299, 2)))
+    assert template(f"inertia = [{{ grid = [{values}] }}, 1, 1]").nodes == 301
+    (fault,) = refusal_of("inertia = [{ grid = [-1.5, -2] }, { grid = [1] }, 1]")
+    assert "got 2 refused trial bodies, for example: " in fault
+    assert fault.endswith("got -1.5 @ body.inertia[0] (add other numbers)")
+    (fault,) = refusal_of("inertia = [{ grid = [-1] }, 1, 1]")
+    assert "got 1 refused trial body, for example: " in fault
+
+
+def test_trial_bodies_come_from_all_parts_of_a_large_grid() -> None:
+    """A grid of 2000 points of which the second half are bodies is accepted."""
+    first, second = f"{{ grid = {[*range(1, 1001)]} }}", "{ grid = [-1, 1] }"
+    assert template(f"inertia = [{first}, {second}, 1]").nodes == 2000
+    assert template(f"inertia = [{second}, {first}, 1]").nodes == 2000
+
+
+def test_a_fault_of_the_scene_stands_without_trial_bodies() -> None:
     """Faults that no drawn number causes are named alone, even where most points are no body."""
     rest = REST.replace("end = 1", "end = 0")
     faults = refusal_of("inertia = [{ uniform = [-2, 0.05] }, 1, 1]", rest=rest)
     assert [fault.rpartition(" @ ")[2] for fault in faults] == ["time.end (the time span is empty)"]
     (fault,) = refusal_of("inertia = [{ uniform = [1, 2] }, 1]")
     assert re.fullmatch(r"expected 3 numbers, got \[.*\] @ body\.inertia", fault)
+
+
+def test_a_long_template_has_fewer_trial_bodies() -> None:
+    """A template of 100 kB that makes no body is refused after 16 trial bodies."""
+    instants = ", ".join(f"{k}.{'0' * 400}" for k in range(1, 250))
+    long = REST.replace("end = 1\nsamples = 2", f"at = [{instants}]")
+    (fault,) = refusal_of("inertia = [{ uniform = [-2, -1] }, 1, 1]", rest=long)
+    assert "got 16 refused trial bodies" in fault
 
 
 DISTRIBUTIONS = "uniform, log_uniform, normal, choice, grid, formula"

@@ -22,8 +22,6 @@ from taylor_verify.scenes.scene import Scene
 COUNT: Final = 100
 SEED: Final = 1
 _MOST_FAULTS: Final = 100
-# The first points, of which one that is a body is an example.
-_TRIED: Final = 100
 
 
 class Question(NamedTuple):
@@ -95,7 +93,7 @@ class Drawn:
 
     def examples(self) -> Iterator[Scene]:
         """Yield a scene with the quantities that all scenes have."""
-        for number in range(min(self.total, _TRIED)):
+        for number in range(self.total):
             (question,) = self.questions(number, number + 1)
             if isinstance(question.scene, Scene):
                 yield question.scene

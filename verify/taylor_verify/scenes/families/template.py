@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,6 +19,7 @@ from taylor_verify.scenes.families.family import Family, Variable
 from taylor_verify.scenes.families.formula import Formula
 from taylor_verify.scenes.families.rules import KINDS, UNIT, rule
 from taylor_verify.scenes.families.toml_text import toml
+from taylor_verify.scenes.families.trial import place_of, trial_faults
 from taylor_verify.scenes.reading.reader import MOST_BYTES, parsed
 from taylor_verify.scenes.reading.table import Table
 
@@ -31,8 +32,6 @@ _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _SLOT: Final = re.compile("\0(\\d+)\0")
 # A word this near to the name of a distribution is meant as one.
 _NEAR: Final = 0.7
-# The share at which a scene is read: in the middle, a vector about zero would be zero.
-_POINT: Final = 0.4
 # The reader of scenes says this of a table whose distribution is not known.
 _TABLE_FOR_NUMBER: Final = "expected a finite number, got a table @ "
 
@@ -186,37 +185,18 @@ class _Reading:
     # The scene.
 
     def _of_scene(self, family: Family) -> list[str]:
-        """Return the faults of the scene at one point of all ranges that no drawn number causes."""
-        try:
-            family.scene([_POINT] * family.free)
-        except Refused as refused:
-            paths = [variable.path for variable in family.variables]
-            faults = [f for f in refused.faults if not _has_number(f, self._faulty)]
-            # A fault of a whole array, which has a wrong length for example, is one that any numbers have.
-            fixed = [f for f in faults if ", got [" in f or not _has_number(f, paths)]
-            return [self._of_number(fault) for fault in fixed]
-        return []
+        """Return the faults of the scene, without those that a faulty variable may have caused."""
+        return [self._of_number(fault) for fault in trial_faults(family, self._faulty)]
 
     def _of_number(self, fault: str) -> str:
         """Return the fault of a table that stands for a number; any other fault as it is."""
-        entries = self._tables.get(_place_of(fault))
+        entries = self._tables.get(place_of(fault))
         if entries is None or not fault.startswith(_TABLE_FOR_NUMBER):
             return fault
-        self._faulty.append(_place_of(fault))
+        self._faulty.append(place_of(fault))
         faults = Faults()
-        rule(entries, _place_of(fault), self._digits, (), faults)
+        rule(entries, place_of(fault), self._digits, (), faults)
         return faults.lines[0]
-
-
-def _place_of(fault: str) -> str:
-    """Return the place that a fault names, such as ``body.inertia[0]``."""
-    return fault.rpartition(" @ ")[2].partition(" (")[0]
-
-
-def _has_number(fault: str, paths: Collection[str]) -> bool:
-    """Return True if a number with one of these paths stands at the place of a fault, or within it."""
-    place = _place_of(fault)
-    return any(path.startswith(place) for path in paths)
 
 
 def _is_rule(entries: Mapping[str, Any]) -> bool:
