@@ -73,8 +73,7 @@ def causes_of(answer: Answer) -> list[Cause]:
         words = "omega contradicts the file's own attitude, which is right"
         return [*causes, Cause(words, "omega against attitude", {})]
     if not causes:
-        of_motion = _of_motion(answer, moving, "attitude" in left)
-        return of_motion or _in_space(answer)
+        return _of_motion(answer, moving, "attitude" in left) or _in_space(answer)
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
@@ -152,7 +151,8 @@ def _from_own_start(answer: Answer) -> list[Cause]:
     if not starts.has_own_start(answer):
         return []
     part = starts.piece(answer, 0, answer.count - 1)
-    causes = _of_motion(part, list(part.moving), "attitude" in part.failed)
+    is_reached = not starts.has_own_start(part)
+    causes = _of_motion(part, list(part.moving), "attitude" in part.failed) if is_reached else []
     if any(max(cause.leaves.values(), default=1.0) > PAIR for cause in causes):
         return []
     return _beside(

@@ -30,12 +30,11 @@ _OF_EACH_NUMBER: Final = 0.1
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
 NOTHING: Final = 1e-9
-# A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers have so few
-# digits: a law of another form fits nearly, and with numbers of no short form.
+# A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers, or what they
+# differ by, have so few digits: a law of another form fits nearly, and with numbers of no short form.
 FAIR: Final = 1e-6
 _SHORT: Final = 2
-# Replayed updates of the attitude go with rates that have errors of their own.
-_REPLAYED: Final = 1e-5
+_DRAGS: Final = {"linear drag", "quadratic drag", "drag by the speed", "damping"}
 # Defects that noise may make, and how many candidates are tried that leave no more.
 _NOISY: Final = 0.1
 _TRIED: Final = 3
@@ -159,7 +158,8 @@ class Choice:
             return None
         is_pair, count = candidate.kind == "pair", candidate.count
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
-        if count and proof.worst > min(PAIR, most) and self._polished < _POLISHED:
+        is_good = proof.worst <= min(PAIR, most) and self._is_evident(proof)
+        if count and not is_good and self._polished < _POLISHED:
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
@@ -173,19 +173,23 @@ class Choice:
     def _is_evident(self, proven: _Proven) -> bool:
         """Return True if what a candidate leaves is none of another law, which its numbers imitate.
 
-        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. Two
-        faults imitate so nearly that a rounding hides it: they leave nothing. An update of the attitude
-        is nearly exact, or another one.
+        It is the rounding, or what a fair simulator or a sensor leaves, or the numbers are short. Two drags
+        imitate any drag, so nearly that the rounding of a file may hide it: they leave nothing.
         """
-        candidate, is_pair = proven.candidate, proven.candidate.kind == "pair"
-        if proven.worst <= (NOTHING if is_pair else max(self._least, FAIR)):
+        candidate, family = proven.candidate, proven.candidate.family
+        are_drags = candidate.kind == "pair" and _DRAGS.issuperset(p.kind for p in family.parts)
+        if not candidate.count or proven.worst <= (
+            NOTHING if are_drags else max(self._least, FAIR)
+        ):
             return True
-        if not candidate.count:
-            return candidate.kind != "attitude step" or proven.worst <= _REPLAYED
-        numbers = np.array([float(f"{x:.{_SHORT}g}") for x in candidate.numbers])
-        short = self._left(replace(candidate, numbers=numbers))
-        are_short = short is not None and short.worst <= max(proven.worst, self._least)
-        return are_short or (not is_pair and self._leaves_noise(proven))
+        if not are_drags and self._leaves_noise(proven):
+            return True
+        differences = family.right + _short(candidate.numbers - family.right)
+        for numbers in (_short(candidate.numbers), differences):
+            short = self._left(replace(candidate, numbers=numbers))
+            if short is not None and short.worst <= max(proven.worst, self._least):
+                return True
+        return False
 
     def _left(self, candidate: Candidate) -> _Proven | None:
         """Return what a candidate leaves of the whole answer; None where it has no motion."""
@@ -307,6 +311,10 @@ class Choice:
         if "mass" in changes and names_inertia(right.loads):
             named += ", and not in the texts of the loads"
         return named, changes
+
+
+def _short(numbers: Floats) -> Floats:
+    return np.array([float(f"{x:.{_SHORT}g}") for x in numbers])
 
 
 def _settled_numbers(

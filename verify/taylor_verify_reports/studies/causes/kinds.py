@@ -351,7 +351,11 @@ SIMPLE: Final = (
     Kind("attitude backwards", ("backwards", "turns by"), _backwards, (*RIGID, "fluid")),
     Kind("attitude on the wrong side", ("wrong axes",), _wrong_side, (*RIGID, "fluid")),
     Kind("two faults", ("damping", *_LOADS), of(_two)),
-    Kind("a fault and Euler steps", ("explicit Euler", *_LOADS), _fault_and_steps),
+    Kind(
+        "a fault and Euler steps",
+        ("explicit Euler", "attitude turned by", *_LOADS),
+        _fault_and_steps,
+    ),
     Kind("cubic drag", (), of(_cubic)),
     Kind("growing load", (), of(_growing)),
     Kind("waving load", (), of(_waving)),

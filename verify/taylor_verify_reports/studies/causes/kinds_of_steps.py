@@ -143,7 +143,11 @@ OF_STEPS: Final = (
         _HELD,
         lambda s, d, size: by_rates(s, d, lambda q, w, h: q + h * turned(q, w)),
     ),
-    Kind("RK4 and another load", ("RK4", "force", "couple", "moment"), _loaded),
+    Kind(
+        "RK4 and another load",
+        ("RK4", "attitude turned by", "force", "couple", "moment"),
+        _loaded,
+    ),
     Kind("steps that do not divide the rows", (), _uneven),
 )
 # A kind that came later stands last among all: a kind is drawn by its place.
