@@ -67,6 +67,11 @@ def test_an_attitude_that_follows_from_its_own_omega_has_no_cause(
     assert words in sentence
 
 
+def test_a_motion_that_is_not_reached_from_its_own_start_has_no_cause() -> None:
+    """The search for causes from there ends, though the first row stays another one."""
+    assert json.loads(measure.said_of((69, "axes exchanged", 1)))["sentences"] == []
+
+
 def test_a_missed_switch_is_named_with_its_time() -> None:
     """A thrust that does not end is a switch that was missed, and no other number."""
     (sentence,) = json.loads(said_of((1, "switch missed", 1)))["sentences"]
