@@ -29,17 +29,17 @@ from taylor_verify.scenes.reading.reader import load, read
 
 # One of each kind of body, and what it has.
 HAS = {
-    "euler/tennis-racket": {"polhode", "time", "axis"},
-    "euler/separatrix": {"polhode", "time", "axis"},
-    "euler/damped": {"polhode", "time", "axis"},
-    "euler/damped-negative": {"polhode", "time", "axis"},
-    "euler/gyrostat": {"time", "axis"},
-    "euler/gyrostat-dual-spin": {"time", "axis"},
+    "euler/tennis-racket": {"polhode", "time", "axis", "spheres"},
+    "euler/separatrix": {"polhode", "time", "axis", "spheres"},
+    "euler/damped": {"polhode", "time", "axis", "spheres"},
+    "euler/damped-negative": {"polhode", "time", "axis", "spheres"},
+    "euler/gyrostat": {"time", "axis", "spheres"},
+    "euler/gyrostat-dual-spin": {"time", "axis", "spheres"},
     "euler/moment-along-axis": {"time", "axis"},
     "euler/rest": {"time", "axis"},
-    "kirchhoff/whole-motion": {"time", "axis", "path"},
-    "kirchhoff/ellipsoid-prolate": {"time", "axis", "path"},
-    "manufactured/kirchhoff-path": {"time", "axis", "path"},
+    "kirchhoff/whole-motion": {"time", "axis", "spheres", "path"},
+    "kirchhoff/ellipsoid-prolate": {"time", "axis", "spheres", "path"},
+    "manufactured/kirchhoff-path": {"time", "axis", "spheres", "path"},
 }
 EPS = 1e-6
 
@@ -77,6 +77,18 @@ def shapes(axes: Axes) -> list[np.ndarray[Any, Any]]:
     lines = [line.get_xydata() for line in axes.lines if line.get_gid() in moves]
     solids = [patch.get_xy() for patch in axes.patches if patch.get_gid() in moves]
     return [np.asarray(points) for points in (*lines, *solids) if len(points)]
+
+
+def test_a_body_whose_wheels_cancel_its_momentum_has_no_sphere(tmp_path: Path) -> None:
+    """H = I omega + h = 0 is no sphere, although nine digits of I omega leave a rounding."""
+    file = tmp_path / "cancelled.toml"
+    file.write_text(
+        'title = "H is 0"\nmodel = "euler"\n[body]\ninertia = [3, 2, 1]\nrotor = [-1, "-2/3", "-1/7"]\n'
+        '[initial]\nomega = ["1/3", "1/3", "1/7"]\n[time]\nend = 9\nsamples = 10\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(NotDrawn, match="expected a momentum with a direction, got zero"):
+        pictures(motion(load(file), 60), ["spheres"])
 
 
 # Moving
@@ -267,7 +279,7 @@ def test_a_missing_load_is_kept_from_row_to_row() -> None:
     [
         (["euler/generic", "--out", "a.gif"], r"expected \.svg, \.pdf, \.png"),
         (["euler/generic", "--animate", "--out", "a.svg"], r"expected \.html"),
-        (["euler/generic", "--only", "path,x"], "(?s)a scene with its centre.*got 'x'"),
+        (["euler/generic", "--only", "path,spheres,x"], "(?s)a scene with its centre.*got 'x'"),
         (["euler/generic", "--only", "errors,load"], "expected trajectory files.*errors,load"),
         (["euler/generic", "bad.csv"], "expected a column `t`"),
         (["euler/rest", "--animate"], "got a body at rest"),

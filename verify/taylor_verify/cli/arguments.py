@@ -196,7 +196,7 @@ what FAMILY  a shipped family (`taylor-verify list`), a template (a scene file i
 scene {_SCENE}
 files* FILE  trajectory files, read as `check` reads them: their errors are drawn against time
 --out NAME  write NAME-polhode.svg and so on; the ending of NAME says the format: .svg (default), .pdf, .png
---only NAME,...  draw only these: polhode, time, axis, path, errors, load;
+--only NAME,...  draw only these: polhode, time, axis, spheres, path, errors, load;
   a single picture is written to the file of --out itself
 --animate  draw one moving picture: a page that turns and needs no network (--out NAME.html)
 {_RUNG_OF_FILES}

@@ -32,6 +32,7 @@ def surface(portrait: Document) -> Surface:
     return Surface(
         times=np.array(course["t"]),
         course=attitudes[:, :, axis - 1],
+        letter="",
         name=f"body axis {axis}",
         axes=("x", "y", "z (space)"),
         marks=() if fixed is None else (Part(fixed, CROSS, name),),

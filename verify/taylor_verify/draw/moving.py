@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from html import escape
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.draw import components, mesh, polhode
+from taylor_verify.draw import components, mesh, polhode, spheres
 from taylor_verify.draw.axis_path import fixed_direction, momentum_of, upright
-from taylor_verify.draw.caption import OMEGA, Document, NotDrawn, caption
+from taylor_verify.draw.caption import Document, NotDrawn, caption
 from taylor_verify.draw.drawn_course import turns
 from taylor_verify.draw.mesh import Face, Mesh
+from taylor_verify.draw.surface import Surface
 from taylor_verify.draw.view import Numbers
 from taylor_verify.exact.row_arithmetic import quaternions
 
@@ -133,16 +135,20 @@ def _face(face: Face) -> dict[str, Any]:
 
 
 def _inset(document: Document) -> dict[str, Any] | None:
-    """Return the curve in the body, which is the polhode; None for a body that has none."""
-    try:
-        drawn = polhode.surface(document)
-    except NotDrawn:
-        return None
+    """Return the curve in the body: the polhode, or the direction of H or of the linear impulse."""
+    for surface_of in (polhode.surface, spheres.surface):
+        with suppress(NotDrawn):
+            return _on_surface(surface_of(document))
+    return None
+
+
+def _on_surface(drawn: Surface) -> dict[str, Any]:
+    borders = [curve for curve in drawn.curves if curve.look["gid"] == "separatrix"]
     return {
         "semi": _rounded(drawn.semi_axes, 6),
         "course": _rounded(drawn.course),
-        "curves": [_rounded(curve.points) for curve in drawn.curves],
-        "letter": OMEGA,
+        "curves": [_rounded(curve.points) for curve in borders],
+        "letter": drawn.letter,
         "name": drawn.name,
         "view": {"azimuth": drawn.side.azimuth, "elevation": drawn.side.elevation},
         "sinks": drawn.sinks,

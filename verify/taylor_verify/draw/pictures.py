@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Final
 
-from taylor_verify.draw import axis_path, centre_path, components, polhode
+from taylor_verify.draw import axis_path, centre_path, components, polhode, spheres
 from taylor_verify.draw.caption import Document, NotDrawn
 from taylor_verify.plotting.picture import Picture
 
@@ -15,6 +15,7 @@ KINDS: Final[Mapping[str, Callable[[Document], Picture]]] = {
     "polhode": polhode.picture,
     "time": components.picture,
     "axis": axis_path.picture,
+    "spheres": spheres.picture,
     "path": centre_path.picture,
 }
 

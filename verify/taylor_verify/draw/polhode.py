@@ -49,6 +49,7 @@ def surface(portrait: Document) -> Surface:
     return Surface(
         times=np.array(course["t"]),
         course=own,
+        letter=OMEGA,
         name=f"polhode: {OMEGA} in the body",
         semi_axes=(a, b, c),
         axes=tuple(f"{OMEGA}{s} = {v:.3g}" for s, v in zip(SUBSCRIPTS, (a, b, c), strict=True)),

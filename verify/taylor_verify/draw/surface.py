@@ -40,11 +40,12 @@ class Part:
 class Surface:
     """A course (n, 3) at its times (n,), which darkens with time, and what is drawn beside it.
 
-    ``axes`` are the names of the axes of the ellipsoid.
+    ``letter`` names the vector whose course it is. ``axes`` are the names of the axes of the ellipsoid.
     """
 
     times: Numbers
     course: Numbers
+    letter: str
     name: str
     semi_axes: tuple[float, float, float] = SPHERE
     axes: tuple[str, ...] = ("1", "2", "3")
