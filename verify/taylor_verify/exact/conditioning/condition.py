@@ -39,7 +39,7 @@ from taylor_verify.scenes.scene import Scene
 Places = np.ndarray[Any, np.dtype[np.int64]]
 
 # float64 reaches e^700, and squares of the errors are formed.
-MOST_DECAY: Final = 300
+_MOST_DECAY: Final = 300
 # If a derivative exceeds 1 + rate x time by more than this, the orbit passes an unstable motion. Then the
 # moments at which an error is made and observed matter.
 REGULAR: Final = 8.0
@@ -283,12 +283,17 @@ def path_of_run(scene: Scene, digits: int = DIGITS) -> Path:
     return Path(scene, times, enclosed(scene, times, digits))
 
 
+def is_far_decay(scene: Scene, elapsed: Fraction) -> bool:
+    """Return True if damping takes the errors out of the range of float64 in so much time."""
+    return abs(scene.body.damping * elapsed) > _MOST_DECAY
+
+
 def _refuse_far_decay(scene: Scene, elapsed: Sequence[Fraction]) -> None:
-    """Raise Unsettled where damping takes the errors out of the range of float64."""
-    exponent = abs(scene.body.damping * elapsed[-1])
-    if exponent > MOST_DECAY:
+    """Raise Unsettled where damping leaves no floor."""
+    if is_far_decay(scene, elapsed[-1]):
+        exponent = abs(scene.body.damping * elapsed[-1])
         raise Unsettled(
-            f"damping changes the momenta by e^{float_text(exponent)}: beyond e^{MOST_DECAY} it is not "
+            f"damping changes the momenta by e^{float_text(exponent)}: beyond e^{_MOST_DECAY} it is not "
             "known what becomes of an error"
         )
 

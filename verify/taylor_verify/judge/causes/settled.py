@@ -29,6 +29,7 @@ _DEFECT_ROUNDINGS: Final = 30.0
 _OF_EACH_NUMBER: Final = 0.1
 # Two families at once leave at most this.
 PAIR: Final = 1e-4
+# What leaves so little leaves nothing.
 NOTHING: Final = 1e-9
 # A fault with numbers leaves no more than a fair simulator does, or noise, or its numbers, or what they
 # differ by, have so few digits: a law of another form fits nearly, and with numbers of no short form.
@@ -158,8 +159,9 @@ class Choice:
             return None
         is_pair, count = candidate.kind == "pair", candidate.count
         most = max(most * _OF_EACH_NUMBER ** max(0, count - 1), NOTHING)
-        is_good = proof.worst <= min(PAIR, most) and self._is_evident(proof)
-        if count and not is_good and self._polished < _POLISHED:
+        if proof.worst <= min(PAIR, most) and self._is_evident(proof):
+            return proof
+        if count and self._polished < _POLISHED:
             self._polished += 1
             better = self._refitted(candidate)
             if better is not None and better.worst < proof.worst:
@@ -178,9 +180,8 @@ class Choice:
         """
         candidate, family = proven.candidate, proven.candidate.family
         are_drags = candidate.kind == "pair" and _DRAGS.issuperset(p.kind for p in family.parts)
-        if not candidate.count or proven.worst <= (
-            NOTHING if are_drags else max(self._least, FAIR)
-        ):
+        least = NOTHING if are_drags else max(self._least, FAIR)
+        if not candidate.count or proven.worst <= least:
             return True
         if not are_drags and self._leaves_noise(proven):
             return True

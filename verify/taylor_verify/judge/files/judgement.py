@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from taylor_verify.exact.conditioning.condition import MOST_DECAY
+from taylor_verify.exact.conditioning.condition import is_far_decay
 from taylor_verify.exact.route import solution
 from taylor_verify.exact.solution import Unsettled
 from taylor_verify.judge.causes.likely import NOT_LOOKED_FOR, Explained, causes_of_file
@@ -386,12 +386,12 @@ def _judged_within_reach(
 
 
 def _is_far(answer: FileRows, spans: int = MOST_SPANS) -> bool:
-    """Return True for rows more than ``spans`` spans away that the Taylor route, or no floor, reaches."""
+    """Return True for rows more than ``spans`` spans away, where the truth is dear or no floor is known."""
     scene, times = answer.scene, answer.times
     reach = max(abs(t - scene.clock.start) for t in (times[0], times[-1]))
     if reach <= spans * max(abs(t) for t in scene.clock.elapsed):
         return False
-    return abs(scene.body.damping) * reach > MOST_DECAY or solution(scene).route == "taylor"
+    return is_far_decay(scene, reach) or solution(scene).route == "taylor"
 
 
 def _alone(answer: FileRows, status: Status, why: str, cause: Cause) -> Judgement:

@@ -148,10 +148,8 @@ class Way:
         ran = self._went(course)
         if not self._was_too_fast(ran, course):
             return course, ran
-        fastest, watched = (
-            self._linearised.fastest(*_some(ran, course.grid)),
-            self._instants(self._look_count),
-        )
+        fastest = self._linearised.fastest(*_some(ran, course.grid))
+        watched = self._instants(self._look_count)
         if ran.outcome is Outcome.FINISHED and fastest <= _MORE_STEPS * rate:
             course = _Course(*watched, self._calls, fastest)
             ran = self._went(course)
