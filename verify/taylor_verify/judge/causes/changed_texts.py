@@ -75,11 +75,16 @@ def changed_texts(loads: Loads) -> Iterator[tuple[str, Loads]]:
     yield from _exchanged(loads)
     yield from _hung_otherwise(loads)
     for name, entries in loads.vectors:
-        if any(terms(str(entry)) != ["0"] for entry in entries):
+        if has_text(entries):
             turned = _with_part(loads, [name], lambda term: True, _CHANGES[_WRONG_WAY])
             yield f"{name} {_WRONG_WAY}", turned
     for (noun, vectors, is_part), (words, change) in product(_parts(loads), _CHANGES.items()):
         yield f"{noun} {words}", _with_part(loads, vectors, is_part, change)
+
+
+def has_text(entries: Iterable[Entry]) -> bool:
+    """Return True if a vector of loads is not nothing."""
+    return any(terms(str(entry)) != ["0"] for entry in entries)
 
 
 def _other_speeds(loads: Loads) -> Iterator[tuple[str, Loads]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import ceil
 from typing import Final
 
 import numpy as np
@@ -12,7 +13,8 @@ from taylor_verify.judge.causes.arcs import moved
 from taylor_verify.judge.causes.float_answer import Answer, velocities_of
 from taylor_verify.judge.causes.many_flows import Floats
 
-_STEPS: Final = 4
+# Steps from a row to the next.
+_STEPS: Final = 8
 _ROUNDS: Final = 5
 # A shift leaves less of the error than this to first order, and spans no more rows.
 _FITS: Final = 0.7
@@ -32,8 +34,9 @@ def true_states(answer: Answer, count: int) -> Floats:
 
 def at_other_times(answer: Answer, states: Floats, late: Floats) -> Floats:
     """Return the true motion so much later than at the rows, from the states there."""
-    own = replace(answer, stepping=None)
-    return moved(own, answer.right, states, answer.times, late, _STEPS)
+    own, rows = replace(answer, stepping=None), float(np.max(np.abs(late))) / answer.spacing
+    steps = max(1, ceil(_STEPS * rows))
+    return moved(own, answer.right, states, answer.times, late, steps)
 
 
 def off_pace(answer: Answer) -> float:

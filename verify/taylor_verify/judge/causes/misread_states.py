@@ -12,9 +12,8 @@ from typing import Final
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
-from taylor_verify.judge.causes.changed_texts import NAME, added, rewritten, written_out
+from taylor_verify.judge.causes.changed_texts import NAME, added, rewritten
 from taylor_verify.judge.causes.fit import Family, fault
-from taylor_verify.judge.causes.float_answer import Answer
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.written_numbers import Number
 from taylor_verify.scenes.loads.loads import Loads
@@ -35,21 +34,6 @@ def faults_of_states(right: Equations) -> Iterator[Family]:
         for name, other in _misread_states(acting.written):
             if next(other.faults(), None) is None:
                 yield fault(name, "states", {"acting": acting.of(other)})
-
-
-def held_over_steps(answer: Answer, h: float) -> Changes:
-    """Return the scene whose loads are taken once in a step, and held in between; none if it has faults."""
-    acting = answer.right.acting
-    assert acting is not None
-    loads, every = written_out(acting.written), Fraction(h).limit_denominator(10**6)
-    names = {name: f"{name}_held" for name, _ in loads.vectors}
-    vectors = tuple((n, tuple(f"{own}{i}" for i in (1, 2, 3))) for n, own in names.items())
-    states = tuple(
-        Held(names[name], None, entries, every, Fraction(0), is_vector=True)
-        for name, entries in loads.vectors
-    )
-    other = replace(loads, vectors=vectors, states=states)
-    return {"acting": acting.of(other)} if next(other.faults(), None) is None else {}
 
 
 def _misread_states(loads: Loads) -> Iterator[tuple[str, Loads]]:

@@ -7,14 +7,14 @@ each arc. An attitude's update takes q, the angular velocities at both ends of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
 from taylor_verify.judge.causes.changed_equations import Equations
-from taylor_verify.judge.causes.many_flows import Floats, flow
+from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.models.frame import attitude_rate
 from taylor_verify.numbers import rotation
 
@@ -36,6 +36,7 @@ class Method:
 
     One that ``has_frame`` leads the attitude and the centre as well. One with a ``run`` (answer, equations,
     h, components) needs more than the state: its step is nearly right, and the run is the motion.
+    ``held`` are loads that are taken once in a step, where that is all of the method.
     """
 
     order: int
@@ -43,6 +44,7 @@ class Method:
     evaluations: int = 0
     has_frame: bool = False
     run: Any = None
+    held: Any = None
 
     @property
     def is_dear(self) -> bool:
@@ -109,14 +111,6 @@ def _in_place(equations: Equations, time: Floats, v: Floats, h: Floats) -> Float
     z = v.copy()
     for i in range(v.shape[1]):
         z[:, i] += h * equations.rates(time, z)[:, i]
-    return z
-
-
-def _held_loads(equations: Equations, time: Floats, z: Floats, h: Floats) -> Floats:
-    """Return the exact step under the loads at its begin, held in body axes."""
-    load = equations.loads_at(time, z, equations.velocities(time, z))
-    z = flow(replace(equations, acting=None, load=load).rates, z, time, h, 1)
-    z[:, equations.size + 4 :] += h * equations.current[: z.shape[1] - equations.size - 4, None]
     return z
 
 
@@ -189,8 +183,6 @@ METHODS: Final[Mapping[str, Method]] = {
     ),
     "RK4 (3/8)": _runge_kutta(4, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [1 / 3], [-1 / 3, 1], [1, -1, 1]),
 }
-# The loads of a scene, taken once in a step.
-HELD: Final = Method(1, _held_loads, _EVALUATIONS, has_frame=True)
 # Methods of the momentum of a rigid body.
 OF_MOMENTUM: Final[Mapping[str, Method]] = {
     "momentum turned by the rate at the begin of the step": Method(1, _turned_by_the_rate),

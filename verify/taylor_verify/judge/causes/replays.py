@@ -14,6 +14,7 @@ from typing import Final
 
 import numpy as np
 
+from taylor_verify.judge.causes import held_loads
 from taylor_verify.judge.causes.arcs import Arcs
 from taylor_verify.judge.causes.candidate import Candidate
 from taylor_verify.judge.causes.changed_equations import Changes, Equations
@@ -21,10 +22,8 @@ from taylor_verify.judge.causes.fit import across, fault, orthonormal
 from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.methods_with_memory import with_memory
-from taylor_verify.judge.causes.misread_states import held_over_steps
 from taylor_verify.judge.causes.proof import whole
 from taylor_verify.judge.causes.replayed_methods import (
-    HELD,
     METHODS,
     OF_MOMENTUM,
     OF_PUSHED_MOMENTUM,
@@ -120,10 +119,11 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         known |= OF_PUSHED_MOMENTUM
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
-    if answer.right.acting is not None:
-        known = {**known, "loads": HELD}
-    tried = [replayed.steps(known, _ALONE)]
-    if answer.count > 2 * _ARCS:
+    held = dict(held_loads.methods(answer.right.acting)) if answer.right.acting else {}
+    of_loads = [*replayed.steps(held, _ALONE)]
+    is_exact = any(steps.left < _ROUNDINGS * replayed.floor for steps in of_loads)
+    tried = [iter(of_loads), *[replayed.steps(known, _ALONE)] * (not is_exact)]
+    if answer.count > 2 * _ARCS and not is_exact:
         # A method with memory has a first step of another kind.
         later = answer.at(np.s_[1:])
         beyond = _clear(later, stride)
@@ -132,7 +132,7 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         near = _LEAVES if steps.method.run is None else _NEARLY
         if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
-            changes = held_over_steps(answer, h) if steps.method is HELD else {}
+            changes = steps.method.held.changes(h) if steps.method.held else {}
             of_steps = fault(_name(steps, answer), "method", changes)
             motion = partial(motion_of_steps, steps)
             yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
@@ -152,9 +152,9 @@ def _clear(answer: Answer, stride: int) -> _Replays | None:
 def _name(steps: Steps, answer: Answer) -> str:
     """Return the name of the steps of an answer."""
     long = steps.words(answer)
-    if steps.method is HELD:
+    if steps.method.held:
         when = f"every {long.removeprefix('h = ')}" if "h = " in long else f"at each of {long}"
-        return f"loads taken {when} and held in between"
+        return f"{steps.name} taken {when} and held in between"
     words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
     if steps.method.order > 1:
         words = f"truncation of order {steps.method.order}: {steps.name}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -25,6 +26,7 @@ _STANDS_OUT: Final = 100.0
 
 def wrong_rows(answer: Answer) -> Cause | None:
     """Return the cause of an answer most of whose rows are right."""
+    answer = replace(answer, quantities=_far_off(answer))
     bad = np.zeros(answer.count, dtype=bool)
     for name in answer.failed:
         bad |= answer.error[name] > max(_BAD * answer.roundings[name], _OWN * answer.worst[name])
@@ -32,6 +34,12 @@ def wrong_rows(answer: Answer) -> Cause | None:
     if not len(wrong) or np.count_nonzero(good) < max(_FEWEST, answer.count // _ONE_IN):
         return None
     return _repeated(answer, wrong) or _interpolated(answer, bad) or _single(answer, wrong, good)
+
+
+def _far_off(answer: Answer) -> tuple[str, ...]:
+    """Return the quantities that failed by more than a simulator's own errors beside those of others."""
+    largest = max(answer.worst[name] for name in answer.failed)
+    return tuple(answer.quantity(n) for n in answer.failed if answer.worst[n] > _OWN * largest)
 
 
 def are_saved_twice(answer: Answer) -> bool:
@@ -88,8 +96,7 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
             q = None if file.q is None else between(answer, nodes, file.q, turns)
             unit = None if q is None else q / np.linalg.norm(q, axis=1, keepdims=True)
             motion = Motion(v, unit)
-            errors = {name: error[: nodes[-1]] for name, error in answer.errors(motion).items()}
-            leaves = answer.parts(errors)
+            leaves = _leaves(answer, answer.errors(motion), np.s_[: nodes[-1]])
             if not leaves:
                 return None
             allowed = max(_LEAVES, min(0.1, _ROUNDINGS * answer.floor([*leaves])))
@@ -97,6 +104,15 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
                 words = f"{name} between exact rows: every {every * abs(answer.stride)} rows one is exact"
                 return Cause(words, "interpolation", leaves)
     return None
+
+
+def _leaves(answer: Answer, errors: dict[str, Floats], rows: slice) -> dict[str, float]:
+    """Return what is left of the error of the same rows: others may be wrong for another reason."""
+    return {
+        name: float(np.max(errors[name][rows])) / max(float(np.max(answer.error[name][rows])), 1e-300)
+        for name in answer.failed
+        if name in errors
+    }
 
 
 def _rates(answer: Answer) -> tuple[Floats, Floats]:

@@ -19,6 +19,8 @@ from taylor_verify.judge.causes.many_flows import Floats
 _ROUNDS: Final = 5
 _MOST_ROWS: Final = 6.0
 _ROUNDINGS: Final = 10.0
+# A file that is a whole number of rows ahead is so much nearer to the truth of those rows.
+_NEARER: Final = 0.1
 # What other times leave of the error, at most, and where there is no rounding to reach.
 _LEAVES: Final = 1e-2
 _NEAR: Final = 1e-5
@@ -66,7 +68,8 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
     compared = np.concatenate([np.r_[part] for part, _ in parts.values()])
     sizes = [np.full((part.stop - part.start, 1), size) for part, size in parts.values()]
     scale, spacing = np.concatenate(sizes), answer.spacing
-    late, at = np.zeros(answer.count), z
+    late = np.full(answer.count, spacing * _whole_rows(rows / scale, z[0, compared] / scale))
+    at = at_other_times(answer, z, late) if late.any() else z
     for _ in range(_ROUNDS):
         slopes = right.rates(answer.times + late, at)[0, compared] / scale
         apart = (rows - at[0, compared]) / scale
@@ -81,6 +84,20 @@ def _offsets(answer: Answer) -> tuple[Floats, Floats, bool]:
     paces = np.linalg.svd(slopes, compute_uv=False)
     is_line = len(paces) < 2 or bool(paces[1] < _ON_A_LINE * paces[0])
     return late, np.linalg.norm((rows - at[0, compared]) / scale, axis=0), is_line
+
+
+def _whole_rows(rows: Floats, true: Floats) -> int:
+    """Return the number of rows by which a file is ahead, where it is clearly nearer to the truth so."""
+    count = rows.shape[1]
+
+    def apart(ahead: int) -> float:
+        first, last = max(0, -ahead), min(count, count - ahead)
+        off = rows[:, first:last] - true[:, first + ahead : last + ahead]
+        return float(np.median(np.linalg.norm(off, axis=0)))
+
+    most = min(int(_MOST_ROWS), count // 2)
+    nearest = min(range(-most, most + 1), key=lambda ahead: (apart(ahead), abs(ahead)))
+    return nearest if apart(nearest) < _NEARER * apart(0) else 0
 
 
 def _pattern(answer: Answer, late: Floats) -> str | None:

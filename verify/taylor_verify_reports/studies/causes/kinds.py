@@ -327,7 +327,7 @@ SIMPLE: Final = (
     Kind("own start", ("another start",), _own_start),
     Kind("jump", ("jump", "first two rows"), _jump),
     Kind("asleep", ("at rest", "all velocities are 0"), _asleep),
-    Kind("sign of an axis", ("other sign on axis", "contradicts"), _sign),
+    Kind("sign of an axis", ("other sign on axis", "contradicts"), _sign, (*RIGID, "fluid")),
     Kind("bias", ("constant offset",), _bias),
     Kind("degrees", ("degrees",), _degrees, (*RIGID, "fluid")),
     Kind("space axes", ("space axes",), _space_axes, (*RIGID, "fluid")),

@@ -120,11 +120,12 @@ _STEPS: Final[dict[str, _Step]] = {
         [1 / 6, 1 / 3, 1 / 3, 1 / 6], [0.5], [0, 0.5], [0, 0, 0.5]
     ),
     "one Newton step of backward Euler": _newton,
-    "components updated in place": _in_turn,
 }
+_IN_PLACE: Final = "components updated in place"
 _HELD: Final = ("q + h q omega / 2 with the rate at the begin",)
 OF_STEPS: Final = (
     *(Kind(name, (name, "attitude turned by"), by(step, mean)) for name, step in _STEPS.items()),
+    Kind(_IN_PLACE, (_IN_PLACE, "attitude turned by"), by(_in_turn, mean), (*RIGID, "fluid")),
     Kind(
         "momentum turned",
         ("momentum turned", "attitude turned by"),
