@@ -256,8 +256,13 @@ class Arcs(Evidence):
 
     @cached_property
     def compared(self) -> int:
-        """Number of components that are compared: v, and q where momenta do not tell the velocities."""
-        return self.answer.n + 4 * (self.answer.keeps_momenta and self.answer.file.q is not None)
+        """Number of components that are compared: v, and q where momenta do not tell the velocities.
+
+        No step of v leads q on.
+        """
+        answer = self.answer
+        has_q = answer.keeps_momenta and answer.file.q is not None and answer.stepping is None
+        return answer.n + 4 * has_q
 
     @property
     def is_coarse(self) -> bool:

@@ -18,7 +18,7 @@ from taylor_verify.judge.causes.float_answer import Answer, Motion
 from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.proof import LEAVES, ROUNDINGS
 from taylor_verify.judge.causes.replayed_methods import METHODS, Method
-from taylor_verify.judge.causes.replays import Steps, in_steps, moved_by
+from taylor_verify.judge.causes.replays import Steps, in_steps, moved_by, nearest_count
 from taylor_verify.judge.causes.terms import faults_of_terms
 from taylor_verify.scenes.instants import evenly
 
@@ -141,6 +141,9 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
         fit = gauss_newton(evidence, family)
         return fit, evidence.defects([family.changes(fit.numbers)]).ravel()
 
+    def left(count: int) -> float:
+        return fitted(count)[0].size / arcs.size
+
     few, more = _TRIED
     first, second = fitted(few)[1], fitted(more)[1]
     change = first - second
@@ -153,17 +156,16 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
         if not 1 / _MOST < inverse < _LARGEST:
             return None
         count = max(1, round(1 / inverse))
-        if fitted(count)[0].size > _LEAVES * arcs.size:
-            around = range(max(1, count - 1), count + 2)
-            count = min(around, key=lambda count: fitted(count)[0].size)
+        if left(count) > max(_EXACT, ROUNDINGS * arcs.floor):
+            count = nearest_count(left, count, _MOST)
     else:
         counts = _counts_of_short_numbers(float(fitted(1)[0].numbers[0]), spacing)
         if len(counts) != 1:
             return None
         (count,) = counts
-    best = fitted(count)[0]
-    left = best.size / arcs.size
-    return (Steps("", method, count, left), best) if left < _LEAVES else None
+    return (
+        (Steps("", method, count, left(count)), fitted(count)[0]) if left(count) < _LEAVES else None
+    )
 
 
 def _counts_of_short_numbers(number: float, spacing: float) -> list[int]:

@@ -6,9 +6,9 @@ gives the number of steps, with which the arcs are stepped again as the simulato
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from itertools import chain
 from typing import Final
 
@@ -168,12 +168,30 @@ def steps_beside(
 
     ``slopes`` are those of families, (entries, numbers).
     """
-    if arcs.of_right.shape != (arcs.answer.n, len(arcs.first)):
-        return []  # momenta are compared beside the start or the attitude, which no step of v leads to
-    bases = [orthonormal(each / np.linalg.norm(each, axis=0), 1e-9) for each in slopes]
+    # Momenta are compared beside the start or the attitude, which no step of v leads to.
+    n, count = arcs.answer.n, len(arcs.first)
+    of_v = [each.reshape(*arcs.of_right.shape, -1)[:n, :count] for each in slopes]
+    columns = [each.reshape(n * count, -1) for each in of_v]
+    sizes = [np.linalg.norm(each, axis=0) for each in columns]
+    bases = [orthonormal(c / s, 1e-9) for c, s in zip(columns, sizes, strict=True) if np.all(s > 0)]
     explicit = {name: method for name, method in METHODS.items() if not method.is_dear}
     steps = _Replays(arcs, stride, [{}, *faults], bases).steps(explicit, _BESIDE)
     return [each for each in _each_best(steps) if each.left < _BESIDE][:_METHODS]
+
+
+def nearest_count(left: Callable[[int], float], count: int, most: int) -> int:
+    """Return the number of steps that leaves the least, of those around one, and on from there.
+
+    What is left is asked as long as it falls: a first estimate may be far off where the error of a method
+    does not end with its steps.
+    """
+    best = min((k for k in (count - 1, count, count + 1) if 1 <= k <= most), key=left, default=most)
+    onward = best - count
+    while onward and left(best) < _NEARLY and 1 <= best + onward <= most:
+        if left(best + onward) >= left(best):
+            break
+        best += onward
+    return best
 
 
 def _each_best(steps: Iterator[Steps]) -> list[Steps]:
@@ -212,28 +230,36 @@ class _Replays:
         for name, method in methods.items():
             fine = self._stepped(method, _fine(method), self.sets)
             for place, count in self._near(method, defects, fine, near):
-                (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
-                if np.all(np.isfinite(rest)):
-                    rests = (across(basis, rest) for basis in self._beside(place))
-                    left = min(float(np.linalg.norm(each)) for each in rests)
-                    yield Steps(name, method, count, left / self.size)
+                left = cache(partial(self._left, method, place))
+                best = nearest_count(left, count, self._most(method))
+                yield Steps(name, method, best, left(best))
+
+    def _left(self, method: Method, place: int, count: int) -> float:
+        """Return the part of the defects that so many steps from row to row leave."""
+        (rest,) = self._stepped(method, count * self.stride, [self.sets[place]])
+        if not np.all(np.isfinite(rest)):
+            return np.inf
+        rests = (across(basis, rest) for basis in self._beside(place))
+        return min(float(np.linalg.norm(each)) for each in rests) / self.size
+
+    def _most(self, method: Method) -> int:
+        return max(1, _MOST_OF_DEAR // self.stride) if method.is_dear else _MOST
 
     def _near(
         self, method: Method, defects: Floats, rests: Floats, near: float
     ) -> Iterator[tuple[int, int]]:
-        """Yield each place with the numbers of steps by which the error of the method is the defects.
+        """Yield each place with numbers of steps by which the error of the method is about the defects.
 
         Much finer steps than those measured are measured once more: the first-order term alone misses them.
         """
-        most = _MOST_OF_DEAR // self.stride if method.is_dear else _MOST
         for place, (own, rest) in enumerate(zip(defects, rests, strict=True)):
             counts = self._counts(method, place, own, own - rest, near, _fine(method))
             steps = counts[0] * self.stride if counts else 0
-            if _MUCH_FINER * _fine(method) < steps <= most:
+            if _MUCH_FINER * _fine(method) < steps <= self._most(method):
                 (finer,) = self._stepped(method, steps, [self.sets[place]])
                 counts = self._counts(method, place, own, own - finer, near, steps) or counts
-            around = {max(1, count) + more for count in counts for more in (-1, 0, 1)}
-            yield from ((place, count) for count in sorted(around) if 1 <= count <= most)
+            some = {max(1, count) for count in counts if count <= self._most(method) + 1}
+            yield from ((place, count) for count in sorted(some))
 
     def _counts(
         self, method: Method, place: int, defects: Floats, error: Floats, near: float, steps: int

@@ -109,7 +109,8 @@ def _interpolated(answer: Answer, bad: Floats) -> Cause | None:
 def _leaves(answer: Answer, errors: dict[str, Floats], rows: slice) -> dict[str, float]:
     """Return what is left of the error of the same rows: others may be wrong for another reason."""
     return {
-        name: float(np.max(errors[name][rows])) / max(float(np.max(answer.error[name][rows])), 1e-300)
+        name: float(np.max(errors[name][rows]))
+        / max(float(np.max(answer.error[name][rows])), 1e-300)
         for name in answer.failed
         if name in errors
     }
