@@ -212,7 +212,7 @@ class Search:
 
     def _beside_steps(self, linear: list[_Linear], stride: int) -> Cause | None:
         """Return a cause beside the steps of a coarse method."""
-        few = [each.slopes for each in linear if each.family.count <= FEW]
+        few = [each.slopes for each in linear if each.family.count <= max(FEW, self.answer.n)]
         right, budget = self.answer.right, self.answer.budget
         texts = [fault for fault in faults_of_texts(right) if fault.name.endswith("left out")]
         faults = [fault.changes(fault.right) for fault in (*faults_of_terms(right), *texts)]
