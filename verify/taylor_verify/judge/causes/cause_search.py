@@ -20,10 +20,10 @@ from taylor_verify.judge.causes.float_answer import Answer, matrices
 from taylor_verify.judge.causes.in_space_axes import in_world
 from taylor_verify.judge.causes.inexact_conventions import readings
 from taylor_verify.judge.causes.kinematics import kinematics
-from taylor_verify.judge.causes.many_flows import Floats
 from taylor_verify.judge.causes.numbers_and_states import in_numbers, in_states
 from taylor_verify.judge.causes.other_readings import attitudes, rates, with_omega
 from taylor_verify.judge.causes.paths import contradicts
+from taylor_verify.judge.causes.pieces import causes_in_pieces, of_part
 from taylor_verify.judge.causes.proof import are_explained, left_of_all, may_leave, whole
 from taylor_verify.judge.causes.settled import PAIR
 from taylor_verify.judge.causes.spoiled_rows import are_saved_twice, wrong_rows
@@ -36,9 +36,9 @@ _PROVEN: Final = 0.1
 _SLIGHT: Final = 1e-6
 _ROUNDINGS: Final = 10.0
 _FEWEST: Final = 6
-# A jump stands out if it is so many times what any other row is off by.
-_JUMP: Final = 100.0
-_SHORTEST: Final = 12
+_OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
+# A convention that begins within the run has at least this part of its largest error at once.
+_AT_ONCE: Final = 0.03
 # The truth has left the start if it is so many roundings of the file away.
 _LEFT: Final = 30.0
 
@@ -59,6 +59,8 @@ def causes_of(answer: Answer) -> list[Cause]:
     undone = _undone(answer, by_group)
     if undone:
         return undone
+    if not by_group and (later := _read_from_some_row(answer)):
+        return later
     # The vectors of one quantity fail together, also where the error is that of one of them.
     largest = max((answer.worst[name] for name in by_group if name in answer.groups), default=0.0)
     slight = {name for name in answer.groups if answer.worst[name] < _SLIGHT * largest}
@@ -77,6 +79,24 @@ def causes_of(answer: Answer) -> list[Cause]:
     with suppress(Spent):
         causes += _of_motion(answer, moving, "attitude" in left)
     return causes
+
+
+def _read_from_some_row(answer: Answer) -> list[Cause]:
+    """Return the conventions of all rows behind some right ones, where they begin at once."""
+    failed = answer.failed
+    is_wrong = [answer.error[name] > _LEFT * answer.roundings[name] for name in failed]
+    first = int(np.argmax(np.any(is_wrong, axis=0)))
+    begins_at_once = any(
+        answer.error[name][first] > _AT_ONCE * answer.worst[name] for name in failed
+    )
+    if not (first and begins_at_once and answer.count - first >= _FEWEST):
+        return []
+    rest = answer.at(np.s_[first:])
+    by_group = readings(rest)
+    if by_group.keys() != set(rest.failed):
+        return []
+    where = f"from t = {rest.times[0] + answer.right.start:.6g} on"
+    return [replace(cause, where=where) for cause in _each_once(by_group)]
 
 
 def _some(cause: Cause | None) -> list[Cause]:
@@ -139,7 +159,7 @@ def _of_moving_part(answer: Answer) -> list[Cause]:
         wrong = starts.wrong_arcs(defects)
         is_part = len(answer.right.switches) and 0 < 2 * len(wrong) < len(defects)
         causes = _some(in_numbers(answer, wrong)) if is_part else []
-        causes = causes or _pieces(answer, defects) or _some(search.cause())
+        causes = causes or causes_in_pieces(answer, defects, causes_of) or _some(search.cause())
         return causes or _from_own_start(answer)
     with suppress(Spent):
         return _some(search.cause() or simple)
@@ -157,7 +177,7 @@ def _from_own_start(answer: Answer) -> list[Cause]:
         return []
     return _beside(
         Cause("another start", "own start", {}),
-        [_of_part(answer, part, cause, "") for cause in causes],
+        [of_part(answer, part, cause, "") for cause in causes],
     )
 
 
@@ -227,91 +247,6 @@ def _by_clock(answer: Answer, of_attitude: Cause) -> list[Cause]:
     if causes and are_explained(answer, causes[-1].leaves):
         return _beside(Cause(words, "clock", {}), causes)
     return []
-
-
-_OF_PIECES: Final = frozenset({"own start", "jump at the start", "jump", "at rest"})
-
-
-def _pieces(answer: Answer, defects: Floats) -> list[Cause] | None:
-    """Return the causes of an answer that is right in pieces, each with the times of its ends."""
-    cause = starts.exact_in_pieces(answer, defects)
-    if cause is not None:
-        return [cause]
-    if causes := _after_a_jump(answer, defects):
-        return causes
-    causes, last = list[Cause](), answer.count - 1
-    for begin, end in starts.wrong_spans(answer, defects):
-        stopped = starts.stopped(answer, begin) if end == last else None
-        if stopped is not None:
-            return [stopped]
-        with suppress(Spent):
-            causes += _within(answer, begin, end)
-    return causes or None
-
-
-def _after_a_jump(answer: Answer, defects: Floats) -> list[Cause]:
-    """Return a jump between the first two rows, and the causes of the motion from the second row on."""
-    if len(defects) < _SHORTEST or defects[0] < _JUMP * np.max(defects[1:]):
-        return []
-    part = starts.piece(answer, 1, answer.count - 1)
-    begin, end = (answer.times[row] + answer.right.start for row in (0, 1))
-    words = f"a jump between the first two rows, from t = {begin:.6g} to {end:.6g}"
-    later = [_of_part(answer, part, cause, "from the second row on") for cause in causes_of(part)]
-    return [Cause(words, "jump at the start", {}), *later] if later else []
-
-
-def _within(answer: Answer, begin: int, end: int, is_right_before: bool = True) -> list[Cause]:
-    """Return the causes of the rows between two, which the motion before and after them does not have.
-
-    What acts in a part of them is said of that part, and the rest is asked again.
-    """
-    # A load may begin or end between two rows: the arcs at both ends are left out.
-    first, last = begin + bool(begin), end - (end < answer.count - 1)
-    if last - first < _FEWEST:
-        return []
-    part = starts.piece(answer, first, last)
-    if causes := causes_of(part):
-        if all_along := _all_along(answer, causes[0]):
-            return [all_along, *causes[1:]]
-        where = _times(answer, begin, end, is_right_before)
-        return [_of_part(answer, part, cause, where) for cause in causes]
-    half = part.at(np.s_[: part.count // 2])
-    cause = Dynamics(half).cause() if half.count >= _SHORTEST and half.moving else None
-    if cause is None or cause.method is not None:
-        return []
-    other = replace(part, right=part.right.changed(cause.changes))
-    wrong = starts.wrong_arcs(starts.roundings(other))
-    if not len(wrong):
-        return []
-    change = first + int(wrong[0])
-    where = _times(answer, begin, change, is_right_before)
-    causes = [_of_part(answer, half, cause, where)]
-    with suppress(Spent):
-        causes += _within(answer, change, end, is_right_before=False)
-    return causes
-
-
-def _all_along(answer: Answer, cause: Cause) -> Cause | None:
-    """Return a cause of a part that explains the whole answer, as where a limit is not left before."""
-    changed = answer.right.changed(cause.changes)
-    leaves = left_of_all(answer, changed) if cause.changes else {}
-    return replace(cause, leaves=leaves) if leaves else None
-
-
-def _of_part(answer: Answer, part: Answer, cause: Cause, where: str) -> Cause:
-    """Return the cause of a part of the rows; no scene has a fault in a part of its run."""
-    leaves = {
-        name: left * part.worst[name] / answer.worst[name] for name, left in cause.leaves.items()
-    }
-    return replace(cause, leaves=leaves, where=where, changes={})
-
-
-def _times(answer: Answer, begin: int, end: int, is_right_before: bool) -> str:
-    """Return in words the part of the run between two rows."""
-    first, last = (f"t = {answer.times[row] + answer.right.start:.6g}" for row in (begin, end))
-    if end == answer.count - 1:
-        return f"right up to {first}, then" if is_right_before else f"from {first} on"
-    return f"from {first} to {last.removeprefix('t = ')}" if begin else f"up to {last}"
 
 
 def _clock_undone(answer: Answer) -> list[Cause]:

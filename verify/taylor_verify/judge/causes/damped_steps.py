@@ -35,8 +35,12 @@ _LARGEST: Final = 2.0
 # A number of damping within this part of one of three digits is that one.
 _SHORT: Final = 1e-6
 _DIGITS: Final = 3
-# How near, where no step shows but by the number of its damping.
+# How near, and to how few digits, where no step shows but by the number of its damping: to this part, or to
+# so many errors of the number, which are no more than the last.
+_FEW_DIGITS: Final = 2
 _SURELY: Final = 1e-9
+_ERRORS: Final = 5.0
+_SURE_ENOUGH: Final = 2e-7
 
 
 @dataclass(frozen=True)
@@ -159,7 +163,7 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
         if left(count) > max(_EXACT, ROUNDINGS * arcs.floor):
             count = nearest_count(left, count, _MOST)
     else:
-        counts = _counts_of_short_numbers(float(fitted(1)[0].numbers[0]), spacing)
+        counts = _counts_of_short_numbers(fitted(1)[0], spacing)
         if len(counts) != 1:
             return None
         (count,) = counts
@@ -168,15 +172,18 @@ def _fit(arcs: Arcs, stride: int, method: Method, terms: Changes) -> tuple[Steps
     )
 
 
-def _counts_of_short_numbers(number: float, spacing: float) -> list[int]:
-    """Return the numbers of steps in which the damping of a whole row has a number of a few digits.
+def _counts_of_short_numbers(fit: Fitted, spacing: float) -> list[int]:
+    """Return the numbers of steps in which the damping of a whole row has a number of two digits.
 
     An exponential law has one number for all.
     """
-    of_row, counts = _FIRST[2](number, spacing), list[int]()
-    for count in range(1, _MOST + 1) if of_row > 0 else ():
+    number, counts = float(fit.numbers[0]), list[int]()
+    error = 0.0 if fit.errors is None else float(fit.errors[0])
+    near = max(_SURELY, _ERRORS * error / abs(number))
+    of_row = _FIRST[2](number, spacing)
+    for count in range(1, _MOST + 1) if of_row > 0 and near < _SURE_ENOUGH else ():
         factor, h = of_row ** (1 / count), spacing / count
-        if any(_length(law[3](factor, h)) < _SURELY for law in _LAWS):
+        if any(_length(law[3](factor, h), _FEW_DIGITS) < near for law in _LAWS):
             counts.append(count)
     return counts
 
@@ -198,9 +205,9 @@ def _candidate(
     return Candidate(family, numbers, steps.left, motion, LEAVES, steps)
 
 
-def _length(number: float) -> float:
+def _length(number: float, digits: int = _DIGITS) -> float:
     """Return how far a number is from one of a few digits, as a part of it."""
-    return abs(float(f"{number:.{_DIGITS}g}") / number - 1) if number else 1.0
+    return abs(float(f"{number:.{digits}g}") / number - 1) if number else 1.0
 
 
 def _motion(steps: Steps, h: float, answer: Answer, changes: Changes) -> Motion | None:

@@ -51,6 +51,9 @@ _NO_ROTATION: Final = 1e-5
 _MOST_ROWS: Final = 1500
 # The search for causes is silent if float64 or a decomposition fails, or at the end of its budget.
 _SILENT: Final = (OverflowError, np.linalg.LinAlgError, Spent, Unsettled)
+# A motion that has grown to so many times that of the scene runs away; so many rows before it may tell why.
+_AWAY: Final = 10.0
+_FEWEST_BEFORE: Final = 12
 # What may be spent on the load that explains the rows: it is told where the search has ended.
 _FOR_A_LOAD: Final = 600_000.0
 
@@ -173,7 +176,7 @@ def explained(answer: Answer, own: Mapping[str, Floats] | None = None) -> Explai
     """
     causes: list[Cause] = []
     with suppress(*_SILENT):
-        causes = causes_of(answer)
+        answer, causes = _causes(answer)
     causes = [*causes, *plugged_causes(answer)] if answer.has_rates else _of_frame(answer, causes)
     are_readings = (cause.kind in _READINGS or cause.name in _OTHER_BODIES for cause in causes)
     is_motion = bool(causes) and not any(are_readings)
@@ -183,6 +186,23 @@ def explained(answer: Answer, own: Mapping[str, Floats] | None = None) -> Explai
             missing = missing_load(replace(answer, budget=Budget(_FOR_A_LOAD)))
     likely = tuple(_likely(cause, answer, own or {}) for cause in causes)
     return Explained(likely, is_motion, missing_load=missing)
+
+
+def _causes(answer: Answer) -> tuple[Answer, list[Cause]]:
+    """Return the causes of an answer, or of its rows before it runs away, with the rows that have them."""
+    far = np.any(np.abs(answer.file.v) > _AWAY * answer.sizes, axis=1)
+    before = answer.at(np.s_[: int(np.argmax(far))])
+    if before.count < _FEWEST_BEFORE:
+        return answer, causes_of(answer)
+    with suppress(*_SILENT), answer.budget.at_most(answer.budget.left / 2):
+        if causes := causes_of(answer):
+            return answer, causes
+    last = before.times[-1] + answer.right.start
+    words = f"up to t = {last:.6g}, before the motion runs away"
+    causes = causes_of(before)
+    return before, [
+        replace(cause, where=": ".join(filter(None, (words, cause.where)))) for cause in causes
+    ]
 
 
 def _of_frame(answer: Answer, causes: Iterable[Cause]) -> list[Cause]:
