@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from taylor_verify.judge.causes.actuator_limits import new_limits
 from taylor_verify.judge.causes.arcs import Arcs, Evidence, telling_arcs
 from taylor_verify.judge.causes.budget import Spent
 from taylor_verify.judge.causes.candidate import Candidate, Cause, has_few_digits
@@ -191,6 +192,8 @@ class Search:
                 candidates += capped_speed(self.answer)
             with suppress(Spent), budget.at_most(budget.left / 2):
                 candidates += damped_steps(self.answer, stride)
+            with suppress(Spent), budget.at_most(budget.left / 2):
+                candidates += self.from_far([*new_limits(self.answer)])
         cause = self.cause(candidates, PAIR if is_stepped else LEAVES)
         if is_stepped or is_blind:
             return cause

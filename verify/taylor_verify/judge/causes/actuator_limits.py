@@ -1,0 +1,63 @@
+"""Limits of loads that the scene does not have, as actuators have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from taylor_verify.judge.causes.changed_equations import Changes
+from taylor_verify.judge.causes.changed_texts import has_text
+from taylor_verify.judge.causes.fit import Family
+from taylor_verify.judge.causes.float_answer import Answer, velocities_of
+from taylor_verify.judge.causes.many_flows import Floats
+from taylor_verify.models.acting import Acting
+
+# Parts of the largest load at which the fit of a limit begins.
+_BEGINS: Final = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.92)
+_EACH: Final = "a limit of the {} on each axis"
+_LENGTH: Final = "a limit of the length of the {}"
+
+
+def new_limits(answer: Answer) -> Iterator[tuple[Family, Floats]]:
+    """Yield limits that vectors of texts do not have, as actuators do, and where their fits may begin."""
+    acting = answer.right.acting
+    if acting is None:
+        return
+    for name, entries in acting.written.vectors:
+        sizes = _sizes(answer, acting, name) if has_text(entries) else np.zeros(1)
+        if not np.ptp(sizes) > 0:
+            continue
+        largest = float(np.max(sizes))
+        for words in (_EACH, _LENGTH):
+            changes = partial(_limited_by, acting, name, words is _EACH)
+            family = Family(words.format(name), "limit", np.zeros(1), np.array([largest]), changes)
+            yield family, largest * np.array(_BEGINS)
+
+
+def _sizes(answer: Answer, acting: Acting, name: str) -> Floats:
+    """Return the sizes of a vector of texts at the rows of the file."""
+    loads, right = acting.written, answer.right
+    vectors = tuple((n, own if n == name else ("0", "0", "0")) for n, own in loads.vectors)
+    alone = acting.of(replace(loads, vectors=vectors, hung=()))
+    z, nu = answer.states(right.coupled).T[None], velocities_of(right, answer.file.v).T[None]
+    only = replace(right, acting=alone, load=np.zeros(right.size))
+    return np.asarray(np.linalg.norm(only.loads_at(answer.times, z, nu)[0], axis=0))
+
+
+def _limited_by(acting: Acting, name: str, is_each: bool, values: Floats) -> Changes:
+    """Return a vector of texts within a limit; raises ValueError where it is none."""
+    loads, limit = acting.written, float(values[0])
+    if not limit > 0:
+        raise ValueError(limit)
+    entries = [f"({entry})" for entry in dict(loads.vectors)[name]]
+    length = f"max(norm({', '.join(entries)}), {limit!r})"
+    texts = tuple(
+        f"clip({entry}, -{limit!r}, {limit!r})" if is_each else f"{entry}*{limit!r}/{length}"
+        for entry in entries
+    )
+    vectors = tuple((n, texts if n == name else own) for n, own in loads.vectors)
+    return {"acting": acting.of(replace(loads, vectors=vectors))}
