@@ -51,7 +51,7 @@ def _over_an_arc(equations: Equations, time: Floats, z: Floats, h: Floats) -> Fl
     return _adams_bashforth(equations, time, z, h, equations.rates(time - h, earlier))[0]
 
 
-def _runs(*steps: _Step) -> Callable[..., Motion | None]:
+def runs(*steps: _Step) -> Callable[..., Motion | None]:
     """Return the motion that is nearest to an answer, of some ways to begin a method or to turn."""
 
     def run(answer: Answer, equations: Equations, h: float, components: int) -> Motion | None:
@@ -95,7 +95,7 @@ _ADAMS_BASHFORTH: Final = Method(
     2,
     _over_an_arc,
     has_frame=True,
-    run=_runs(_adams_bashforth, *(partial(_begun_by, name) for name in ("midpoint", "RK4"))),
+    run=runs(_adams_bashforth, *(partial(_begun_by, name) for name in ("midpoint", "RK4"))),
 )
 
 # Added mass by accelerations that are known already, as plug-ins of simulators have it, who know the
@@ -122,9 +122,9 @@ def with_memory(right: Equations) -> dict[str, Method]:
     ):
         words = f"{name}, explicit Euler" + (f", attitude {some[0]}" if some[0] else "")
         ways = [partial(_with_acceleration, UPDATES.get(turn)) for turn in some]
-        runs = [partial(_lagging, *way, weight) for way in product((1.0, 0.0), ways)]
+        each = [partial(_lagging, *way, weight) for way in product((1.0, 0.0), ways)]
         over = partial(_lagging_over_an_arc, ways[0], weight)
-        methods[words] = Method(1, over, has_frame=True, run=_runs(*runs))
+        methods[words] = Method(1, over, has_frame=True, run=runs(*each))
     return methods
 
 

@@ -119,20 +119,22 @@ def replays(answer: Answer, stride: int) -> Iterator[Candidate]:
         known |= OF_PUSHED_MOMENTUM
     if answer.right.coupled > answer.n:
         known = {**METHODS, **dict(with_updates(answer.n))}
-    held = dict(held_loads.methods(answer.right.acting)) if answer.right.acting else {}
-    of_loads = [*replayed.steps(held, _ALONE)]
+    acting = answer.right.acting
+    of_loads = [*replayed.steps(held_loads.methods(acting) if acting else {}, _ALONE)]
     is_exact = any(steps.left < _ROUNDINGS * replayed.floor for steps in of_loads)
     tried = [iter(of_loads), *[replayed.steps(known, _ALONE)] * (not is_exact)]
     if answer.count > 2 * _ARCS and not is_exact:
         # A method with memory has a first step of another kind.
         later = answer.at(np.s_[1:])
         beyond = _clear(later, stride)
-        tried += [] if beyond is None else [beyond.steps(with_memory(answer.right), _ALONE)]
+        late = held_loads.late_methods(acting) if acting else {}
+        more = {**late, **with_memory(answer.right)}
+        tried += [] if beyond is None else [beyond.steps(more, _ALONE)]
     for steps in _each_best(chain(*tried)):
         near = _LEAVES if steps.method.run is None else _NEARLY
         if steps.left < max(near, _ROUNDINGS * replayed.floor):
             h = steps.step(answer)
-            changes = steps.method.held.changes(h) if steps.method.held else {}
+            changes = steps.method.held.changes(answer, h) if steps.method.held else {}
             of_steps = fault(_name(steps, answer), "method", changes)
             motion = partial(motion_of_steps, steps)
             yield Candidate(of_steps, of_steps.right, steps.left, motion, near, steps)
@@ -154,7 +156,7 @@ def _name(steps: Steps, answer: Answer) -> str:
     long = steps.words(answer)
     if steps.method.held:
         when = f"every {long.removeprefix('h = ')}" if "h = " in long else f"at each of {long}"
-        return f"{steps.name} taken {when} and held in between"
+        return f"{steps.method.held.words} taken {when}{steps.method.held.late} and held in between"
     words = _WORDS.get(steps.name, steps.name) if answer.n == 3 else steps.name
     if steps.method.order > 1:
         words = f"truncation of order {steps.method.order}: {steps.name}"
